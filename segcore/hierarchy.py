@@ -1,0 +1,108 @@
+"""The binary tree of cuts: labels at any number of segments, without recomputation."""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from segcore.arrays import FloatArray, IntArray
+from segcore.errors import InvalidParameters
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Hierarchy:
+    """The splits of a mesh in the order in which they were made.
+
+    Node 0 is the whole mesh. Split s (0, 1, ...) cuts node ``split_node[s]`` in two, the larger part becoming node
+    2 s + 1 and the smaller one node 2 s + 2; with splits 0..s made there are s + 2 segments. So the order of the
+    splits, the parents and the level at which a node appears can all be read off the node numbers.
+    """
+
+    split_node: IntArray  # (S,) the node that split s cuts, split_node[s] <= 2 s
+    cut_value: FloatArray  # (S,) normalized cut times sqrt(total area), dimensionless; 0 where components part
+    area: FloatArray  # (2 S + 1,) surface area of every node, in squared units of the mesh
+    face_count: IntArray  # (2 S + 1,) input faces of every node
+    face_leaf: IntArray  # (F,) the leaf node of every input face
+    automatic_segments: int  # the number of segments chosen when none is given
+
+    @property
+    def max_segments(self) -> int:
+        """The number of segments with every split made."""
+        return len(self.split_node) + 1
+
+    @property
+    def node_count(self) -> int:
+        return 2 * len(self.split_node) + 1
+
+    @property
+    def children(self) -> IntArray:
+        """(N, 2): the two children of every node, larger first; -1 for leaves."""
+        children = np.full((self.node_count, 2), -1, dtype=np.int32)
+        children[self.split_node] = 1 + np.arange(2 * len(self.split_node), dtype=np.int32).reshape(-1, 2)
+        return children
+
+    @property
+    def parent(self) -> IntArray:
+        """(N,): the parent of every node; -1 for the root."""
+        return np.concatenate([np.array([-1], dtype=np.int32), np.repeat(self.split_node, 2)])
+
+    @property
+    def level(self) -> IntArray:
+        """(N,): the smallest number of segments at which a node is a segment of its own."""
+        return np.concatenate([np.array([1], dtype=np.int32), np.repeat(np.arange(len(self.split_node), dtype=np.int32) + 2, 2)])
+
+    @property
+    def label(self) -> IntArray:
+        """(N,): the label that a node has wherever it is a segment.
+
+        The larger part of a cut keeps its parent's label, the smaller one gets the next new label: a segment that does
+        not split keeps its label (and its colour) at every level.
+        """
+        label = np.zeros(self.node_count, dtype=np.int32)
+        for split, node in enumerate(self.split_node.tolist()):
+            label[2 * split + 1] = label[node]
+            label[2 * split + 2] = split + 1
+        return label
+
+    def segment_nodes(self, segments: int | None = None) -> IntArray:
+        """(K,): the node that is segment 0, 1, ..., K - 1 at a number of segments, by default the automatic one.
+
+        Raises
+        ------
+        InvalidParameters
+            Where ``segments`` is not in 1..max_segments.
+        """
+        count = self._checked(segments)
+        nodes = np.zeros(count, dtype=np.int32)
+        label = self.label
+        for split in range(count - 1):
+            nodes[label[2 * split + 1]] = 2 * split + 1
+            nodes[split + 1] = 2 * split + 2
+        return nodes
+
+    def labels(self, segments: int | None = None) -> IntArray:
+        """(F,) int32: the segment of every input face, contiguous 0..K - 1, in input order.
+
+        Parameters
+        ----------
+        segments : the number of segments K, by default ``automatic_segments``.
+
+        Raises
+        ------
+        InvalidParameters
+            Where ``segments`` is not in 1..max_segments.
+        """
+        count = self._checked(segments)
+        label_of_node = np.zeros(self.node_count, dtype=np.int32)
+        for split, node in enumerate(self.split_node.tolist()):
+            label_of_node[2 * split + 1] = label_of_node[node]
+            label_of_node[2 * split + 2] = split + 1 if split < count - 1 else label_of_node[node]
+        labels: IntArray = label_of_node[self.face_leaf]
+        return labels
+
+    def _checked(self, segments: int | None) -> int:
+        count = self.automatic_segments if segments is None else segments
+        if not 1 <= count <= self.max_segments:
+            raise InvalidParameters(
+                f"The number of segments must be from 1 to {self.max_segments} for this mesh, not {count}."
+            )
+        return count

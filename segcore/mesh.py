@@ -1,0 +1,84 @@
+"""A triangle mesh as two arrays."""
+
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from segcore.arrays import FloatArray, IntArray
+from segcore.errors import InvalidMesh
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Mesh:
+    """A triangle mesh, face i being the i-th triangle of the input.
+
+    Parameters
+    ----------
+    vertices : (V, 3) finite coordinates, any unit.
+    faces : (F, 3) indices into ``vertices``, F >= 1. Repeated indices, duplicate faces, open borders,
+        non-manifold edges and several components are all allowed.
+
+    Raises
+    ------
+    InvalidMesh
+        Where a shape, an index or a coordinate is wrong; the message names the first offender.
+    """
+
+    vertices: FloatArray  # (V, 3)
+    faces: IntArray  # (F, 3)
+
+    def __init__(self, vertices: ArrayLike, faces: ArrayLike) -> None:
+        object.__setattr__(self, "vertices", _checked_vertices(vertices))
+        object.__setattr__(self, "faces", _checked_faces(faces, len(self.vertices)))
+
+    @property
+    def corners(self) -> FloatArray:
+        """(F, 3, 3): the three corner positions of every face."""
+        corners: FloatArray = self.vertices[self.faces]
+        return corners
+
+
+def face_normals_and_areas(corners: FloatArray) -> tuple[FloatArray, FloatArray]:
+    """Unit normals (F, 3), zero where the area is zero, and areas (F,) of triangles given by their corners (F, 3, 3)."""
+    cross = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
+    double_area = np.linalg.norm(cross, axis=1)
+    normals = np.divide(cross, double_area[:, None], out=np.zeros_like(cross), where=double_area[:, None] > 0)
+    return normals, 0.5 * double_area
+
+
+def _checked_vertices(values: ArrayLike) -> FloatArray:
+    vertices = _as_array(values, "vertices")
+    if vertices.ndim != 2 or vertices.shape[1] != 3:
+        raise InvalidMesh(f"Vertices must be an array of shape (V, 3), not {vertices.shape}.")
+    if vertices.dtype.kind not in "fiu":
+        raise InvalidMesh(f"Vertices must be real numbers, not {vertices.dtype}.")
+    vertices = np.ascontiguousarray(vertices, dtype=np.float64)
+    finite = np.isfinite(vertices).all(axis=1)
+    if not finite.all():
+        first = int(np.argmin(finite))
+        raise InvalidMesh(f"Vertex {first} has a coordinate that is not finite: repair the mesh before sending it.")
+    return vertices
+
+
+def _checked_faces(values: ArrayLike, vertex_count: int) -> IntArray:
+    faces = _as_array(values, "faces")
+    if faces.ndim != 2 or faces.shape[1] != 3:
+        raise InvalidMesh(f"Faces must be an array of shape (F, 3), not {faces.shape}: triangulate polygons first.")
+    if len(faces) == 0:
+        raise InvalidMesh("The mesh has no faces: a point cloud or an empty file cannot be segmented.")
+    if faces.dtype.kind not in "iu":
+        raise InvalidMesh(f"Faces must be integers, not {faces.dtype}.")
+    outside = ((faces < 0) | (faces >= vertex_count)).any(axis=1)
+    if outside.any():
+        first = int(np.argmax(outside))
+        raise InvalidMesh(f"Face {first} refers to a vertex outside 0..{vertex_count - 1}: {faces[first].tolist()}.")
+    return np.ascontiguousarray(faces, dtype=np.int32)
+
+
+def _as_array(values: ArrayLike, name: str) -> np.ndarray[Any, np.dtype[Any]]:
+    try:
+        return np.asarray(values)
+    except ValueError as error:
+        raise InvalidMesh(f"The {name} do not form a rectangular array.") from error
