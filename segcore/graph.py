@@ -1,0 +1,138 @@
+"""A weighted graph whose nodes have volumes: what every cut is made on."""
+
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+from numba import njit
+from scipy.sparse import csr_matrix
+
+from segcore.arrays import FloatArray, IntArray
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Rows:
+    """The rows of an adjacency matrix: node i has the entries start[i]..start[i + 1] of the two other arrays."""
+
+    start: IntArray  # (N + 1,)
+    neighbour: IntArray  # (2 E,)
+    edge: IntArray  # (2 E,) the edge of the graph that leads there
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class SurfaceGraph:
+    """An undirected graph without loops, each edge listed once.
+
+    Nodes are vertices of a mesh, its faces, or clusters of faces; the solvers of this package do not care which.
+    """
+
+    edges: IntArray  # (E, 2) node pairs, edges[:, 0] < edges[:, 1]
+    weight: FloatArray  # (E,) affinity, > 0
+    volume: FloatArray  # (N,) node volume, > 0
+
+    @property
+    def node_count(self) -> int:
+        return len(self.volume)
+
+    @property
+    def total_volume(self) -> float:
+        return float(self.volume.sum())
+
+    def rows(self) -> Rows:
+        """The neighbours and the edges of every node, in the order of the edge list. O(N + E)."""
+        return Rows(*_rows(self.edges, self.node_count))
+
+    def adjacency(self) -> "csr_matrix[Any]":
+        """(N, N) symmetric matrix W of the weights, zero diagonal."""
+        rows = self.rows()
+        shape = (self.node_count, self.node_count)
+        return csr_matrix((self.weight[rows.edge], rows.neighbour, rows.start), shape=shape)
+
+    def degrees(self) -> FloatArray:
+        """(N,): the weighted degree of every node, the sum of its row of W."""
+        ends = self.edges.ravel()
+        degrees: FloatArray = np.bincount(ends, np.repeat(self.weight, 2), self.node_count)
+        return degrees
+
+    def subgraph(self, nodes: IntArray) -> "SurfaceGraph":
+        """The edges inside a set of nodes; the nodes keep their volumes. O(N + E).
+
+        Parameters
+        ----------
+        nodes : (M,) distinct indices; node i of the result is node nodes[i] of this graph.
+        """
+        edges, kept = _induced_edges(self.edges, nodes, self.node_count)
+        return SurfaceGraph(edges, self.weight[kept], self.volume[nodes])
+
+
+def connected_components(graph: SurfaceGraph) -> IntArray:
+    """(N,) int32: the component of every node, numbered 0, 1, ... by the smallest node in each."""
+    return _components(graph.edges, graph.node_count)
+
+
+@njit(cache=True)
+def _rows(edges, node_count):  # type: ignore[no-untyped-def]
+    start = np.zeros(node_count + 1, dtype=np.int32)
+    for e in range(len(edges)):
+        start[edges[e, 0] + 1] += 1
+        start[edges[e, 1] + 1] += 1
+    for i in range(node_count):
+        start[i + 1] += start[i]
+    filled = start[:node_count].copy()
+    neighbour = np.empty(2 * len(edges), dtype=np.int32)
+    edge = np.empty(2 * len(edges), dtype=np.int32)
+    for e in range(len(edges)):
+        for end in range(2):
+            here = edges[e, end]
+            neighbour[filled[here]] = edges[e, 1 - end]
+            edge[filled[here]] = e
+            filled[here] += 1
+    return start, neighbour, edge
+
+
+@njit(cache=True)
+def _induced_edges(edges, nodes, node_count):  # type: ignore[no-untyped-def]
+    local = np.full(node_count, -1, dtype=np.int32)
+    for i in range(len(nodes)):
+        local[nodes[i]] = i
+    count = 0
+    kept = np.empty(len(edges), dtype=np.int32)
+    for e in range(len(edges)):
+        if local[edges[e, 0]] >= 0 and local[edges[e, 1]] >= 0:
+            kept[count] = e
+            count += 1
+    induced = np.empty((count, 2), dtype=np.int32)
+    for k in range(count):
+        a = local[edges[kept[k], 0]]
+        b = local[edges[kept[k], 1]]
+        induced[k, 0] = min(a, b)
+        induced[k, 1] = max(a, b)
+    return induced, kept[:count]
+
+
+@njit(cache=True)
+def _components(edges, node_count):  # type: ignore[no-untyped-def]
+    """Union-find in which the smallest node of a component is its root."""
+    parent = np.arange(node_count).astype(np.int32)
+    for e in range(len(edges)):
+        a = edges[e, 0]
+        b = edges[e, 1]
+        while parent[a] != a:
+            parent[a] = parent[parent[a]]
+            a = parent[a]
+        while parent[b] != b:
+            parent[b] = parent[parent[b]]
+            b = parent[b]
+        if a < b:
+            parent[b] = a
+        else:
+            parent[a] = b
+    count = 0
+    component = np.empty(node_count, dtype=np.int32)
+    for i in range(node_count):
+        if parent[i] == i:
+            component[i] = count
+            count += 1
+        else:
+            component[i] = component[parent[i]]
+    return component
