@@ -19,6 +19,8 @@ class Mesh:
     vertices : (V, 3) finite coordinates, any unit.
     faces : (F, 3) indices into ``vertices``, F >= 1. Repeated indices, duplicate faces, open borders,
         non-manifold edges and several components are all allowed.
+    source_polygon : (F,) the polygon of the file that each face is a part of, counted from 0; None where every
+        polygon is one face.
 
     Raises
     ------
@@ -28,10 +30,12 @@ class Mesh:
 
     vertices: FloatArray  # (V, 3)
     faces: IntArray  # (F, 3)
+    source_polygon: IntArray | None = None  # (F,)
 
-    def __init__(self, vertices: ArrayLike, faces: ArrayLike) -> None:
+    def __init__(self, vertices: ArrayLike, faces: ArrayLike, source_polygon: ArrayLike | None = None) -> None:
         object.__setattr__(self, "vertices", _checked_vertices(vertices))
         object.__setattr__(self, "faces", _checked_faces(faces, len(self.vertices)))
+        object.__setattr__(self, "source_polygon", _checked_polygons(source_polygon, len(self.faces)))
 
     @property
     def corners(self) -> FloatArray:
@@ -75,6 +79,15 @@ def _checked_faces(values: ArrayLike, vertex_count: int) -> IntArray:
         first = int(np.argmax(outside))
         raise InvalidMesh(f"Face {first} refers to a vertex outside 0..{vertex_count - 1}: {faces[first].tolist()}.")
     return np.ascontiguousarray(faces, dtype=np.int32)
+
+
+def _checked_polygons(values: ArrayLike | None, face_count: int) -> IntArray | None:
+    if values is None:
+        return None
+    polygons = _as_array(values, "source polygons")
+    if polygons.shape != (face_count,) or polygons.dtype.kind not in "iu":
+        raise InvalidMesh(f"There must be one integer source polygon for each of the {face_count} faces.")
+    return np.ascontiguousarray(polygons, dtype=np.int32)
 
 
 def _as_array(values: ArrayLike, name: str) -> np.ndarray[Any, np.dtype[Any]]:

@@ -1,0 +1,1 @@
+"""Meshes in, segmentations out: the only code that knows file formats."""

@@ -1,0 +1,72 @@
+"""Labels and the tree of cuts as text and as JSON values."""
+
+import math
+from typing import Any, BinaryIO
+
+from segcore.arrays import IntArray
+from segcore.hierarchy import Hierarchy
+
+
+def write_seg(target: BinaryIO, labels: IntArray) -> None:
+    """Write (F,) labels one per line in input face order, the ``.seg`` form of the Princeton segmentation benchmark."""
+    target.write("".join(f"{label}\n" for label in labels.tolist()).encode("ascii"))
+
+
+def labels_document(hierarchy: Hierarchy, segments: int | None = None) -> dict[str, Any]:
+    """``{"segments": K, "labels": [...]}``, one label of 0..K - 1 for every input face, in input order.
+
+    Raises
+    ------
+    InvalidParameters
+        Where ``segments`` is not in 1..max_segments.
+    """
+    labels = hierarchy.labels(segments)
+    return {"segments": hierarchy.automatic_segments if segments is None else segments, "labels": labels.tolist()}
+
+
+def hierarchy_document(hierarchy: Hierarchy) -> dict[str, Any]:
+    """The tree of cuts as values that JSON can hold.
+
+    ``cut_values[i]`` belongs to the cut that leads from i + 1 to i + 2 segments. A node has ``id``, ``parent`` (null
+    for the root), ``children`` (empty for a leaf), ``level`` (the smallest number of segments at which it is a
+    segment), ``label`` (its label wherever it is one), ``area``, ``faces`` and ``cut_value`` (of the cut that splits
+    it; null for a leaf). A cut value that is not finite is null.
+    """
+    return {
+        "max_segments": hierarchy.max_segments,
+        "automatic_segments": hierarchy.automatic_segments,
+        "cut_values": [finite_or_none(value) for value in hierarchy.cut_value.tolist()],
+        "nodes": node_documents(hierarchy),
+    }
+
+
+def node_documents(hierarchy: Hierarchy) -> list[dict[str, Any]]:
+    """The entries of ``nodes`` in :func:`hierarchy_document`, entry i being node i."""
+    cut_value = dict(zip(hierarchy.split_node.tolist(), hierarchy.cut_value.tolist(), strict=True))
+    columns = zip(
+        hierarchy.parent.tolist(),
+        hierarchy.children.tolist(),
+        hierarchy.level.tolist(),
+        hierarchy.label.tolist(),
+        hierarchy.area.tolist(),
+        hierarchy.face_count.tolist(),
+        strict=True,
+    )
+    return [
+        {
+            "id": node,
+            "parent": None if parent < 0 else parent,
+            "children": [] if children[0] < 0 else children,
+            "level": level,
+            "label": label,
+            "area": area,
+            "faces": faces,
+            "cut_value": finite_or_none(cut_value[node]) if node in cut_value else None,
+        }
+        for node, (parent, children, level, label, area, faces) in enumerate(columns)
+    ]
+
+
+def finite_or_none(value: float) -> float | None:
+    """JSON has no word for infinity."""
+    return value if math.isfinite(value) else None

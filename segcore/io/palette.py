@@ -1,0 +1,85 @@
+"""Colours for segments: far apart for every kind of colour vision, and fixed for each label."""
+
+from functools import cache
+
+import numpy as np
+
+from segcore.arrays import FloatArray
+
+# Okabe and Ito, Color Universal Design, 2008: seven colours chosen with people who have a colour vision deficiency.
+_FIRST = ("56b4e9", "e69f00", "009e73", "cc79a7", "f0e442", "0072b2", "d55e00")
+_DISTINCT = 256  # colours before the sequence repeats
+_STEPS = 17  # candidates per channel
+_LIGHTNESS = (0.45, 0.93)  # of the candidates in OKLab: neither lost on black nor on white
+
+# How protanopes, deuteranopes and tritanopes see linear RGB.
+# Machado, Oliveira and Fernandes, A physiologically-based model for simulation of color vision deficiency, 2009,
+# severity 1.
+_VISIONS = np.array(
+    [
+        [[1, 0, 0], [0, 1, 0], [0, 0, 1]],
+        [[0.152286, 1.052583, -0.204868], [0.114503, 0.786281, 0.099216], [-0.003882, -0.048116, 1.051998]],
+        [[0.367322, 0.860646, -0.227968], [0.280085, 0.672501, 0.047413], [-0.011820, 0.042940, 0.968881]],
+        [[1.255528, -0.076749, -0.178779], [-0.078411, 0.930809, 0.147602], [0.004733, 0.691367, 0.303900]],
+    ]
+)
+# Ottosson, A perceptual color space for image processing, 2020.
+_RGB_TO_LMS = np.array(
+    [
+        [0.4122214708, 0.5363325363, 0.0514459929],
+        [0.2119034982, 0.6806995451, 0.1073969566],
+        [0.0883024619, 0.2817188376, 0.6299787005],
+    ]
+)
+_LMS_TO_OKLAB = np.array(
+    [
+        [0.2104542553, 0.7936177850, -0.0040720468],
+        [1.9779984951, -2.4285922050, 0.4505937099],
+        [0.0259040371, 0.7827717662, -0.8086757660],
+    ]
+)
+
+
+def segment_colors(n: int) -> FloatArray:
+    """(n, 3) sRGB colours in 0..1 of the labels 0..n - 1.
+
+    The colour of a label does not depend on ``n``. The first 256 differ: each is the candidate that is farthest in
+    OKLab from all before it, in the eyes of the kind of colour vision that tells them apart worst; then they repeat.
+    """
+    return _sequence()[np.arange(n) % _DISTINCT]
+
+
+def linear_rgb(srgb: FloatArray) -> FloatArray:
+    """Linear light from sRGB, both in 0..1 (IEC 61966-2-1), as glTF stores its colour factors."""
+    return np.where(srgb <= 0.04045, srgb / 12.92, ((srgb + 0.055) / 1.055) ** 2.4)
+
+
+@cache
+def _sequence() -> FloatArray:
+    candidates = np.concatenate([_first_colors(), _candidates()])
+    seen = _appearance(candidates)
+    distance = np.full(len(candidates), np.inf)
+    chosen: list[int] = []
+    for i in range(_DISTINCT):
+        chosen.append(i if i < len(_FIRST) else int(np.argmax(distance)))
+        gap = np.linalg.norm(seen - seen[:, chosen[-1:]], axis=2).min(axis=0)
+        distance = np.minimum(distance, gap)
+    return candidates[chosen]
+
+
+def _first_colors() -> FloatArray:
+    return np.array([list(bytes.fromhex(color)) for color in _FIRST]) / 255
+
+
+def _candidates() -> FloatArray:
+    ramp = np.round(np.linspace(0, 255, _STEPS)) / 255
+    grid = np.stack(np.meshgrid(ramp, ramp, ramp, indexing="ij"), axis=-1).reshape(-1, 3)
+    lightness = _appearance(grid)[0, :, 0]
+    return grid[(lightness >= _LIGHTNESS[0]) & (lightness <= _LIGHTNESS[1])]
+
+
+def _appearance(srgb: FloatArray) -> FloatArray:
+    """(4, N, 3): where the colours lie in OKLab for each kind of colour vision."""
+    light = np.clip(np.einsum("vij,nj->vni", _VISIONS, linear_rgb(srgb)), 0, 1)
+    oklab: FloatArray = np.cbrt(light @ _RGB_TO_LMS.T) @ _LMS_TO_OKLAB.T
+    return oklab

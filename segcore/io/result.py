@@ -1,0 +1,207 @@
+"""The ``.cleave`` file: a mesh and its hierarchy of cuts, exact, in one file.
+
+Form, version 1. A ZIP archive whose members are stored without compression, in this order, all dated 1980-01-01, so
+that equal results are equal bytes:
+
+    header.json           {"format": "cleave-result", "version": 1, "automatic_segments": int}
+    vertices.npy          (V, 3) float64    faces.npy        (F, 3) int32
+    source_polygon.npy    (F,) int32, left out where every polygon of the input is one face
+    split_node.npy        (S,) int32        cut_value.npy    (S,) float64
+    area.npy              (2 S + 1,) float64
+    face_count.npy        (2 S + 1,) int32  face_leaf.npy    (F,) int32
+
+The arrays are little-endian, in C order, in NumPy's ``.npy`` format 1.0, and mean what the attributes of the same names
+of Mesh and Hierarchy mean. Nothing in the file is ever unpickled.
+"""
+
+import json
+import math
+import os
+import re
+import zipfile
+from dataclasses import dataclass
+from typing import Any, BinaryIO
+
+import numpy as np
+from numpy.typing import NDArray
+
+from segcore.errors import InvalidMesh, InvalidParameters
+from segcore.hierarchy import Hierarchy
+from segcore.mesh import Mesh
+
+_FORMAT, _VERSION = "cleave-result", 1
+_DATE = (1980, 1, 1, 0, 0, 0)
+_HEADER = "header.json"
+_LARGEST_HEADER = 4096  # bytes
+_NPY_HEADER = re.compile(
+    rb"\x93NUMPY\x01\x00.."
+    rb"\{'descr': '(?P<dtype>...)', 'fortran_order': False, 'shape': \((?P<shape>\d{1,12},(?: \d{1,12})?)\), \} *\n",
+    re.DOTALL,
+)
+_MESH_ARRAYS = {"vertices": "<f8", "faces": "<i4", "source_polygon": "<i4"}
+_TREE_ARRAYS = {"split_node": "<i4", "cut_value": "<f8", "area": "<f8", "face_count": "<i4", "face_leaf": "<i4"}
+_OPTIONAL = "source_polygon"
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Segmentation:
+    """What a ``.cleave`` file holds."""
+
+    mesh: Mesh
+    hierarchy: Hierarchy
+
+
+def write_result(target: BinaryIO, mesh: Mesh, hierarchy: Hierarchy) -> None:
+    """Write a mesh and its hierarchy; the same input gives the same bytes.
+
+    Parameters
+    ----------
+    target : a binary file open for writing.
+
+    Raises
+    ------
+    InvalidParameters
+        Where the hierarchy is of another mesh.
+    """
+    if len(hierarchy.face_leaf) != len(mesh.faces):
+        raise InvalidParameters(
+            f"The hierarchy has {len(hierarchy.face_leaf)} faces and the mesh {len(mesh.faces)}: "
+            "give the mesh that it was made of."
+        )
+    header = {"format": _FORMAT, "version": _VERSION, "automatic_segments": hierarchy.automatic_segments}
+    with zipfile.ZipFile(target, "w", zipfile.ZIP_STORED) as archive:
+        archive.writestr(_member(_HEADER), json.dumps(header))
+        for name, dtype in _MESH_ARRAYS.items():
+            _write_array(archive, name, getattr(mesh, name), dtype)
+        for name, dtype in _TREE_ARRAYS.items():
+            _write_array(archive, name, getattr(hierarchy, name), dtype)
+
+
+def read_result(source: str | os.PathLike[str] | BinaryIO) -> Segmentation:
+    """Read a ``.cleave`` file.
+
+    Parameters
+    ----------
+    source : a path, or a seekable binary file.
+
+    Raises
+    ------
+    InvalidMesh
+        Where the file is of another kind or version, is damaged or cut short, or contradicts itself.
+    OSError
+        Where a path cannot be opened.
+    """
+    if isinstance(source, str | os.PathLike):
+        with open(source, "rb") as file:
+            return _read(file)
+    return _read(source)
+
+
+def _member(name: str) -> zipfile.ZipInfo:
+    member = zipfile.ZipInfo(name, _DATE)
+    member.create_system = 3  # the same bytes on every system
+    member.external_attr = 0o644 << 16
+    return member
+
+
+def _write_array(archive: zipfile.ZipFile, name: str, array: NDArray[Any] | None, dtype: str) -> None:
+    if array is None:
+        return
+    with archive.open(_member(f"{name}.npy"), "w", force_zip64=True) as member:
+        np.lib.format.write_array(member, np.ascontiguousarray(array, dtype=dtype), version=(1, 0), allow_pickle=False)
+
+
+def _read(file: BinaryIO) -> Segmentation:
+    try:
+        with zipfile.ZipFile(file) as archive:
+            _check_sizes(archive, file.seek(0, os.SEEK_END))
+            return _unpack(archive)
+    except (zipfile.BadZipFile, NotImplementedError, EOFError, UnicodeDecodeError, RuntimeError) as error:
+        raise InvalidMesh("This is not a .cleave file, or it is damaged or cut short: make it again.") from error
+
+
+def _check_sizes(archive: zipfile.ZipFile, file_size: int) -> None:
+    for member in archive.infolist():
+        if member.compress_type != zipfile.ZIP_STORED or member.file_size > file_size:
+            raise InvalidMesh(
+                f"Member {member.filename!r} of the .cleave file is compressed or cut short: make it again."
+            )
+
+
+def _unpack(archive: zipfile.ZipFile) -> Segmentation:
+    header = _read_header(archive)
+    present = set(archive.namelist())
+    mesh_arrays = {
+        name: _read_array(archive, name, dtype)
+        for name, dtype in _MESH_ARRAYS.items()
+        if name != _OPTIONAL or f"{name}.npy" in present
+    }
+    tree_arrays = {name: _read_array(archive, name, dtype) for name, dtype in _TREE_ARRAYS.items()}
+    mesh = Mesh(**mesh_arrays)
+    hierarchy = Hierarchy(**tree_arrays, automatic_segments=header["automatic_segments"])
+    _check_tree(hierarchy, len(mesh.faces))
+    return Segmentation(mesh, hierarchy)
+
+
+def _read_header(archive: zipfile.ZipFile) -> dict[str, int]:
+    try:
+        header = json.loads(_read_member(archive, _HEADER)[:_LARGEST_HEADER])
+    except (ValueError, RecursionError) as error:
+        raise InvalidMesh("The header of the .cleave file is damaged: make the file again.") from error
+    if not isinstance(header, dict) or header.get("format") != _FORMAT:
+        raise InvalidMesh("This ZIP archive is not a .cleave file: its header does not say so.")
+    if header.get("version") != _VERSION:
+        raise InvalidMesh(
+            f"This .cleave file has version {header.get('version')!r}, and this program reads version {_VERSION}: "
+            "read it with the program that wrote it, or make it again."
+        )
+    if type(header.get("automatic_segments")) is not int:
+        raise InvalidMesh("The header of the .cleave file has no automatic_segments: make the file again.")
+    return header
+
+
+def _read_member(archive: zipfile.ZipFile, name: str) -> bytes:
+    try:
+        return archive.read(name)
+    except KeyError as error:
+        raise InvalidMesh(f"This is not a .cleave file: it has no member {name!r}.") from error
+
+
+def _read_array(archive: zipfile.ZipFile, name: str, dtype: str) -> NDArray[Any]:
+    data = _read_member(archive, f"{name}.npy")
+    header = _NPY_HEADER.match(data)
+    if header is None or header["dtype"] != dtype.encode():
+        raise InvalidMesh(f"Array {name!r} of the .cleave file has another form than it should: make the file again.")
+    shape = tuple(int(extent) for extent in header["shape"].split(b",") if extent)
+    if len(data) - header.end() != np.dtype(dtype).itemsize * math.prod(shape):
+        raise InvalidMesh(f"Array {name!r} of the .cleave file has another size than it should: make the file again.")
+    return np.frombuffer(data, dtype, offset=header.end()).reshape(shape).copy()
+
+
+def _check_tree(hierarchy: Hierarchy, face_count: int) -> None:
+    """Refuse a hierarchy that is not a tree of cuts over the faces."""
+    splits = len(hierarchy.split_node)
+    shapes = {"split_node": splits, "cut_value": splits, "area": 2 * splits + 1, "face_count": 2 * splits + 1}
+    for name, length in (shapes | {"face_leaf": face_count}).items():
+        if getattr(hierarchy, name).shape != (length,):
+            raise InvalidMesh(f"Array {name!r} of the .cleave file does not fit the others: make the file again.")
+    if not _is_tree(hierarchy) or not _counts_agree(hierarchy):
+        raise InvalidMesh("The tree of cuts in the .cleave file contradicts itself: make the file again.")
+
+
+def _is_tree(hierarchy: Hierarchy) -> bool:
+    node, leaf = hierarchy.split_node, hierarchy.face_leaf
+    earlier = (node >= 0) & (node <= 2 * np.arange(len(node)))
+    once = len(np.unique(node)) == len(node)
+    if not earlier.all() or not once or not 1 <= hierarchy.automatic_segments <= hierarchy.max_segments:
+        return False
+    is_leaf = np.ones(hierarchy.node_count, dtype=bool)
+    is_leaf[node] = False
+    return bool(((leaf >= 0) & (leaf < hierarchy.node_count)).all() and is_leaf[leaf].all())
+
+
+def _counts_agree(hierarchy: Hierarchy) -> bool:
+    counts = np.bincount(hierarchy.face_leaf, minlength=hierarchy.node_count)
+    for split in reversed(range(len(hierarchy.split_node))):
+        counts[hierarchy.split_node[split]] = counts[2 * split + 1] + counts[2 * split + 2]
+    return bool((counts == hierarchy.face_count).all())
