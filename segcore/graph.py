@@ -7,7 +7,7 @@ import numpy as np
 from numba import njit
 from scipy.sparse import csr_matrix
 
-from segcore.arrays import FloatArray, IntArray
+from segcore.arrays import FloatArray, IntArray, group_sums
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -40,7 +40,7 @@ class SurfaceGraph:
 
     def rows(self) -> Rows:
         """The neighbours and the edges of every node, in the order of the edge list. O(N + E)."""
-        return Rows(*_rows(self.edges, self.node_count))
+        return rows_of(self.edges, self.node_count)
 
     def adjacency(self) -> "csr_matrix[Any]":
         """(N, N) symmetric matrix W of the weights, zero diagonal."""
@@ -50,9 +50,7 @@ class SurfaceGraph:
 
     def degrees(self) -> FloatArray:
         """(N,): the weighted degree of every node, the sum of its row of W."""
-        ends = self.edges.ravel()
-        degrees: FloatArray = np.bincount(ends, np.repeat(self.weight, 2), self.node_count)
-        return degrees
+        return group_sums(self.edges.ravel(), np.repeat(self.weight, 2), self.node_count)
 
     def subgraph(self, nodes: IntArray) -> "SurfaceGraph":
         """The edges inside a set of nodes; the nodes keep their volumes. O(N + E).
@@ -63,6 +61,11 @@ class SurfaceGraph:
         """
         edges, kept = _induced_edges(self.edges, nodes, self.node_count)
         return SurfaceGraph(edges, self.weight[kept], self.volume[nodes])
+
+
+def rows_of(edges: IntArray, node_count: int) -> Rows:
+    """The adjacency of an edge list (E, 2); parallel edges are allowed. O(N + E)."""
+    return Rows(*_rows(edges, node_count))
 
 
 def connected_components(graph: SurfaceGraph) -> IntArray:
