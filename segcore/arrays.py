@@ -9,3 +9,9 @@ FloatArray: TypeAlias = NDArray[np.float64]
 IntArray: TypeAlias = NDArray[np.int32]
 LongArray: TypeAlias = NDArray[np.int64]
 BoolArray: TypeAlias = NDArray[np.bool_]
+
+
+def group_sums(group: NDArray[np.integer], values: FloatArray, count: int = 0) -> FloatArray:
+    """(max(count, groups),): the sum of the values of each group 0, 1, ...; zero for empty groups."""
+    sums: FloatArray = np.bincount(group, values, minlength=count).astype(np.float64, copy=False)
+    return sums

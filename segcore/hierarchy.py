@@ -48,7 +48,9 @@ class Hierarchy:
     @property
     def level(self) -> IntArray:
         """(N,): the smallest number of segments at which a node is a segment of its own."""
-        return np.concatenate([np.array([1], dtype=np.int32), np.repeat(np.arange(len(self.split_node), dtype=np.int32) + 2, 2)])
+        return np.concatenate(
+            [np.array([1], dtype=np.int32), np.repeat(np.arange(len(self.split_node), dtype=np.int32) + 2, 2)]
+        )
 
     @property
     def label(self) -> IntArray:

@@ -9,6 +9,8 @@ from numpy.typing import ArrayLike
 from segcore.arrays import FloatArray, IntArray
 from segcore.errors import InvalidMesh
 
+_LARGEST_COORDINATE = 1e100  # areas and volumes of anything larger leave the range of floating point numbers
+
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Mesh:
@@ -45,7 +47,7 @@ class Mesh:
 
 
 def face_normals_and_areas(corners: FloatArray) -> tuple[FloatArray, FloatArray]:
-    """Unit normals (F, 3), zero where the area is zero, and areas (F,) of triangles given by their corners (F, 3, 3)."""
+    """Unit normals (F, 3), zero where the area is zero, and areas (F,) of triangles given by corners (F, 3, 3)."""
     cross = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
     double_area = np.linalg.norm(cross, axis=1)
     normals = np.divide(cross, double_area[:, None], out=np.zeros_like(cross), where=double_area[:, None] > 0)
@@ -63,6 +65,8 @@ def _checked_vertices(values: ArrayLike) -> FloatArray:
     if not finite.all():
         first = int(np.argmin(finite))
         raise InvalidMesh(f"Vertex {first} has a coordinate that is not finite: repair the mesh before sending it.")
+    if len(vertices) and np.abs(vertices).max() > _LARGEST_COORDINATE:
+        raise InvalidMesh(f"A coordinate is larger than {_LARGEST_COORDINATE:g}: use a larger unit of length.")
     return vertices
 
 

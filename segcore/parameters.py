@@ -15,11 +15,13 @@ class SegmentationParameters:
         Where a value is outside its range; the message has the range and the value.
     """
 
-    max_segments: int = 64  # 1..100000: where the hierarchy ends (a mesh of more components has one segment for each)
-    seed: int = 0  # 0..2**32 - 1: of the pseudo-random tie-breaking in the coarsening
+    max_segments: int = 64  # 1..10000: where the hierarchy ends
+    clusters: int = 2500  # 100..100000: nodes of the coarse graph that is cut in place of the mesh
+    seed: int = 0  # 0..2**32 - 1: of the random order in which the coarsening visits faces
 
     def __post_init__(self) -> None:
-        _check_integer("max_segments", self.max_segments, 1, 100_000)
+        _check_integer("max_segments", self.max_segments, 1, 10_000)
+        _check_integer("clusters", self.clusters, 100, 100_000)
         _check_integer("seed", self.seed, 0, 2**32 - 1)
 
     @classmethod

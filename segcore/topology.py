@@ -1,0 +1,141 @@
+"""Compiled kernels that find out how the faces of a mesh hang together. Arrays in, arrays out."""
+
+import numpy as np
+from numba import njit
+
+from segcore.arrays import BoolArray, FloatArray, IntArray, LongArray
+
+_EMPTY = -1
+
+
+@njit(cache=True)
+def _mix(key: np.uint64) -> np.uint64:
+    """The finaliser of SplitMix64: spreads the bits of a key over the whole word."""
+    key = (key ^ (key >> np.uint64(30))) * np.uint64(0xBF58476D1CE4E5B9)
+    key = (key ^ (key >> np.uint64(27))) * np.uint64(0x94D049BB133111EB)
+    return key ^ (key >> np.uint64(31))
+
+
+@njit(cache=True)
+def first_equal_row(rows: LongArray) -> IntArray:
+    """For every row of (N, 3) the index of the first row that equals it, found by open addressing."""
+    count = len(rows)
+    capacity = 16
+    while capacity < 2 * count:
+        capacity *= 2
+    mask = np.uint64(capacity - 1)
+    slots = np.full(capacity, _EMPTY, np.int32)
+    first = np.empty(count, np.int32)
+    for i in range(count):
+        a, b, c = rows[i, 0], rows[i, 1], rows[i, 2]
+        slot = _mix(_mix(_mix(np.uint64(a)) + np.uint64(b)) + np.uint64(c)) & mask
+        while True:
+            j = slots[slot]
+            if j == _EMPTY:
+                slots[slot] = i
+                first[i] = i
+                break
+            if rows[j, 0] == a and rows[j, 1] == b and rows[j, 2] == c:
+                first[i] = j
+                break
+            slot = (slot + np.uint64(1)) & mask
+    return first
+
+
+@njit(cache=True)
+def dual_edges(faces: IntArray, vertex_count: int) -> tuple[IntArray, IntArray, BoolArray, BoolArray]:
+    """Pairs of faces that share an edge.
+
+    Where m > 2 faces share one edge, they are chained in the order of their indices (m - 1 pairs).
+
+    Returns
+    -------
+    (E, 2) the faces of a pair; (E, 2) the vertices of the shared edge; (E,) True where exactly two faces share it;
+    (E,) True where both faces run through it in the same direction, which means that their orientations disagree.
+    """
+    half_edges = 3 * len(faces)
+    start = np.zeros(vertex_count + 1, np.int64)
+    for f in range(len(faces)):
+        for k in range(3):
+            start[min(faces[f, k], faces[f, (k + 1) % 3]) + 1] += 1
+    for v in range(vertex_count):
+        start[v + 1] += start[v]
+    far_end = np.empty(half_edges, np.int32)
+    owner = np.empty(half_edges, np.int32)
+    forward = np.empty(half_edges, np.bool_)
+    fill = start[:-1].copy()
+    for f in range(len(faces)):
+        for k in range(3):
+            a, b = faces[f, k], faces[f, (k + 1) % 3]
+            low, high = min(a, b), max(a, b)
+            # Insertion sort by the far end keeps the faces of one edge together and in the order of their indices.
+            p = fill[low]
+            while p > start[low] and far_end[p - 1] > high:
+                far_end[p], owner[p], forward[p] = far_end[p - 1], owner[p - 1], forward[p - 1]
+                p -= 1
+            far_end[p], owner[p], forward[p] = high, f, a < b
+            fill[low] += 1
+    pairs = np.empty((half_edges, 2), np.int32)
+    ends = np.empty((half_edges, 2), np.int32)
+    manifold = np.empty(half_edges, np.bool_)
+    disagree = np.empty(half_edges, np.bool_)
+    count = 0
+    for v in range(vertex_count):
+        p = start[v]
+        while p < start[v + 1]:
+            q = p + 1
+            while q < start[v + 1] and far_end[q] == far_end[p]:
+                q += 1
+            for r in range(p, q - 1):
+                if owner[r] == owner[r + 1]:
+                    continue
+                pairs[count, 0], pairs[count, 1] = owner[r], owner[r + 1]
+                ends[count, 0], ends[count, 1] = v, far_end[p]
+                manifold[count] = q - p == 2
+                disagree[count] = forward[r] == forward[r + 1]
+                count += 1
+            p = q
+    return pairs[:count].copy(), ends[:count].copy(), manifold[:count].copy(), disagree[:count].copy()
+
+
+@njit(cache=True)
+def consistent_orientation(
+    start: IntArray, neighbour: IntArray, edge: IntArray, manifold: BoolArray, disagree: BoolArray
+) -> tuple[IntArray, BoolArray]:
+    """Patches of faces that are joined by edges of exactly two faces, and which faces to turn round within each.
+
+    The lowest face of a patch keeps its orientation. On a one-sided surface the breadth-first order decides.
+
+    Returns
+    -------
+    (F,) the patch of every face; (F,) True where the face must be turned to agree with the first one of its patch.
+    """
+    face_count = len(start) - 1
+    patch = np.full(face_count, _EMPTY, np.int32)
+    turned = np.zeros(face_count, np.bool_)
+    queue = np.empty(face_count, np.int32)
+    patches = 0
+    for seed in range(face_count):
+        if patch[seed] != _EMPTY:
+            continue
+        patch[seed] = patches
+        queue[0] = seed
+        head, tail = 0, 1
+        while head < tail:
+            f = queue[head]
+            head += 1
+            for p in range(start[f], start[f + 1]):
+                g = neighbour[p]
+                if manifold[edge[p]] and patch[g] == _EMPTY:
+                    patch[g] = patches
+                    turned[g] = turned[f] != disagree[edge[p]]
+                    queue[tail] = g
+                    tail += 1
+        patches += 1
+    return patch, turned
+
+
+def as_bits(positions: FloatArray) -> LongArray:
+    """The bit patterns of coordinates, with -0.0 made equal to 0.0."""
+    bits: LongArray = (positions + 0.0).view(np.int64)
+    return bits
