@@ -1,0 +1,141 @@
+"""The mesh formats that are read, and how they are told apart: by what a file holds, not by what it is called."""
+
+import os
+import re
+import struct
+from dataclasses import dataclass
+from pathlib import Path
+from typing import BinaryIO
+
+from segcore.errors import UnsupportedFormat
+from segcore.io.source import GZIP_MAGIC
+
+
+@dataclass(frozen=True, slots=True)
+class Format:
+    """What a mesh format is called."""
+
+    title: str
+    extensions: tuple[str, ...]  # with the dot, the usual one first
+    media_types: tuple[str, ...]  # the usual one first
+
+
+FORMATS: dict[str, Format] = {
+    "off": Format("OFF", (".off", ".coff", ".noff", ".cnoff"), ("model/off", "application/off", "application/x-off")),
+    "stl": Format("STL", (".stl", ".stla", ".stlb"), ("model/stl", "application/sla", "application/vnd.ms-pki.stl")),
+    "ply": Format("PLY", (".ply",), ("model/ply", "application/ply", "application/x-ply")),
+    "obj": Format("OBJ", (".obj",), ("model/obj", "application/x-tgif")),
+    "glb": Format("GLB", (".glb",), ("model/gltf-binary",)),
+    "gltf": Format("glTF", (".gltf",), ("model/gltf+json",)),
+}
+
+_BOM = b"\xef\xbb\xbf"
+_OFF = re.compile(rb"(?:\s|#[^\r\n]*[\r\n])*(?:ST)?C?N?4?n?OFF")
+_ASCII_STL = re.compile(rb"\s*solid\b[^\r\n]*[\r\n]\s*(?:facet\s|endsolid\b)", re.IGNORECASE)
+_OBJ = re.compile(rb"(?:\s|#[^\r\n]*[\r\n])*(?:v|vt|vn|vp|f|l|p|g|o|s|mg|usemtl|mtllib)(?=[ \t])")
+_OBJ_VERTEX = re.compile(rb"^[ \t]*v[ \t]", re.MULTILINE)
+_GLTF = re.compile(rb"\s*\{")
+_FOREIGN = {
+    b"PK\x03\x04": "a ZIP archive (3MF or other)",
+    b"Kaydara FBX Binary": "FBX",
+    b"<?xml": "XML (COLLADA, X3D or other)",
+    b"ISO-10303-21": "STEP",
+    b"#VRML": "VRML",
+    b"BZh": "compressed with bzip2",
+    b"\xfd7zXZ": "compressed with xz",
+    b"\x28\xb5\x2f\xfd": "compressed with zstd",
+    GZIP_MAGIC: "compressed twice",
+    b"\xff\xfe": "text in UTF-16",
+    b"\xfe\xff": "text in UTF-16",
+}
+_STL_HEADER, _STL_FACE = 84, 50  # bytes
+
+
+def declared_format(source: str | os.PathLike[str] | BinaryIO, declaration: str | None) -> str | None:
+    """The format that a caller or the name of a file announces: a key of FORMATS, or None where neither does.
+
+    Raises
+    ------
+    UnsupportedFormat
+        Where ``declaration`` is no name, extension or media type of a known format.
+    """
+    if declaration is not None:
+        return _named(declaration)
+    if isinstance(source, str | os.PathLike):
+        path = Path(source)
+        extension = Path(path.stem).suffix if path.suffix.lower() == ".gz" else path.suffix
+        return next((name for name, form in FORMATS.items() if extension.lower() in form.extensions), None)
+    return None
+
+
+def detect_format(data: bytes, declared: str | None) -> str:
+    """The format of a file: a key of FORMATS. What is declared decides only where the content does not.
+
+    Raises
+    ------
+    UnsupportedFormat
+        Where the content is of another format than the declared one, or of none that is read here.
+    """
+    found = _found(data)
+    if found is not None and declared in (None, found):
+        return found
+    foreign = FORMATS[found].title if found else next((n for m, n in _FOREIGN.items() if data.startswith(m)), None)
+    if declared is not None and foreign is not None:
+        raise UnsupportedFormat(
+            f"The file is declared or named as {FORMATS[declared].title}, but its content is {foreign}: "
+            "correct the name or send the other file."
+        )
+    if declared is not None:
+        return declared
+    content = "of no known mesh format" if foreign is None else foreign
+    raise UnsupportedFormat(f"The content of the file is {content}: convert it to {_titles()}.")
+
+
+def is_ascii_stl(data: bytes) -> bool:
+    """Whether a file that is STL is so in text: binary ones may begin with the word ``solid`` too."""
+    return not _fills_stl(data) and _ASCII_STL.match(data.removeprefix(_BOM)[:65536]) is not None
+
+
+def _named(declaration: str) -> str:
+    wanted = declaration.partition(";")[0].strip().lower()
+    for name, form in FORMATS.items():
+        if wanted == name or wanted in form.media_types or f".{wanted.removeprefix('.')}" in form.extensions:
+            return name
+    raise UnsupportedFormat(f"There is no reader for {declaration!r}: convert the mesh to {_titles()}.")
+
+
+def _titles() -> str:
+    *first, last = (form.title for form in FORMATS.values())
+    return f"{', '.join(first)} or {last}"
+
+
+def _found(data: bytes) -> str | None:
+    if data.startswith(b"glTF"):
+        return "glb"
+    if data.startswith((b"ply\n", b"ply\r")):
+        return "ply"
+    if _fills_stl(data):
+        return "stl"
+    text = data.removeprefix(_BOM)
+    if _OFF.match(text):
+        return "off"
+    if _GLTF.match(text):
+        return "gltf"
+    if _ASCII_STL.match(text):
+        return "stl"
+    if _OBJ.match(text) and _OBJ_VERTEX.search(text):
+        return "obj"
+    return "stl" if _mostly_stl(data) else None
+
+
+def _fills_stl(data: bytes) -> bool:
+    return len(data) > _STL_HEADER and len(data) == _stl_size(data)
+
+
+def _mostly_stl(data: bytes) -> bool:
+    """Whether the count of a binary STL accounts for most of the bytes: some writers add their own after the faces."""
+    return len(data) > _STL_HEADER and len(data) // 2 <= _stl_size(data) <= len(data)
+
+
+def _stl_size(data: bytes) -> int:
+    return _STL_HEADER + _STL_FACE * int(struct.unpack_from("<I", data, 80)[0])

@@ -1,0 +1,124 @@
+"""The OFF reader (Geomview's object file format, in text)."""
+
+import re
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from segcore.arrays import FloatArray, LongArray
+from segcore.errors import InvalidMesh, UnsupportedFormat
+from segcore.io.limits import ReadLimits
+from segcore.io.polygons import Polygons, mesh_of_polygons, ragged_range
+from segcore.io.text import Words, find_words, plain_text, whole_numbers, without_comments
+from segcore.mesh import Mesh
+
+_KEYWORD = re.compile(rb"\s*(ST)?(C)?(N)?(4)?(n)?OFF(\s+BINARY)?")
+
+
+def read_off(data: bytes, limits: ReadLimits) -> Mesh:
+    """Read an OFF file, also with the prefixes ST, C and N, whose texture, colours and normals are passed over.
+
+    Every vertex is on a line of its own, or the lines do not matter and it has as many numbers as the prefixes say. A
+    face ends with its line: what follows its indices there is its colour.
+
+    The last number of a file that lacks the newline at its end cannot be told from one that is cut short within it.
+
+    Raises
+    ------
+    InvalidMesh, UnsupportedFormat, LimitExceeded
+    """
+    text = without_comments(plain_text(data))
+    keyword = _KEYWORD.match(text)
+    if keyword is None:
+        raise InvalidMesh("The file does not begin with the word OFF: send an OFF file, or name its real format.")
+    texture, color, normal, *unread = keyword.groups()
+    if any(unread):
+        raise UnsupportedFormat(
+            "OFF files in binary or with four or more dimensions are not read: save it as plain OFF."
+        )
+    words = find_words(b" " * keyword.end() + text[keyword.end() :])
+    vertex_count, face_count = _counts(words, limits)
+    width = 3 + (2 if texture else 0) + (4 if color else 0) + (3 if normal else 0)
+    layouts = (_vertex_lines(words, vertex_count), _vertex_words(words, vertex_count, width))
+    problem = InvalidMesh(f"The OFF file ends within its {vertex_count} vertices: it is cut short.")
+    for number, first in enumerate(layout for layout in layouts if layout is not None):
+        try:
+            polygons = _polygons(words, int(first[-1]), face_count)
+        except InvalidMesh as error:
+            problem = problem if number else error
+        else:
+            return mesh_of_polygons(_vertices(words, first), polygons, limits)
+    raise problem
+
+
+def _counts(words: Words, limits: ReadLimits) -> tuple[int, int]:
+    if words.count < 3:
+        raise InvalidMesh("The OFF file ends before the numbers of vertices, faces and edges: it is cut short.")
+    counts = whole_numbers(words.numbers(0, 3))
+    if counts is None or (counts < 0).any():
+        raise InvalidMesh(f"Line {words.line_number(0)}: the numbers of vertices, faces and edges must be whole.")
+    vertex_count, face_count, _ = counts.tolist()
+    limits.check_vertices(vertex_count)
+    limits.check_faces(face_count)
+    if 3 * vertex_count + face_count > words.count - 3:
+        raise InvalidMesh(
+            f"The OFF file announces {vertex_count} vertices and {face_count} faces, but has only {words.count - 3} "
+            "numbers for them: it is cut short."
+        )
+    return vertex_count, face_count
+
+
+def _vertex_lines(words: Words, count: int) -> LongArray | None:
+    """The first word of every vertex and the one after the last, or None where vertices are not lines."""
+    body = int(np.searchsorted(words.line_start, 3))
+    first = words.line_start[body : body + count + 1]
+    if len(first) <= count or first[0] != 3 or (np.diff(first) < 3).any():
+        return None
+    return first
+
+
+def _vertex_words(words: Words, count: int, width: int) -> LongArray | None:
+    """The same where the lines do not matter."""
+    first = 3 + width * np.arange(count + 1, dtype=np.int64)
+    return first if first[-1] <= words.count else None
+
+
+def _vertices(words: Words, first: LongArray) -> FloatArray:
+    values = words.floats(int(first[0]), int(first[-1]))
+    return values[first[:-1, None] - first[0] + np.arange(3)]
+
+
+def _polygons(words: Words, first: int, count: int) -> Polygons:
+    """The polygons that begin at word ``first``, one on each line or over more lines than one."""
+    numbers = words.numbers(first, words.count)
+    starts = words.line_start[np.searchsorted(words.line_start, first) :] - first
+    heads, room = starts[:-1], np.diff(starts) - 1
+    if len(heads) != count or heads[:1].any() or not ((numbers[heads] >= 0) & (numbers[heads] <= room)).all():
+        heads = _walk(words, numbers, first, count)
+    sizes = whole_numbers(numbers[heads])
+    corners = None if sizes is None else whole_numbers(numbers[ragged_range(heads + 1, sizes)])
+    if sizes is None or corners is None:
+        raise InvalidMesh("The OFF file has a face whose numbers are not whole: a face is a count and vertex indices.")
+    return Polygons(corners, sizes)
+
+
+def _walk(words: Words, numbers: NDArray[Any], first: int, count: int) -> LongArray:
+    """The word, counted from ``first``, at which each of ``count`` polygons begins, where they are not lines."""
+    next_line = np.repeat(words.line_start[1:], np.diff(words.line_start))[first:] - first
+    values, after = numbers.tolist(), next_line.tolist()
+    heads = np.zeros(count, dtype=np.int64)
+    at = 0
+    for i in range(count):
+        if at >= len(values) or values[at] > len(values) - at - 1:
+            raise InvalidMesh(f"The OFF file ends at face {i} of the {count} that it announces: it is cut short.")
+        if values[at] < 0 or values[at] != int(values[at]):
+            raise InvalidMesh(f"Line {words.line_number(first + at)}: a face begins with its number of corners.")
+        heads[i] = at
+        at = after[at + int(values[at])]
+    if at < len(values):
+        raise InvalidMesh(
+            f"Line {words.line_number(first + at)}: the OFF file goes on after the {count} faces that it announces: "
+            "correct the numbers at its head."
+        )
+    return heads

@@ -1,0 +1,53 @@
+"""From the polygons of a file to the faces of a mesh."""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from segcore.arrays import FloatArray, IntArray, LongArray
+from segcore.io.limits import ReadLimits
+from segcore.mesh import Mesh
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Polygons:
+    """The polygons of a file in its order."""
+
+    corners: LongArray  # (sum of sizes,) the vertices of all polygons, one after the other
+    sizes: LongArray  # (P,) the number of corners of every polygon, >= 0
+
+
+def mesh_of_polygons(vertices: FloatArray, polygons: Polygons, limits: ReadLimits) -> Mesh:
+    """A mesh whose faces are the fans of polygons, in their order.
+
+    A polygon with corners c0, c1, ... gives the faces (c0, c1, c2), (c0, c2, c3), ...; with fewer than three corners it
+    gives none.
+
+    Parameters
+    ----------
+    vertices : (V, 3).
+
+    Raises
+    ------
+    LimitExceeded, InvalidMesh
+    """
+    limits.check_vertices(len(vertices))
+    limits.check_faces(int(np.maximum(polygons.sizes - 2, 0).sum()))
+    if (polygons.sizes == 3).all():
+        return Mesh(vertices, polygons.corners.reshape(-1, 3))
+    faces, source_polygon = _fans(polygons)
+    return Mesh(vertices, faces, source_polygon)
+
+
+def ragged_range(start: LongArray, length: LongArray) -> LongArray:
+    """start[0], start[0] + 1, ... (length[0] of them), start[1], start[1] + 1, ... and so on."""
+    before = np.cumsum(length) - length
+    return np.repeat(start - before, length) + np.arange(int(length.sum()))
+
+
+def _fans(polygons: Polygons) -> tuple[LongArray, IntArray]:
+    triangles = np.maximum(polygons.sizes - 2, 0)
+    source_polygon = np.repeat(np.arange(len(triangles), dtype=np.int32), triangles)
+    first = np.repeat(np.cumsum(polygons.sizes) - polygons.sizes, triangles)
+    second = ragged_range(np.cumsum(polygons.sizes) - polygons.sizes + 1, triangles)
+    return polygons.corners[np.stack([first, second, second + 1], axis=1)], source_polygon

@@ -1,0 +1,49 @@
+"""read_mesh: any mesh file that is known here, by its content."""
+
+import os
+from collections.abc import Callable
+from typing import BinaryIO
+
+from segcore.io.formats import declared_format, detect_format
+from segcore.io.limits import ReadLimits
+from segcore.io.off import read_off
+from segcore.io.source import read_source
+from segcore.mesh import Mesh
+
+_READERS: dict[str, Callable[[bytes, ReadLimits], Mesh]] = {"off": read_off}
+
+
+def read_mesh(
+    source: str | os.PathLike[str] | BinaryIO,
+    format: str | None = None,  # noqa: A002
+    *,
+    limits: ReadLimits | None = None,
+) -> Mesh:
+    """Read a mesh file, also one that is compressed with gzip.
+
+    Face i of the mesh is the i-th triangle after the polygons of the file, in its order, are cut into fans;
+    ``source_polygon`` says which polygon it came from where there are others than triangles. No vertex and no face is
+    left out, merged or moved, and nothing but ``source`` is ever opened.
+
+    Parameters
+    ----------
+    source : a path, or a binary file, which is read to its end.
+    format : a name, extension or media type of FORMATS. The content decides what is read; where it is clearly of
+        another format than this one, or than the name of the file, the file is refused.
+    limits : the largest input that is read, by default ``ReadLimits()``.
+
+    Raises
+    ------
+    UnsupportedFormat
+        Where the format, or a feature that the file needs, is not read here.
+    InvalidMesh
+        Where the file is damaged, cut short or without faces; the message has the line, the byte or the element.
+    LimitExceeded
+        Where the mesh is larger than a limit, which the message names.
+    OSError
+        Where a path cannot be read.
+    """
+    limits = limits or ReadLimits()
+    declared = declared_format(source, format)
+    data = read_source(source, limits)
+    return _READERS[detect_format(data, declared)](data, limits)
