@@ -1,0 +1,122 @@
+"""The janitor: what the store accepted and the queue has lost waits again, and what cannot succeed ends."""
+
+from pathlib import Path
+
+import pytest
+from redis import Redis
+from support import accepted
+
+from worker.janitor import MISSING_S, Janitor
+from worker.jobs import Failed, new_job_id
+from worker.queue import JobQueue
+from worker.settings import Settings
+from worker.store import LocalStore
+
+
+@pytest.fixture
+def janitor(store: LocalStore, queue: JobQueue, tmp_path: Path) -> Janitor:
+    return Janitor(store, queue, Settings(data_dir=tmp_path, max_attempts=3))
+
+
+def waiting(queue: JobQueue) -> list[str]:
+    ids: list[str] = queue.entries.get_job_ids()
+    return ids
+
+
+def test_a_job_that_the_queue_never_got_waits_after_a_grace(
+    janitor: Janitor, store: LocalStore, queue: JobQueue
+) -> None:
+    job = accepted(store, b"mesh")
+    janitor.sweep(0.0)
+    assert waiting(queue) == []
+    janitor.sweep(MISSING_S)
+    assert waiting(queue) == [job.id]
+
+
+def test_a_wiped_queue_is_filled_again(janitor: Janitor, store: LocalStore, queue: JobQueue, connection: Redis) -> None:
+    jobs = [accepted(store, b"mesh") for _ in range(5)]
+    for job in jobs:
+        queue.enqueue(job.id)
+    connection.flushall()
+    janitor.sweep(0.0)
+    janitor.sweep(MISSING_S)
+    assert sorted(waiting(queue)) == sorted(job.id for job in jobs)
+
+
+def test_jobs_that_wait_or_run_are_left_alone(janitor: Janitor, store: LocalStore, queue: JobQueue) -> None:
+    waits, runs = accepted(store, b"mesh"), accepted(store, b"mesh")
+    queue.enqueue(waits.id)
+    queue.take(runs.id, "worker", lease_s=30)
+    janitor.sweep(0.0)
+    janitor.sweep(MISSING_S)
+    assert waiting(queue) == [waits.id]
+
+
+def test_a_job_that_is_seen_in_between_was_not_lost(janitor: Janitor, store: LocalStore, queue: JobQueue) -> None:
+    job = accepted(store, b"mesh")
+    janitor.sweep(0.0)
+    queue.take(job.id, "worker", lease_s=30)
+    janitor.sweep(MISSING_S / 2)
+    queue.release(job.id, "worker")
+    janitor.sweep(MISSING_S)
+    assert waiting(queue) == []
+
+
+def test_a_time_without_knowledge_of_the_queue_does_not_count(
+    janitor: Janitor, store: LocalStore, queue: JobQueue
+) -> None:
+    accepted(store, b"mesh")
+    janitor.sweep(0.0)
+    janitor.forget_sightings()
+    janitor.sweep(MISSING_S)
+    assert waiting(queue) == []
+
+
+def test_finished_and_deleted_jobs_are_not_put_back(janitor: Janitor, store: LocalStore, queue: JobQueue) -> None:
+    finished, deleted = accepted(store, b"mesh"), accepted(store, b"mesh")
+    store.finish(finished.id, Failed(finished_at=finished.created_at, code="c", message="m"))
+    store.delete(deleted.id)
+    janitor.sweep(0.0)
+    janitor.sweep(MISSING_S)
+    assert waiting(queue) == []
+
+
+def test_a_job_that_took_all_its_workers_along_fails_with_the_last_cause(
+    janitor: Janitor, store: LocalStore, queue: JobQueue
+) -> None:
+    job = accepted(store, b"mesh")
+    for cause in ("worker_lost", "worker_lost", "out_of_memory"):
+        store.end_attempt(job.id, store.begin_attempt(job.id, "worker"), cause)
+    janitor.sweep(0.0)
+    janitor.sweep(MISSING_S)
+    outcome = store.outcome(job.id)
+    assert isinstance(outcome, Failed)
+    assert outcome.code == "out_of_memory"
+    assert waiting(queue) == []
+
+
+def test_attempts_that_ended_with_their_worker_count_too(janitor: Janitor, store: LocalStore) -> None:
+    job = accepted(store, b"mesh")
+    for _ in range(3):
+        store.begin_attempt(job.id, "worker")
+    janitor.sweep(0.0)
+    janitor.sweep(MISSING_S)
+    outcome = store.outcome(job.id)
+    assert isinstance(outcome, Failed)
+    assert outcome.code == "worker_lost"
+    assert "3 times" in outcome.message
+
+
+def test_of_several_janitors_one_acts(janitor: Janitor, store: LocalStore, queue: JobQueue) -> None:
+    assert queue.lead("another", lease_s=60)
+    accepted(store, b"mesh")
+    janitor.sweep(0.0)
+    janitor.sweep(MISSING_S)
+    assert waiting(queue) == []
+
+
+def test_an_entry_without_a_job_disturbs_nobody(janitor: Janitor, queue: JobQueue) -> None:
+    queue.enqueue(new_job_id())
+    janitor.sweep(0.0)
+    janitor.sweep(MISSING_S)
+    assert len(waiting(queue)) == 1

@@ -1,0 +1,87 @@
+"""The process that compares the store with the queue and puts back what the queue has lost."""
+
+import logging
+import os
+import socket
+import time
+
+from worker.jobs import exhausted
+from worker.logs import configure_logging
+from worker.queue import JobQueue, QueueError, connect_impatiently
+from worker.settings import Settings, load_settings
+from worker.store import LocalStore, UnknownJob
+
+log = logging.getLogger("cleave.janitor")
+
+# A job between the queue and its lease, or between the store and the queue, is in neither for a moment, and a running
+# one has no lease for a second or two after Redis was wiped. Only what stays away for longer is lost.
+MISSING_S = 5.0
+_LEADER_INTERVALS = 4
+_UPLOAD_UNTOUCHED_S = 3600.0
+
+
+class Janitor:
+    """One look at everything per sweep; between sweeps it only remembers since when a job has been missing."""
+
+    def __init__(self, store: LocalStore, queue: JobQueue, settings: Settings) -> None:
+        self._store = store
+        self._queue = queue
+        self._settings = settings
+        self._name = f"{socket.gethostname()}.{os.getpid()}"
+        self._missing_since: dict[str, float] = {}
+
+    def sweep(self, at_s: float) -> None:
+        """Put back every unfinished job that neither waits nor runs, and end those that have had all their attempts.
+
+        ``at_s`` is the time in seconds on any clock that only goes forward.
+        """
+        if not self._queue.lead(self._name, _LEADER_INTERVALS * self._settings.janitor_interval_s + MISSING_S):
+            self._missing_since.clear()
+            return
+        for job_id in self._lost(at_s):
+            self._recover(job_id)
+        self._queue.forget_dead_workers()
+        self._store.remove_abandoned_uploads(_UPLOAD_UNTOUCHED_S)
+
+    def forget_sightings(self) -> None:
+        """After a time without knowledge of the queue nothing is known to be missing."""
+        self._missing_since.clear()
+
+    def _lost(self, at_s: float) -> list[str]:
+        unfinished = self._store.unfinished()
+        held = self._queue.held(unfinished)
+        missing = [job_id for job_id in unfinished if job_id not in held]
+        self._missing_since = {job_id: self._missing_since.get(job_id, at_s) for job_id in missing}
+        return [job_id for job_id in missing if at_s - self._missing_since[job_id] >= MISSING_S]
+
+    def _recover(self, job_id: str) -> None:
+        failed = exhausted(self._store.attempts(job_id), self._settings.max_attempts)
+        if failed is None:
+            log.warning("job %s was lost by the queue and waits again", job_id)
+            self._queue.requeue(job_id)
+            return
+        log.error("job %s failed: %s", job_id, failed.code)
+        try:
+            self._store.finish(job_id, failed)
+        except UnknownJob:
+            return
+        self._queue.forget(job_id)
+
+
+def main() -> None:
+    settings = load_settings()
+    configure_logging(settings.log_level)
+    assert settings.redis_url, "the parent process sets CLEAVE_REDIS_URL"
+    queue = JobQueue(connect_impatiently(settings.redis_url))
+    janitor = Janitor(LocalStore(settings.data_dir), queue, settings)
+    while True:
+        try:
+            janitor.sweep(time.monotonic())
+        except (QueueError, OSError) as error:
+            log.warning("the sweep is put off: %s", error)
+            janitor.forget_sightings()
+        time.sleep(settings.janitor_interval_s)
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,249 @@
+"""The process that takes jobs from the queue and runs each in a child process, the work-horse."""
+
+import logging
+import os
+import resource
+import secrets
+import select
+import signal
+import socket
+import time
+from collections.abc import Callable
+from pathlib import Path
+from types import FrameType
+from typing import Any
+
+from rq import Worker
+from rq.exceptions import DeserializationError
+from rq.job import Job as Entry
+from rq.serializers import JSONSerializer
+from rq.worker import WorkerStatus
+from rq.worker_registration import register
+
+import segcore
+from worker.jobs import Attempt, Cause, exhausted, is_job_id
+from worker.logs import configure_logging
+from worker.parent_death import die_with_parent
+from worker.progress import ProgressReporter
+from worker.queue import TASK, JobQueue, QueueError, connect_impatiently, connect_patiently
+from worker.settings import Settings, load_settings
+from worker.store import LocalStore, UnknownJob
+from worker.tasks import perform
+
+log = logging.getLogger("cleave.worker")
+
+_TICK_S = 1.0  # how often a running job is looked at
+_REGISTERED_S = 30  # how long a worker counts as alive after its last sign of life
+_DEQUEUE_TTL_S = 20  # rq blocks for 15 s less, and gives a sign of life in between
+_EXIT_OUT_OF_MEMORY = 71
+
+
+class JobWorker(Worker):  # type: ignore[misc]  # rq is not analysed
+    """An rq worker for which the store, not Redis, says what has become of a job.
+
+    rq's part is the registration, the dequeue with its intermediate list, the fork and the warm shutdown. The
+    work-horse writes its outcome to the store and needs no Redis; this process renews the lease meanwhile, and stops a
+    work-horse that overruns, or whose job got an outcome elsewhere, or that would hold up a shutdown. It takes no
+    commands from Redis, and the one function that it runs is not looked up by the name in the entry.
+    """
+
+    max_connection_wait_time = 2.0
+
+    def __init__(self, store: LocalStore, queue: JobQueue, leases: JobQueue, settings: Settings) -> None:
+        """``queue`` may wait for Redis as long as it takes, ``leases`` must not."""
+        super().__init__(
+            [queue.entries],
+            name=f"{socket.gethostname()}.{os.getpid()}.{secrets.token_hex(4)}",
+            connection=queue.connection,
+            serializer=JSONSerializer,
+            worker_ttl=_DEQUEUE_TTL_S,
+            log_job_description=False,
+        )
+        self._store = store
+        self._queue = queue
+        self._leases = leases
+        self._settings = settings
+        self._stop_by = float("inf")  # when a running job is handed back, on the monotonic clock
+        self._horse_is_gone = -1  # a descriptor that becomes readable
+
+    # What rq calls.
+
+    def execute_job(self, job: Entry, queue: Any) -> None:
+        self.set_state(WorkerStatus.BUSY)
+        if not is_allowed(job):
+            log.warning("an entry of the queue that is not a job of this installation was dropped: %r", job.id)
+            self._queue.forget(job.id)
+        elif self._queue.take(job.id, self.name, self._settings.lease_s):
+            self._run_if_open(job, queue)
+            self._settle(job.id)
+        self.set_state(WorkerStatus.IDLE)
+
+    def fork_work_horse(self, job: Entry, queue: Any) -> None:
+        self._horse_is_gone, held_by_the_horse = os.pipe()
+        super().fork_work_horse(job, queue)
+        os.close(held_by_the_horse)
+
+    def main_work_horse(self, job: Entry, queue: Any) -> None:  # noqa: ARG002
+        self.setup_work_horse_signals()
+        limit_memory(self._settings.job_memory_bytes)
+        reporter = ProgressReporter(self._leases, job.id)
+        os._exit(exit_status(lambda: perform(self._store, self._settings, job.id, reporter)))
+
+    def setup_work_horse_signals(self) -> None:
+        """A signal to the whole group is for the worker to decide about; its death is the end of the work-horse."""
+        signal.signal(signal.SIGINT, signal.SIG_IGN)
+        signal.signal(signal.SIGTERM, signal.SIG_IGN)
+        die_with_parent(self.pid)
+
+    def handle_work_horse_killed(self, job: Entry, retpid: int, ret_val: int, rusage: Any) -> None:
+        log.warning("the work-horse %d of job %s ended with %d, %d KiB", retpid, job.id, ret_val, rusage.ru_maxrss)
+
+    def handle_warm_shutdown_request(self) -> None:
+        self._stop_by = time.monotonic() + self._settings.shutdown_grace_s
+
+    def request_force_stop(self, signum: int, frame: FrameType | None) -> None:  # noqa: ARG002
+        self._stop_by = 0.0
+
+    def set_shutdown_requested_date(self) -> None:
+        """Nothing: a signal handler does not wait for Redis."""
+
+    def heartbeat(self, timeout: int | None = None, pipeline: Any = None) -> None:  # noqa: ARG002
+        super().heartbeat(_REGISTERED_S, pipeline)
+        register(self, pipeline)  # Redis may have been wiped since the last time
+
+    @property
+    def should_run_maintenance_tasks(self) -> bool:
+        return False  # the janitor's
+
+    def subscribe(self) -> None:
+        """No commands from Redis."""
+
+    # One job.
+
+    def _run_if_open(self, entry: Entry, queue: Any) -> None:
+        if not self._is_open(entry.id):
+            return
+        failed = exhausted(self._store.attempts(entry.id), self._settings.max_attempts)
+        try:
+            if failed is not None:
+                self._store.finish(entry.id, failed)
+            else:
+                self._attempt(entry, queue, self._store.begin_attempt(entry.id, self.name))
+        except UnknownJob:
+            log.info("job %s was deleted", entry.id)
+
+    def _attempt(self, entry: Entry, queue: Any, attempt: Attempt) -> None:
+        log.info("job %s: attempt %d", entry.id, attempt.number)
+        kills_before = out_of_memory_kills()
+        self.fork_work_horse(entry, queue)
+        stopped_for = self._watch(entry.id)
+        pid, status, usage = self.wait_for_horse()
+        self._horse_pid = 0
+        if not self._is_open(entry.id):
+            return
+        if stopped_for == "shutdown":
+            self._store.withdraw_attempt(entry.id, attempt)
+            return
+        self.handle_work_horse_killed(entry, pid, status, usage)
+        cause: Cause = "timed_out" if stopped_for == "timeout" else cause_of_death(status, kills_before)
+        self._store.end_attempt(entry.id, attempt, cause)
+
+    def _watch(self, job_id: str) -> str | None:
+        """Wait for the end of the work-horse; why it had to be stopped, None where it ended by itself."""
+        ends_at = time.monotonic() + self._settings.job_timeout_s
+        stopped_for = None
+        while not select.select([self._horse_is_gone], [], [], _TICK_S)[0]:
+            self._renew_lease(job_id)
+            stopped_for = stopped_for or self._reason_to_stop(job_id, ends_at)
+            if stopped_for:
+                os.kill(self.horse_pid, signal.SIGKILL)
+        os.close(self._horse_is_gone)
+        return stopped_for
+
+    def _reason_to_stop(self, job_id: str, ends_at: float) -> str | None:
+        if not self._is_open(job_id):
+            return "canceled"
+        if time.monotonic() > ends_at:
+            return "timeout"
+        return "shutdown" if time.monotonic() > self._stop_by else None
+
+    def _renew_lease(self, job_id: str) -> None:
+        try:
+            self._leases.renew(job_id, self.name, self._settings.lease_s)
+            with self._leases.connection.pipeline() as pipeline:
+                self.heartbeat(pipeline=pipeline)
+                pipeline.execute()
+        except QueueError as error:
+            log.warning("the lease of job %s was not renewed: %s", job_id, error)
+
+    def _settle(self, job_id: str) -> None:
+        """Leave the queue as the store says: nothing of a job that has ended, another entry for one that has not."""
+        self._queue.release(job_id, self.name)
+        if self._is_open(job_id):
+            self._queue.requeue(job_id, at_front=True)
+        else:
+            self._queue.forget(job_id)
+
+    def _is_open(self, job_id: str) -> bool:
+        return self._store.job(job_id) is not None and self._store.outcome(job_id) is None
+
+
+def is_allowed(entry: Entry) -> bool:
+    """Whether an entry is what JobQueue.enqueue makes; whoever can write to Redis can make others."""
+    try:
+        return (
+            is_job_id(entry.id)
+            and (entry.func_name, entry.instance) == (TASK, None)
+            and (list(entry.args), dict(entry.kwargs)) == ([entry.id], {})
+        )
+    except (DeserializationError, TypeError, ValueError):
+        return False
+
+
+def exit_status(work: Callable[[], None]) -> int:
+    """Run the work of a work-horse; what its parent can tell from the exit status."""
+    try:
+        work()
+    except MemoryError:
+        log.error("the job needs more memory than it may have")
+        return _EXIT_OUT_OF_MEMORY
+    except Exception:
+        log.exception("the job stopped at an error that it does not expect")
+        return os.EX_SOFTWARE
+    return os.EX_OK
+
+
+def cause_of_death(status: int, kills_before: int) -> Cause:
+    """Why a work-horse ended without an outcome, from its wait status and the kernel's count of kills for memory."""
+    if os.WIFEXITED(status):
+        return "out_of_memory" if os.WEXITSTATUS(status) == _EXIT_OUT_OF_MEMORY else "internal_error"
+    killed = os.WTERMSIG(status) == signal.SIGKILL
+    return "out_of_memory" if killed and out_of_memory_kills() > kills_before else "worker_lost"
+
+
+def out_of_memory_kills() -> int:
+    """How many processes of this machine the kernel has killed for want of memory; 0 where it does not say."""
+    try:
+        lines = Path("/proc/vmstat").read_text().splitlines()
+    except OSError:
+        return 0
+    return sum(int(line.split()[1]) for line in lines if line.startswith("oom_kill "))
+
+
+def limit_memory(address_space_bytes: int | None) -> None:
+    if address_space_bytes is not None:
+        resource.setrlimit(resource.RLIMIT_AS, (address_space_bytes, address_space_bytes))
+
+
+def main() -> None:
+    settings = load_settings()
+    configure_logging(settings.log_level)
+    assert settings.redis_url, "the parent process sets CLEAVE_REDIS_URL"
+    segcore.warm_up()
+    queue = JobQueue(connect_patiently(settings.redis_url))
+    leases = JobQueue(connect_impatiently(settings.redis_url))
+    JobWorker(LocalStore(settings.data_dir), queue, leases, settings).work(logging_level="WARNING")
+
+
+if __name__ == "__main__":
+    main()

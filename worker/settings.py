@@ -1,0 +1,66 @@
+"""What an installation may choose, read once at the edge of a process from the environment."""
+
+from pathlib import Path
+from typing import Annotated, Any
+
+from platformdirs import user_data_path
+from pydantic import AfterValidator, Field, ValidationError
+from pydantic_settings import BaseSettings, SettingsConfigDict
+
+
+class InvalidSettings(Exception):  # noqa: N818
+    """A variable of the environment has a value that cannot be used; the message names it."""
+
+
+class Settings(BaseSettings):
+    """The settings of one installation; each is the environment variable CLEAVE_ and its name in capitals."""
+
+    model_config = SettingsConfigDict(env_prefix="CLEAVE_", env_ignore_empty=True, extra="ignore", frozen=True)
+
+    data_dir: Annotated[Path, AfterValidator(lambda path: path.expanduser().absolute())] = Field(
+        default_factory=lambda: user_data_path("cleave", appauthor=False),
+        description="Folder of the jobs and their files; service and workers share it.",
+    )
+    redis_url: str | None = Field(
+        default=None,
+        pattern=r"^(redis|rediss|unix)://",
+        description="The queue server, such as redis://host:6379/0; `cleave serve` brings its own where none is set.",
+    )
+    max_upload_bytes: int = Field(default=512 * 2**20, gt=0, description="Largest mesh file that is accepted.")
+    max_faces: int = Field(default=5_000_000, gt=0, description="Largest number of faces that is segmented.")
+    max_attempts: int = Field(default=3, ge=1, description="Runs of a job that keeps killing its worker.")
+    job_timeout_s: float = Field(default=3600.0, gt=0, description="Longest run of a job.")
+    job_memory_bytes: int | None = Field(
+        default=None, gt=0, description="Address space of the process that runs a job; no limit where none is set."
+    )
+    lease_s: float = Field(
+        default=10.0, ge=3, le=30, description="A running job whose worker was silent for this long is run again."
+    )
+    janitor_interval_s: float = Field(
+        default=2.0, gt=0, le=30, description="Pause between two searches for jobs that the queue has lost."
+    )
+    shutdown_grace_s: float = Field(
+        default=3.0,
+        ge=0,
+        description="Time a running job has to end when its worker is stopped; then it is handed back.",
+    )
+    result_cache_bytes: int = Field(
+        default=64 * 2**20, ge=0, description="Memory in which the service keeps results that it has opened."
+    )
+    log_level: str = Field(default="info", pattern=r"^(debug|info|warning|error)$", description="Least level logged.")
+
+
+def load_settings(**overrides: Any) -> Settings:
+    """The settings from the environment; an override that is None leaves the environment's value.
+
+    Raises
+    ------
+    InvalidSettings
+        Where a value cannot be used.
+    """
+    try:
+        return Settings(**{name: value for name, value in overrides.items() if value is not None})
+    except ValidationError as error:
+        first = error.errors(include_url=False)[0]
+        name = "_".join(str(part) for part in first["loc"])
+        raise InvalidSettings(f"CLEAVE_{name.upper()} is {first['input']!r}: {first['msg']}.") from error

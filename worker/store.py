@@ -1,0 +1,209 @@
+"""Where jobs live: one folder for each, the truth about every one of them.
+
+    <data>/incoming/<random>/      a mesh that is being uploaded
+    <data>/pending/<id>            empty: the job has no outcome yet (an index of jobs/, made before and removed after)
+    <data>/jobs/<id>/job.json      the job is accepted
+                    /mesh          the bytes that the client sent
+                    /attempt-<n>.json
+                    /result.cleave mesh and hierarchy
+                    /manifest.json the outcome, written last and once: the job is finished
+
+The folder of a job appears by a rename when all of it is durable, so a job is accepted whole or not at all.
+"""
+
+import os
+import shutil
+import time
+from collections.abc import Callable
+from dataclasses import replace
+from pathlib import Path
+from typing import BinaryIO, TypeVar
+
+from pydantic import TypeAdapter
+
+from worker.durable import TEMPORARY_SUFFIX, create_file, replace_file, sync_folder
+from worker.jobs import Attempt, Cause, Job, Outcome, is_job_id, new_job_id, now
+from worker.upload import MeshUpload
+
+_JOB = TypeAdapter(Job)
+_ATTEMPT = TypeAdapter(Attempt)
+_OUTCOME: TypeAdapter[Outcome] = TypeAdapter(Outcome)
+_MARKER_GRACE_S = 3600.0
+
+Document = TypeVar("Document")
+
+
+class UnknownJob(LookupError):  # noqa: N818
+    """The store has no such job (any more)."""
+
+
+class LocalStore:
+    """The jobs of a folder; processes and machines that share the folder share the jobs."""
+
+    def __init__(self, data_dir: Path) -> None:
+        self._jobs = data_dir / "jobs"
+        self._pending = data_dir / "pending"
+        self._incoming = data_dir / "incoming"
+        for folder in (self._jobs, self._pending, self._incoming):
+            folder.mkdir(mode=0o700, parents=True, exist_ok=True)
+
+    def begin_upload(self) -> MeshUpload:
+        return MeshUpload(self._incoming / new_job_id())
+
+    def accept(self, job: Job, upload: MeshUpload) -> None:
+        """Take a job in: when this returns, it will be finished, whatever happens to the queue or the power."""
+        upload.make_durable()
+        create_file(upload.folder / "job.json", _JOB.dump_json(job))
+        (self._pending / job.id).touch()
+        sync_folder(self._pending)
+        os.rename(upload.folder, self._folder(job.id))
+        sync_folder(self._jobs)
+
+    def job(self, job_id: str) -> Job | None:
+        return _read(self._folder(job_id) / "job.json", _JOB) if is_job_id(job_id) else None
+
+    def outcome(self, job_id: str) -> Outcome | None:
+        return _read(self._folder(job_id) / "manifest.json", _OUTCOME)
+
+    def finish(self, job_id: str, outcome: Outcome) -> Outcome:
+        """Give a job its outcome, unless it has one; the outcome that stands.
+
+        Raises
+        ------
+        UnknownJob
+            Where the job was deleted.
+        """
+        folder = self._folder(job_id)
+        try:
+            create_file(folder / "manifest.json", _OUTCOME.dump_json(outcome))
+        except FileNotFoundError as error:
+            raise UnknownJob(job_id) from error
+        (self._pending / job_id).unlink(missing_ok=True)
+        return self.outcome(job_id) or outcome
+
+    def unfinished(self) -> list[str]:
+        """The accepted jobs without an outcome, oldest first."""
+        markers = sorted(os.scandir(self._pending), key=_modified_at)
+        return [marker.name for marker in markers if self._is_unfinished(marker)]
+
+    def begin_attempt(self, job_id: str, worker: str) -> Attempt:
+        """Count one more run of a job, before it starts.
+
+        Raises
+        ------
+        UnknownJob
+            Where the job was deleted.
+        """
+        folder = self._folder(job_id)
+        attempt = Attempt(number=len(self.attempts(job_id)) + 1, worker=worker, started_at=now())
+        try:
+            while not create_file(_attempt_file(folder, attempt), _ATTEMPT.dump_json(attempt)):
+                attempt = replace(attempt, number=attempt.number + 1)
+        except FileNotFoundError as error:
+            raise UnknownJob(job_id) from error
+        _remove_torn_files(folder)
+        return attempt
+
+    def end_attempt(self, job_id: str, attempt: Attempt, cause: Cause) -> None:
+        """Note why a run ended without an outcome."""
+        ended = _ATTEMPT.dump_json(replace(attempt, ended_at=now(), cause=cause))
+        replace_file(_attempt_file(self._folder(job_id), attempt), lambda target: target.write(ended))
+
+    def withdraw_attempt(self, job_id: str, attempt: Attempt) -> None:
+        """Uncount a run that was stopped through no fault of the job."""
+        _attempt_file(self._folder(job_id), attempt).unlink(missing_ok=True)
+
+    def attempts(self, job_id: str) -> list[Attempt]:
+        """The runs of a job that count, in order."""
+        files = self._folder(job_id).glob("attempt-*.json")
+        read = (_read(file, _ATTEMPT) for file in files)
+        return sorted((attempt for attempt in read if attempt), key=lambda attempt: attempt.number)
+
+    def open_mesh(self, job_id: str) -> BinaryIO:
+        return (self._folder(job_id) / "mesh").open("rb")
+
+    def write_result(self, job_id: str, write: Callable[[BinaryIO], object]) -> None:
+        """Store the result file, whole; a second writer of the same job writes the same bytes."""
+        replace_file(self._folder(job_id) / "result.cleave", write)
+
+    def open_result(self, job_id: str) -> BinaryIO:
+        """The result file of a job that succeeded.
+
+        Raises
+        ------
+        UnknownJob
+            Where the job was deleted.
+        """
+        try:
+            return (self._folder(job_id) / "result.cleave").open("rb")
+        except FileNotFoundError as error:
+            raise UnknownJob(job_id) from error
+
+    def delete(self, job_id: str) -> None:
+        """Remove a job and all its files; for others it disappears at once."""
+        doomed = self._incoming / new_job_id()
+        try:
+            os.rename(self._folder(job_id), doomed)
+        except FileNotFoundError as error:
+            raise UnknownJob(job_id) from error
+        (self._pending / job_id).unlink(missing_ok=True)
+        shutil.rmtree(doomed, ignore_errors=True)
+
+    def remove_abandoned_uploads(self, untouched_s: float) -> None:
+        """Remove what uploads left behind whose process died in the middle."""
+        oldest = time.time() - untouched_s
+        for folder in self._incoming.iterdir():
+            if max((_path_modified_at(path) for path in (folder, *folder.glob("*"))), default=0.0) < oldest:
+                shutil.rmtree(folder, ignore_errors=True)
+
+    def check_writable(self) -> None:
+        """Raise an OSError where nothing can be written."""
+        with self.begin_upload() as probe:
+            probe.write(b"?")
+            probe.make_durable()
+
+    def _folder(self, job_id: str) -> Path:
+        if not is_job_id(job_id):
+            raise ValueError(f"Not the id of a job: {job_id!r}.")
+        return self._jobs / job_id
+
+    def _is_unfinished(self, marker: os.DirEntry[str]) -> bool:
+        """Whether a marker tells the truth; one that does not, because of a crash between two writes, is removed."""
+        if not is_job_id(marker.name):
+            return False
+        accepted = (self._folder(marker.name) / "job.json").exists()
+        if accepted and not (self._folder(marker.name) / "manifest.json").exists():
+            return True
+        if accepted or _modified_at(marker) < time.time() - _MARKER_GRACE_S:
+            (self._pending / marker.name).unlink(missing_ok=True)
+        return False
+
+
+def _attempt_file(folder: Path, attempt: Attempt) -> Path:
+    return folder / f"attempt-{attempt.number}.json"
+
+
+def _read(path: Path, adapter: TypeAdapter[Document]) -> Document | None:
+    try:
+        return adapter.validate_json(path.read_bytes())
+    except (FileNotFoundError, NotADirectoryError):
+        return None
+
+
+def _remove_torn_files(folder: Path) -> None:
+    for torn in folder.glob(f".*{TEMPORARY_SUFFIX}"):
+        torn.unlink(missing_ok=True)
+
+
+def _modified_at(entry: os.DirEntry[str]) -> float:
+    try:
+        return entry.stat().st_mtime
+    except FileNotFoundError:
+        return 0.0
+
+
+def _path_modified_at(path: Path) -> float:
+    try:
+        return path.stat().st_mtime
+    except FileNotFoundError:
+        return 0.0
