@@ -1,0 +1,53 @@
+"""``python -m bench COMMAND``: run one of the benchmarks; without a command, list them."""
+
+import argparse
+import sys
+from collections.abc import Sequence
+from importlib import import_module
+from pkgutil import iter_modules
+
+from bench import commands
+from bench.errors import BenchmarkError
+
+
+def main(arguments: Sequence[str]) -> int:
+    """Run a command. Exit status: 0 done, 2 where it could not run as asked."""
+    names = sorted(module.name for module in iter_modules(commands.__path__))
+    if not arguments or arguments[0] in ("-h", "--help"):
+        print(_list(names))
+        return 0
+    if arguments[0] not in names:
+        print(f"bench: there is no command {arguments[0]!r}; the commands are {', '.join(names)}.", file=sys.stderr)
+        return 2
+    return _run(arguments[0], arguments[1:])
+
+
+def _list(names: Sequence[str]) -> str:
+    width = max(map(len, names))
+    lines = [f"  {name:{width}}  {_summary(name)}" for name in names]
+    return "\n".join(["Usage: python -m bench COMMAND [--help]", "", "Commands:", *lines])
+
+
+def _summary(name: str) -> str:
+    """The first line of the docstring of a command."""
+    return (import_module(f"bench.commands.{name}").__doc__ or "").partition("\n")[0]
+
+
+def _run(name: str, arguments: Sequence[str]) -> int:
+    command = import_module(f"bench.commands.{name}")
+    parser = argparse.ArgumentParser(
+        prog=f"python -m bench {name}",
+        description=command.__doc__,
+        formatter_class=argparse.RawDescriptionHelpFormatter,
+    )
+    command.add_arguments(parser)
+    try:
+        command.run(parser.parse_args(arguments))
+    except BenchmarkError as error:
+        print(f"bench {name}: {error}", file=sys.stderr)
+        return 2
+    return 0
+
+
+if __name__ == "__main__":
+    sys.exit(main(sys.argv[1:]))

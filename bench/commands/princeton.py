@@ -1,0 +1,84 @@
+"""Quality on the Princeton Segmentation Benchmark: the four metrics against every person's segmentation.
+
+The folder given with --data has segments.tsv (columns model, category, segments), the meshes off/N.off and people's
+segmentations seg/Benchmark/N/N_j.seg. The row of the people themselves, each against the others, stands below.
+"""
+
+from __future__ import annotations
+
+import argparse
+import json
+from pathlib import Path
+from typing import get_args
+
+from bench.dataset import read_models
+from bench.errors import BenchmarkError
+from bench.evaluation import SegmentChoice
+from bench.pool import evaluate_models
+from bench.report import render
+from bench.results import save_results
+from bench.segmenter import CleaveSegmenter
+
+
+def add_arguments(parser: argparse.ArgumentParser) -> None:
+    parser.add_argument("--data", type=Path, required=True, metavar="DIR", help="the folder of the benchmark")
+    parser.add_argument("--limit", type=int, metavar="N", help="only N models, spread evenly over the list")
+    parser.add_argument(
+        "--segments",
+        choices=get_args(SegmentChoice),
+        default="given",
+        help="given: as many as people chose most often, from segments.tsv (default); automatic: as Cleave chooses",
+    )
+    parser.add_argument(
+        "--seeds",
+        type=_seeds,
+        default=(0,),
+        metavar="S,S",
+        help="segment once with each of these seeds (default 0)",
+    )
+    parser.add_argument("--jobs", type=int, default=1, metavar="N", help="processes (default 1)")
+    parser.add_argument("--output", type=Path, metavar="FILE", help="write every model's scores to this JSON file")
+    parser.add_argument(
+        "--parameters",
+        type=_parameter,
+        nargs="+",
+        default=[],
+        metavar="KEY=VALUE",
+        help="parameters of the segmentation, by the names of segcore.SegmentationParameters",
+    )
+
+
+def run(arguments: argparse.Namespace) -> None:
+    parameters = dict(arguments.parameters)
+    if "seed" in parameters:
+        raise BenchmarkError("The seed is not a parameter here: give it with --seeds.")
+    if arguments.jobs < 1:
+        raise BenchmarkError(f"--jobs must be at least 1, not {arguments.jobs}.")
+    if arguments.output is not None and not arguments.output.parent.is_dir():
+        raise BenchmarkError(f"The folder of {arguments.output} does not exist: create it first.")
+    models = read_models(arguments.data, arguments.limit)
+    results = evaluate_models(models, CleaveSegmenter(parameters), arguments.seeds, arguments.segments, arguments.jobs)
+    if arguments.output is not None:
+        save_results(arguments.output, results, arguments.segments, parameters)
+    print(render(results, arguments.segments))
+
+
+def _seeds(text: str) -> tuple[int, ...]:
+    try:
+        seeds = tuple(int(part) for part in text.split(","))
+    except ValueError:
+        raise argparse.ArgumentTypeError(f"seeds are integers with commas between them, not {text!r}") from None
+    if len(set(seeds)) < len(seeds):
+        raise argparse.ArgumentTypeError(f"each seed may appear once only, not as in {text!r}")
+    return seeds
+
+
+def _parameter(text: str) -> tuple[str, object]:
+    """A name and a value, read as JSON where it is JSON (numbers, true, null), as a word otherwise."""
+    name, equals, value = text.partition("=")
+    if not name or not equals:
+        raise argparse.ArgumentTypeError(f"a parameter is KEY=VALUE, not {text!r}")
+    try:
+        return name, json.loads(value)
+    except ValueError:
+        return name, value

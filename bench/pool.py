@@ -1,0 +1,69 @@
+"""The same evaluation of many models, in several processes."""
+
+from __future__ import annotations
+
+import os
+import sys
+from collections.abc import Callable, Iterator, Sequence
+from concurrent.futures import ProcessPoolExecutor, as_completed
+from concurrent.futures.process import BrokenProcessPool
+from contextlib import contextmanager
+from functools import partial
+from multiprocessing import get_context
+
+from bench.dataset import Model
+from bench.errors import BenchmarkError
+from bench.evaluation import ModelResult, SegmentChoice, Segmenter, evaluate_model
+
+# What numerical libraries read when they are loaded, to decide how many threads they start.
+THREAD_SETTINGS = ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS", "NUMBA_NUM_THREADS")
+
+
+def evaluate_models(
+    models: Sequence[Model], segmenter: Segmenter, seeds: tuple[int, ...], choice: SegmentChoice, jobs: int
+) -> list[ModelResult]:
+    """The results of all models, in their order, computed in ``jobs`` processes of one thread each.
+
+    CPU times are comparable between numbers of jobs: every process is warmed up before its first model, and its
+    numerical libraries start no threads of their own unless the environment says how many.
+
+    Raises
+    ------
+    BenchmarkError
+        Where one model fails, or a process dies.
+    """
+    evaluate = partial(evaluate_model, segmenter=segmenter, seeds=seeds, choice=choice)
+    with _one_thread_per_process():
+        pool = ProcessPoolExecutor(jobs, mp_context=get_context("spawn"), initializer=segmenter.warm_up)
+        try:
+            return _in_order(pool, evaluate, models)
+        except BrokenProcessPool as error:
+            raise BenchmarkError("A process of the benchmark ended early: look for its message above.") from error
+        finally:
+            pool.shutdown(cancel_futures=True)
+
+
+def _in_order(
+    pool: ProcessPoolExecutor, evaluate: Callable[[Model], ModelResult], models: Sequence[Model]
+) -> list[ModelResult]:
+    futures = [pool.submit(evaluate, model) for model in models]
+    for done, future in enumerate(as_completed(futures), start=1):
+        future.result()
+        _show_progress(done, len(models))
+    return [future.result() for future in futures]
+
+
+def _show_progress(done: int, total: int) -> None:
+    if sys.stderr.isatty():
+        print(f"\r{done} of {total} models", end="\n" if done == total else "", file=sys.stderr, flush=True)
+
+
+@contextmanager
+def _one_thread_per_process() -> Iterator[None]:
+    unset = [name for name in THREAD_SETTINGS if name not in os.environ]
+    os.environ.update(dict.fromkeys(unset, "1"))
+    try:
+        yield
+    finally:
+        for name in unset:
+            del os.environ[name]
