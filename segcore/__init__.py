@@ -13,6 +13,7 @@ from segcore.io import read_mesh
 from segcore.mesh import Mesh
 from segcore.parameters import SegmentationParameters
 from segcore.segment import segment
+from segcore.warm_up import warm_up
 
 __all__ = [
     "CleaveError",
@@ -25,4 +26,5 @@ __all__ = [
     "UnsupportedFormat",
     "read_mesh",
     "segment",
+    "warm_up",
 ]

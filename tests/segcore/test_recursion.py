@@ -1,0 +1,89 @@
+import numpy as np
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from segcore.cheeger import cut_of
+from segcore.graph import SurfaceGraph, connected_components
+from segcore.recursion import AUTOMATIC_NCUT, bisect, with_connected_sides
+
+
+def graph_of(pairs, count, weights=None, volume=None):
+    edges = np.array(sorted({(min(p), max(p)) for p in pairs}), np.int32).reshape(-1, 2)
+    weight = np.ones(len(edges)) if weights is None else weights
+    return SurfaceGraph(edges, weight, np.ones(count) if volume is None else volume)
+
+
+@st.composite
+def graphs(draw):
+    count = draw(st.integers(1, 25))
+    node = st.integers(0, count - 1)
+    pairs = [p for p in draw(st.lists(st.tuples(node, node), max_size=60)) if p[0] != p[1]]
+    graph = graph_of(pairs, count)
+    rng = np.random.default_rng(draw(st.integers(0, 1000)))
+    return SurfaceGraph(graph.edges, rng.uniform(0.1, 2, len(graph.edges)), rng.uniform(0.2, 2, count))
+
+
+def is_connected(graph, nodes):
+    return connected_components(graph.subgraph(np.flatnonzero(nodes).astype(np.int32))).max() == 0
+
+
+@settings(max_examples=80)
+@given(graphs())
+def test_every_segment_of_every_level_is_connected_within_its_component(graph):
+    tree = bisect(graph, np.random.default_rng(0).random((graph.node_count, 3)), 50)
+    components = int(connected_components(graph).max()) + 1
+    nodes = 2 * len(tree.split_node) + 1
+    below = {node: {node} for node in range(nodes)}
+    for split in reversed(range(len(tree.split_node))):
+        below[int(tree.split_node[split])] |= below[2 * split + 1] | below[2 * split + 2]
+    for node in range(2 * (components - 1) + 1, nodes):
+        assert is_connected(graph, np.isin(tree.leaf, list(below[node])))
+
+
+@settings(max_examples=80)
+@given(graphs())
+def test_splitting_ends_when_every_segment_is_one_node(graph):
+    tree = bisect(graph, np.zeros((graph.node_count, 3)), 10**6)
+    assert len(tree.split_node) + 1 == graph.node_count
+    assert len(set(tree.leaf)) == graph.node_count
+
+
+@settings(max_examples=80)
+@given(graphs(), st.data())
+def test_both_sides_of_a_cut_become_connected(graph, data):
+    graph = graph.subgraph(np.flatnonzero(connected_components(graph) == 0).astype(np.int32))
+    side = np.array(data.draw(st.lists(st.booleans(), min_size=graph.node_count, max_size=graph.node_count)))
+    if side.all() or not side.any():
+        return
+    cut = with_connected_sides(graph, cut_of(graph, side))
+    assert is_connected(graph, cut.side)
+    assert is_connected(graph, ~cut.side)
+
+
+def test_the_least_normalized_cut_is_made_first():
+    """Three cliques in a row, the second bridge stronger than the first."""
+    cliques = [(5 * c + i, 5 * c + j) for c in range(3) for i in range(5) for j in range(i)]
+    graph = graph_of([*cliques, (4, 5), (9, 10)], 15)
+    weight = np.where((graph.edges == [9, 10]).all(axis=1), 0.5, graph.weight)
+    weight[(graph.edges == [4, 5]).all(axis=1)] = 0.1
+    tree = bisect(SurfaceGraph(graph.edges, weight, graph.volume), np.zeros((15, 3)), 3)
+    np.testing.assert_array_equal(tree.split_node, [0, 1])
+    np.testing.assert_array_equal(tree.leaf, np.repeat([2, 3, 4], 5))
+    np.testing.assert_allclose(tree.cut_value, np.sqrt(15) * np.array([0.1 * (1 / 5 + 1 / 10), 0.5 * (1 / 5 + 1 / 5)]))
+
+
+def test_the_automatic_number_counts_the_cuts_below_the_threshold():
+    cliques = [(5 * c + i, 5 * c + j) for c in range(4) for i in range(5) for j in range(i)]
+    graph = graph_of([*cliques, (4, 5), (9, 10), (14, 15)], 20)
+    tree = bisect(graph, np.zeros((20, 3)), 20)
+    below = np.argmax(tree.cut_value >= AUTOMATIC_NCUT)
+    assert tree.automatic_segments == below + 1
+    assert 1 < tree.automatic_segments < 20
+
+
+def test_a_side_of_less_than_a_five_hundredth_waits_for_all_others():
+    """A tiny node on a thread beside two halves joined by a band: the thread is by far the better cut."""
+    graph = graph_of([(0, 1), (1, 2)], 3, np.array([0.5, 1e-9]), np.array([1.0, 1.0, 0.001]))
+    tree = bisect(graph, np.zeros((3, 3)), 3)
+    assert tree.leaf[1] != tree.leaf[2]
+    assert tree.split_node[1] == np.flatnonzero(np.isin(np.arange(5), [1, 2]) & ~np.isin(np.arange(5), tree.leaf))[0]
