@@ -11,7 +11,7 @@ from bench.errors import BenchmarkError
 
 
 def main(arguments: Sequence[str]) -> int:
-    """Run a command. Exit status: 0 done, 2 where it could not run as asked."""
+    """Run a command. Exit status: 0 done, 2 where it could not run as asked, 130 where it was interrupted."""
     names = sorted(module.name for module in iter_modules(commands.__path__))
     if not arguments or arguments[0] in ("-h", "--help"):
         print(_list(names))
@@ -46,6 +46,8 @@ def _run(name: str, arguments: Sequence[str]) -> int:
     except BenchmarkError as error:
         print(f"bench {name}: {error}", file=sys.stderr)
         return 2
+    except KeyboardInterrupt:
+        return 130
     return 0
 
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import os
+import signal
 import sys
 from collections.abc import Callable, Iterator, Sequence
 from concurrent.futures import ProcessPoolExecutor, as_completed
@@ -34,13 +35,21 @@ def evaluate_models(
     """
     evaluate = partial(evaluate_model, segmenter=segmenter, seeds=seeds, choice=choice)
     with _one_thread_per_process():
-        pool = ProcessPoolExecutor(jobs, mp_context=get_context("spawn"), initializer=segmenter.warm_up)
+        pool = ProcessPoolExecutor(
+            jobs, mp_context=get_context("spawn"), initializer=_start_process, initargs=(segmenter,)
+        )
         try:
             return _in_order(pool, evaluate, models)
         except BrokenProcessPool as error:
             raise BenchmarkError("A process of the benchmark ended early: look for its message above.") from error
         finally:
             pool.shutdown(cancel_futures=True)
+
+
+def _start_process(segmenter: Segmenter) -> None:
+    # Ctrl-C reaches all processes of a terminal: the first one ends the others, which have nothing to add.
+    signal.signal(signal.SIGINT, signal.SIG_IGN)
+    segmenter.warm_up()
 
 
 def _in_order(

@@ -10,13 +10,23 @@ from bench.errors import BenchmarkError
 if TYPE_CHECKING:
     from segcore.hierarchy import Hierarchy
     from segcore.mesh import Mesh
+    from segcore.parameters import SegmentationParameters
 
 
 @dataclass(frozen=True, slots=True)
 class CleaveSegmenter:
-    """``segcore.segment`` with the given parameters, by name; the seed comes with every call."""
+    """``segcore.segment`` with the given parameters, by name; the seed comes with every call.
+
+    Raises
+    ------
+    BenchmarkError
+        Where a parameter is unknown or outside its range.
+    """
 
     parameters: dict[str, object] = field(default_factory=dict)
+
+    def __post_init__(self) -> None:
+        self._parameters(seed=0)
 
     def warm_up(self) -> None:
         from segcore.warm_up import warm_up
@@ -29,13 +39,21 @@ class CleaveSegmenter:
         Raises
         ------
         BenchmarkError
-            Where the parameters are refused or the mesh cannot be segmented.
+            Where the seed is outside its range or the mesh cannot be segmented.
         """
         from segcore.errors import CleaveError
-        from segcore.parameters import SegmentationParameters
         from segcore.segment import segment
 
         try:
-            return segment(mesh, SegmentationParameters.from_mapping({**self.parameters, "seed": seed}))
+            return segment(mesh, self._parameters(seed))
         except CleaveError as error:
+            raise BenchmarkError(str(error)) from error
+
+    def _parameters(self, seed: int) -> SegmentationParameters:
+        from segcore.errors import InvalidParameters
+        from segcore.parameters import SegmentationParameters
+
+        try:
+            return SegmentationParameters.from_mapping({**self.parameters, "seed": seed})
+        except InvalidParameters as error:
             raise BenchmarkError(str(error)) from error

@@ -56,8 +56,9 @@ def run(arguments: argparse.Namespace) -> None:
         raise BenchmarkError(f"--jobs must be at least 1, not {arguments.jobs}.")
     if arguments.output is not None and not arguments.output.parent.is_dir():
         raise BenchmarkError(f"The folder of {arguments.output} does not exist: create it first.")
+    segmenter = CleaveSegmenter(parameters)
     models = read_models(arguments.data, arguments.limit)
-    results = evaluate_models(models, CleaveSegmenter(parameters), arguments.seeds, arguments.segments, arguments.jobs)
+    results = evaluate_models(models, segmenter, arguments.seeds, arguments.segments, arguments.jobs)
     if arguments.output is not None:
         save_results(arguments.output, results, arguments.segments, parameters)
     print(render(results, arguments.segments))

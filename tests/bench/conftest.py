@@ -1,6 +1,6 @@
-"""The benchmarks are not part of the distribution: they are imported from the repository itself."""
+"""Makes the helpers in this folder importable, here and in the processes that the tests start."""
 
 import sys
 from pathlib import Path
 
-sys.path.insert(0, str(Path(__file__).resolve().parents[2]))
+sys.path.insert(0, str(Path(__file__).resolve().parent))

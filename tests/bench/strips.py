@@ -1,9 +1,16 @@
-"""Flat strips of triangles, on which every metric can be worked out by hand."""
+"""Flat strips of triangles, on which every metric can be worked out by hand, and a segmenter for them.
+
+A module of its own, under a name of its own, because other processes import the segmenter.
+"""
+
+from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
 
+from bench.errors import BenchmarkError
 from bench.surface import Surface
+from segcore.mesh import Mesh
 
 
 def strip(columns: int, rows: int = 1) -> tuple[NDArray[np.float64], NDArray[np.int32]]:
@@ -23,3 +30,34 @@ def strip_surface(columns: int, rows: int = 1) -> Surface:
 def cut_at(columns: int, *positions: int) -> NDArray[np.int64]:
     """Labels (2 columns,) of a strip of one row that is cut across at these columns."""
     return np.searchsorted(np.array(sorted(positions)), np.arange(2 * columns) // 2, side="right")
+
+
+@dataclass(frozen=True)
+class EvenLevels:
+    """Cuts a strip across into parts of equal length."""
+
+    columns: int
+    max_segments: int
+    offset: int
+    automatic: int = 2
+
+    def labels(self, segments: int | None = None) -> NDArray[np.int32]:
+        count = segments or self.automatic
+        positions = [self.offset + self.columns * i // count for i in range(1, count)]
+        return cut_at(self.columns, *positions).astype(np.int32)
+
+
+@dataclass(frozen=True)
+class EvenSegmenter:
+    """Puts the cuts as many columns off as the seed says."""
+
+    max_segments: int = 6
+    broken: bool = False
+
+    def warm_up(self) -> None:
+        pass
+
+    def __call__(self, mesh: Mesh, seed: int) -> EvenLevels:
+        if self.broken:
+            raise BenchmarkError("the method gave up.")
+        return EvenLevels(len(mesh.faces) // 2, self.max_segments, offset=seed)

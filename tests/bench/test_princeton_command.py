@@ -2,13 +2,11 @@
 
 import json
 import math
-from dataclasses import dataclass
 from pathlib import Path
 
 import numpy as np
 import pytest
-from numpy.typing import NDArray
-from strips import cut_at, strip
+from strips import EvenSegmenter, cut_at, strip
 
 from bench.__main__ import main
 from bench.commands.compare import paired_difference
@@ -19,43 +17,11 @@ from bench.metrics import METRICS
 from bench.pool import evaluate_models
 from bench.report import render
 from bench.results import load_results, save_results
-from segcore.mesh import Mesh
 
 COLUMNS = 12
 # Two categories of different size, so that the mean over models and that over categories differ.
 CATEGORIES = {1: "Rod", 3: "Rod", 21: "Slat"}
 PEOPLE = (cut_at(COLUMNS, 4, 8), cut_at(COLUMNS, 4, 9), cut_at(COLUMNS, 6))
-
-
-@dataclass(frozen=True)
-class EvenLevels:
-    """Cuts a strip across into parts of equal length."""
-
-    columns: int
-    max_segments: int
-    offset: int
-    automatic: int = 2
-
-    def labels(self, segments: int | None = None) -> NDArray[np.int32]:
-        count = segments or self.automatic
-        positions = [self.offset + self.columns * i // count for i in range(1, count)]
-        return cut_at(self.columns, *positions).astype(np.int32)
-
-
-@dataclass(frozen=True)
-class EvenSegmenter:
-    """Puts the cuts as many columns off as the seed says."""
-
-    max_segments: int = 6
-    broken: bool = False
-
-    def warm_up(self) -> None:
-        pass
-
-    def __call__(self, mesh: Mesh, seed: int) -> EvenLevels:
-        if self.broken:
-            raise BenchmarkError("the method gave up.")
-        return EvenLevels(len(mesh.faces) // 2, self.max_segments, offset=seed)
 
 
 @pytest.fixture
@@ -192,6 +158,19 @@ def test_compare_prints_the_difference_of_two_files(
     assert row_of(capsys.readouterr().out, "one_minus_rand")[3] == f"{difference:.4f}"
 
 
+def test_the_command_judges_cleave_and_saves_what_it_prints(
+    folder: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    output = tmp_path / "results.json"
+    options = ["--data", str(folder), "--limit", "2", "--seeds", "0,1", "--parameters", "max_segments=4"]
+    assert main(["princeton", *options, "--output", str(output)]) == 0
+    printed = row_of(capsys.readouterr().out, "All models")
+    document = json.loads(output.read_text())
+    assert (document["seeds"], document["parameters"]) == ([0, 1], {"max_segments": 4})
+    assert [[run["segments"] for run in model["runs"]] for model in document["models"]] == [[3, 3], [3, 3]]
+    assert printed[2] == f"{document['scores']['hamming']:.4f}"
+
+
 def test_the_list_names_every_command_with_its_summary(capsys: pytest.CaptureFixture[str]) -> None:
     assert main([]) == 0
     listed = capsys.readouterr().out
@@ -206,6 +185,8 @@ def test_the_list_names_every_command_with_its_summary(capsys: pytest.CaptureFix
         (["chess"], "no command 'chess'"),
         (["princeton", "--data", "nowhere"], "nowhere is not the folder"),
         (["princeton", "--data", "nowhere", "--parameters", "seed=1"], "--seeds"),
+        (["princeton", "--data", "nowhere", "--parameters", "seeed=1"], "seeed"),
+        (["princeton", "--data", "nowhere", "--parameters", "max_segments=0"], "max_segments must be"),
         (["princeton", "--data", "nowhere", "--jobs", "0"], "at least 1"),
         (["princeton", "--data", "nowhere", "--output", "no/such/folder.json"], "create it first"),
         (["compare", "nowhere.json", "nowhere.json"], "nowhere.json cannot be read"),
