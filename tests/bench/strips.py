@@ -27,9 +27,9 @@ def strip_surface(columns: int, rows: int = 1) -> Surface:
     return Surface.from_mesh(*strip(columns, rows))
 
 
-def cut_at(columns: int, *positions: int) -> NDArray[np.int64]:
-    """Labels (2 columns,) of a strip of one row that is cut across at these columns."""
-    return np.searchsorted(np.array(sorted(positions)), np.arange(2 * columns) // 2, side="right")
+def cut_at(columns: int, *positions: int, rows: int = 1) -> NDArray[np.int64]:
+    """Labels (2 columns rows,) of a strip that is cut across at these columns."""
+    return np.searchsorted(np.array(sorted(positions)), np.repeat(np.arange(columns), 2 * rows), side="right")
 
 
 @dataclass(frozen=True)

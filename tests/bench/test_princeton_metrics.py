@@ -135,8 +135,8 @@ def test_scores_of_two_halves_against_the_whole() -> None:
 
 
 def test_the_cut_discrepancy_of_two_parallel_cuts_is_their_distance() -> None:
-    surface = strip_surface(8)
-    score = scores(surface, cut_at(8, 2), cut_at(8, 5))
+    surface = strip_surface(8, rows=3)
+    score = scores(surface, cut_at(8, 2, rows=3), cut_at(8, 5, rows=3))
     assert score.cut_discrepancy == pytest.approx(3 / surface.mean_radius)
 
 
