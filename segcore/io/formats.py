@@ -30,11 +30,12 @@ FORMATS: dict[str, Format] = {
 }
 
 _BOM = b"\xef\xbb\xbf"
-_OFF = re.compile(rb"(?:\s|#[^\r\n]*[\r\n])*(?:ST)?C?N?4?n?OFF")
-_ASCII_STL = re.compile(rb"\s*solid\b[^\r\n]*[\r\n]\s*(?:facet\s|endsolid\b)", re.IGNORECASE)
-_OBJ = re.compile(rb"(?:\s|#[^\r\n]*[\r\n])*(?:v|vt|vn|vp|f|l|p|g|o|s|mg|usemtl|mtllib)(?=[ \t])")
-_OBJ_VERTEX = re.compile(rb"^[ \t]*v[ \t]", re.MULTILINE)
-_GLTF = re.compile(rb"\s*\{")
+_OFF = re.compile(rb"(?:\s++|#[^\r\n]*+[\r\n])*+(?:ST)?C?N?4?n?OFF")
+_ASCII_STL = re.compile(rb"\s*+solid\b[^\r\n]*+[\r\n]\s*+(?:facet\s|endsolid\b)", re.IGNORECASE)
+_SOLID = re.compile(rb"\s*+solid\b", re.IGNORECASE)
+_OBJ = re.compile(rb"(?:\s++|#[^\r\n]*+[\r\n])*+(?:v|vt|vn|vp|f|l|p|g|o|s|mg|usemtl|mtllib)(?=[ \t])")
+_OBJ_VERTEX = re.compile(rb"(?:^|[\r\n])[ \t]*+v[ \t]")
+_GLTF = re.compile(rb"\s*+\{")
 _FOREIGN = {
     b"PK\x03\x04": "a ZIP archive (3MF or other)",
     b"Kaydara FBX Binary": "FBX",
@@ -93,7 +94,10 @@ def detect_format(data: bytes, declared: str | None) -> str:
 
 def is_ascii_stl(data: bytes) -> bool:
     """Whether a file that is STL is so in text: binary ones may begin with the word ``solid`` too."""
-    return not _fills_stl(data) and _ASCII_STL.match(data.removeprefix(_BOM)[:65536]) is not None
+    if _fills_stl(data):
+        return False
+    text = data.removeprefix(_BOM)
+    return _ASCII_STL.match(text) is not None or (_SOLID.match(text) is not None and b"\0" not in text[:_STL_HEADER])
 
 
 def _named(declaration: str) -> str:

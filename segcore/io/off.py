@@ -13,7 +13,7 @@ from segcore.io.polygons import Polygons, mesh_of_polygons, ragged_range
 from segcore.io.text import Words, find_words, plain_text, whole_numbers, without_comments
 from segcore.mesh import Mesh
 
-_KEYWORD = re.compile(rb"\s*(ST)?(C)?(N)?(4)?(n)?OFF(\s+BINARY)?")
+_KEYWORD = re.compile(rb"\s*+(ST)?(C)?(N)?(4)?(n)?OFF(\s+BINARY)?")
 
 
 def read_off(data: bytes, limits: ReadLimits) -> Mesh:

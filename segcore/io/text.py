@@ -8,11 +8,12 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from segcore.arrays import FloatArray, LongArray
+from segcore.arrays import BoolArray, FloatArray, LongArray
 from segcore.errors import InvalidMesh
 
 _SPACE = 32  # this byte and all below it separate words
 _NEWLINE = 10
+_BLOCK = 2**20  # bytes that are looked at together, so that the helper arrays stay in the cache
 _EXACT = 2.0**53  # whole numbers up to here are exact in float64
 _COMMENT = re.compile(rb"#[^\n]*")
 
@@ -57,6 +58,23 @@ class Words:
             bad = next((i for i in range(first, last) if not _is_number(self.word(i))), first)
             raise InvalidMesh(f"Line {self.line_number(bad)}: {self.word(bad)!r} is not a number.") from None
 
+    def equal(self, indices: LongArray, word: bytes) -> BoolArray:
+        """(N,): which of the words at ``indices`` are ``word``."""
+        letters = np.frombuffer(self.text, np.uint8)
+        first = self.start[indices]
+        same = np.ones(len(first), dtype=bool)
+        for i, letter in enumerate(word):
+            same &= letters.take(first + i, mode="clip") == letter
+        end = first + len(word)
+        return same & ((end >= len(letters)) | (letters.take(end, mode="clip") <= _SPACE))
+
+    def text_of_lines(self, selected: BoolArray) -> bytes:
+        """The text of the lines for which ``selected``, (L,), is true, one after the other."""
+        bounds = np.append(self.start[self.line_start[:-1]], len(self.text))
+        changes = np.flatnonzero(np.diff(selected, prepend=False, append=False))
+        runs = bounds[changes].reshape(-1, 2).tolist()
+        return b"".join([self.text[first:last] for first, last in runs])
+
     def _between(self, first: int, last: int) -> bytes:
         if first >= last:
             return b""
@@ -78,11 +96,16 @@ def without_comments(text: bytes) -> bytes:
 def find_words(text: bytes) -> Words:
     """Find all words of a text."""
     letters = np.frombuffer(text, np.uint8)
-    inside = letters > _SPACE
-    begins = inside.copy()
-    begins[1:] &= ~inside[:-1]
-    start = np.flatnonzero(begins)
-    before_newline = np.searchsorted(start, np.flatnonzero(letters == _NEWLINE))
+    starts, newlines = [], []
+    for offset in range(0, len(letters), _BLOCK):
+        block = letters[offset : offset + _BLOCK]
+        space = np.empty(len(block) + 1, dtype=bool)
+        space[0] = offset == 0 or letters[offset - 1] <= _SPACE
+        np.less_equal(block, _SPACE, out=space[1:])
+        starts.append(np.flatnonzero(space[:-1] > space[1:]) + offset)
+        newlines.append(np.flatnonzero(block == _NEWLINE) + offset)
+    start = np.concatenate([np.zeros(0, dtype=np.int64), *starts])
+    before_newline = np.searchsorted(start, np.concatenate([np.zeros(0, dtype=np.int64), *newlines]))
     bounds = np.concatenate([[0], before_newline, [len(start)]])
     filled = np.flatnonzero(np.diff(bounds))
     return Words(text, start, np.append(bounds[filled], len(start)))

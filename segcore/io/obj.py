@@ -1,0 +1,119 @@
+"""The OBJ reader (Wavefront)."""
+
+import re
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from segcore.arrays import BoolArray, FloatArray, IntArray, LongArray
+from segcore.errors import InvalidMesh
+from segcore.io.limits import ReadLimits
+from segcore.io.polygons import Polygons, mesh_of_polygons
+from segcore.io.text import Words, find_words, parse_numbers, plain_text, without_comments
+from segcore.mesh import Mesh
+
+_CONTINUATION = re.compile(rb"\\[ \t\r]*\n")
+_COORDINATE = re.compile(r"[-+]?(\d+\.?\d*|\.\d+)([eE][-+]?\d+)?")
+_CORNER = re.compile(r"-?\d+(/-?\d*){0,2}")
+_SPACE, _SLASH = 32, 47
+_IN_SUFFIX = np.isin(np.arange(256), list(b"/-0123456789"))
+
+
+def read_obj(data: bytes, limits: ReadLimits) -> Mesh:
+    """Read the vertices and polygons of an OBJ file.
+
+    Texture coordinates, normals, colours, groups, materials, points and lines are passed over, and no file that is
+    named in it is ever opened. A negative index counts back from the last vertex before its line.
+
+    An OBJ file does not say how long it is: one that is cut short between two lines cannot be told from a whole one.
+
+    Raises
+    ------
+    InvalidMesh, LimitExceeded
+    """
+    text = without_comments(plain_text(data))
+    if b"\\" in text:
+        text = _CONTINUATION.sub(lambda end: b" " * len(end[0]), text)
+    words = find_words(text)
+    is_vertex, is_face = _lines_with(words, b"v"), _lines_with(words, b"f")
+    limits.check_vertices(int(is_vertex.sum()))
+    limits.check_faces(int(is_face.sum()))
+    vertices = _vertices(words, is_vertex)
+    polygons = _polygons(words, is_vertex, is_face)
+    return mesh_of_polygons(vertices, polygons, limits)
+
+
+def _lines_with(words: Words, keyword: bytes) -> BoolArray:
+    return words.equal(words.line_start[:-1], keyword)
+
+
+def _values_per_line(words: Words, lines: IntArray, what: str) -> LongArray:
+    """(N,) the number of words after the keyword of each line, at least three."""
+    counts = (words.line_start[lines + 1] - words.line_start[lines] - 1).astype(np.int64)
+    if (counts < 3).any():
+        first = words.line_start[lines[int(np.argmax(counts < 3))]]
+        raise InvalidMesh(f"Line {words.line_number(int(first))}: {what} needs at least three values.")
+    return counts
+
+
+def _vertices(words: Words, is_vertex: BoolArray) -> FloatArray:
+    lines = np.flatnonzero(is_vertex).astype(np.int32)
+    counts = _values_per_line(words, lines, "a vertex")
+    values = _numbers(words, is_vertex, b"v", counts, np.float64)
+    first = np.cumsum(counts) - counts
+    return values[first[:, None] + np.arange(3)]
+
+
+def _polygons(words: Words, is_vertex: BoolArray, is_face: BoolArray) -> Polygons:
+    lines = np.flatnonzero(is_face).astype(np.int32)
+    sizes = _values_per_line(words, lines, "a face")
+    indices = _numbers(words, is_face, b"f", sizes, np.int64)
+    vertices_before = np.repeat(np.cumsum(is_vertex)[lines], sizes)
+    corners = np.where(indices < 0, indices + vertices_before, indices - 1)
+    outside = (indices == 0) | (corners < 0) | (corners >= np.count_nonzero(is_vertex))
+    if outside.any():
+        corner = int(np.argmax(outside))
+        face = int(np.searchsorted(np.cumsum(sizes), corner, side="right"))
+        line = words.line_number(int(words.line_start[lines[face]]))
+        raise InvalidMesh(f"Line {line}: there is no vertex {indices[corner]} for this face.")
+    return Polygons(corners, sizes)
+
+
+def _numbers(
+    words: Words, selected: BoolArray, keyword: bytes, counts: LongArray, dtype: type[np.generic]
+) -> NDArray[Any]:
+    """The numbers after the keyword on the selected lines, of ``7/8/9`` the first."""
+    text = words.text_of_lines(selected)
+    if text.count(keyword) == len(counts):
+        text = text.replace(keyword, b" ")
+        try:
+            return parse_numbers(_without_suffixes(text) if b"/" in text else text, int(counts.sum()), dtype)
+        except ValueError:
+            pass
+    raise _unreadable(words, selected, _CORNER if keyword == b"f" else _COORDINATE)
+
+
+def _without_suffixes(text: bytes) -> bytes:
+    """The text with spaces from the first slash of every word to its end; ValueError where they hide other things."""
+    letters = np.frombuffer(text, np.uint8).copy()
+    marks = np.flatnonzero((letters == _SLASH) | (letters <= _SPACE))
+    is_slash = letters[marks] == _SLASH
+    after_slash = np.concatenate([[False], is_slash[:-1]])
+    change = np.zeros(len(letters), dtype=np.int8)
+    change[marks[is_slash & ~after_slash]] = 1
+    change[marks[~is_slash & after_slash]] = -1
+    suffix = np.cumsum(change, dtype=np.int8).view(bool)
+    if not _IN_SUFFIX[letters[suffix]].all():
+        raise ValueError("a texture or normal index is not a number")
+    letters[suffix] = _SPACE
+    return letters.tobytes()
+
+
+def _unreadable(words: Words, selected: BoolArray, pattern: re.Pattern[str]) -> InvalidMesh:
+    """What is wrong on the first of the selected lines with a word that is not as it should be."""
+    for line in np.flatnonzero(selected).tolist():
+        for index in range(words.line_start[line] + 1, words.line_start[line + 1]):
+            if not pattern.fullmatch(words.word(index)):
+                return InvalidMesh(f"Line {words.line_number(index)}: {words.word(index)!r} is not a number.")
+    return InvalidMesh("The OBJ file has characters between its numbers that do not belong there.")
