@@ -6,9 +6,9 @@ from pathlib import Path
 
 import pytest
 from redis import Redis
-from support import wait_until
 
 from service.queue_server import embedded_queue_server
+from support import wait_until
 from worker.queue import JobQueue, connect_impatiently
 from worker.store import LocalStore
 

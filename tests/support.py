@@ -3,6 +3,7 @@
 import io
 import time
 from collections.abc import Callable
+from pathlib import Path
 
 import numpy as np
 
@@ -59,3 +60,22 @@ def accepted(store: LocalStore, mesh: bytes, **parameters: object) -> Job:
         )
         store.accept(job, upload)
     return job
+
+
+LONG = {"clusters": 80_000, "max_segments": 3_000}  # with sphere(150), seconds of work
+
+
+def children_of(pid: int) -> list[int]:
+    """The process ids of the children of a process."""
+    try:
+        return [int(child) for child in Path(f"/proc/{pid}/task/{pid}/children").read_text().split()]
+    except FileNotFoundError:
+        return []
+
+
+def is_alive(pid: int) -> bool:
+    """Whether a process runs; one that is dead and not yet waited for does not."""
+    try:
+        return Path(f"/proc/{pid}/stat").read_text().rpartition(")")[2].split()[0] != "Z"
+    except (FileNotFoundError, ProcessLookupError):
+        return False

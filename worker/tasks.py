@@ -3,6 +3,7 @@
 from collections.abc import Callable
 
 import segcore
+from segcore.io import ReadLimits
 from segcore.io.result import write_result
 from worker.jobs import Failed, Job, Outcome, Succeeded, now
 from worker.settings import Settings
@@ -22,12 +23,12 @@ def perform(store: LocalStore, settings: Settings, job_id: str, on_progress: OnP
         return
 
 
-def segment_stored_mesh(store: LocalStore, job: Job, limits: segcore.ReadLimits, on_progress: OnProgress) -> Outcome:
+def segment_stored_mesh(store: LocalStore, job: Job, limits: ReadLimits, on_progress: OnProgress) -> Outcome:
     """Read, segment, write the result file: what was expected to go wrong is a value, the rest is raised."""
     try:
         on_progress("reading", 0.0)
         with store.open_mesh(job.id) as source:
-            mesh = segcore.read_mesh(source, job.mesh_format, limits)
+            mesh = segcore.read_mesh(source, job.mesh_format, limits=limits)
         hierarchy = segcore.segment(mesh, segcore.SegmentationParameters.from_mapping(job.parameters), on_progress)
     except segcore.CleaveError as error:
         return Failed(finished_at=now(), code=error.code, message=str(error))
@@ -45,5 +46,5 @@ def segment_stored_mesh(store: LocalStore, job: Job, limits: segcore.ReadLimits,
     )
 
 
-def read_limits(settings: Settings) -> segcore.ReadLimits:
-    return segcore.ReadLimits(max_faces=settings.max_faces)
+def read_limits(settings: Settings) -> ReadLimits:
+    return ReadLimits(max_bytes=settings.max_upload_bytes, max_faces=settings.max_faces)

@@ -4,8 +4,8 @@ from pathlib import Path
 
 import pytest
 from redis import Redis
-from support import accepted
 
+from support import accepted
 from worker.janitor import MISSING_S, Janitor
 from worker.jobs import Failed, new_job_id
 from worker.queue import JobQueue

@@ -2,8 +2,8 @@
 
 import pytest
 from redis import Redis
-from support import wait_until
 
+from support import wait_until
 from worker.jobs import new_job_id
 from worker.queue import Activity, JobQueue, Progress, QueueError, connect_impatiently
 

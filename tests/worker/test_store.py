@@ -6,8 +6,8 @@ import threading
 from pathlib import Path
 
 import pytest
-from support import accepted
 
+from support import accepted
 from worker.durable import create_file, replace_file
 from worker.jobs import Canceled, Failed, Succeeded, new_job_id, now
 from worker.store import LocalStore, UnknownJob
