@@ -4,7 +4,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from segcore.arrays import FloatArray, IntArray, LongArray
+from segcore.arrays import BoolArray, FloatArray, IntArray, LongArray
 from segcore.io.limits import ReadLimits
 from segcore.mesh import Mesh
 
@@ -51,3 +51,17 @@ def _fans(polygons: Polygons) -> tuple[LongArray, IntArray]:
     first = np.repeat(np.cumsum(polygons.sizes) - polygons.sizes, triangles)
     second = ragged_range(np.cumsum(polygons.sizes) - polygons.sizes + 1, triangles)
     return polygons.corners[np.stack([first, second, second + 1], axis=1)], source_polygon
+
+
+def strip_faces(indices: LongArray, starts: BoolArray) -> LongArray:
+    """(T, 3): the triangles of strips, every second one turned so that all face the same way, degenerate ones kept.
+
+    Parameters
+    ----------
+    indices : (N,) the vertices of all strips, one after the other.
+    starts : (N,) True where a strip begins.
+    """
+    first = np.maximum.accumulate(np.where(starts, np.arange(len(indices)), 0))
+    at = np.flatnonzero(first[:-2] == first[2:])
+    odd = (at - first[at]) % 2
+    return np.stack([indices[at], indices[at + 1 + odd], indices[at + 2 - odd]], axis=1)

@@ -8,11 +8,17 @@ from segcore.io.formats import declared_format, detect_format
 from segcore.io.limits import ReadLimits
 from segcore.io.obj import read_obj
 from segcore.io.off import read_off
+from segcore.io.ply import read_ply
 from segcore.io.source import read_source
 from segcore.io.stl import read_stl
 from segcore.mesh import Mesh
 
-_READERS: dict[str, Callable[[bytes, ReadLimits], Mesh]] = {"off": read_off, "stl": read_stl, "obj": read_obj}
+_READERS: dict[str, Callable[[bytes, ReadLimits], Mesh]] = {
+    "off": read_off,
+    "stl": read_stl,
+    "ply": read_ply,
+    "obj": read_obj,
+}
 
 
 def read_mesh(
