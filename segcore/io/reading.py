@@ -5,6 +5,7 @@ from collections.abc import Callable
 from typing import BinaryIO
 
 from segcore.io.formats import declared_format, detect_format
+from segcore.io.gltf import read_gltf
 from segcore.io.limits import ReadLimits
 from segcore.io.obj import read_obj
 from segcore.io.off import read_off
@@ -18,6 +19,8 @@ _READERS: dict[str, Callable[[bytes, ReadLimits], Mesh]] = {
     "stl": read_stl,
     "ply": read_ply,
     "obj": read_obj,
+    "glb": read_gltf,
+    "gltf": read_gltf,
 }
 
 

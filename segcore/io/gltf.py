@@ -1,0 +1,121 @@
+"""The glTF 2.0 reader, for GLB files and for JSON with embedded buffers."""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from segcore.arrays import FloatArray, LongArray
+from segcore.errors import InvalidMesh
+from segcore.io.gltf_accessors import Accessors
+from segcore.io.gltf_document import Document, Item, integer, member, read_document
+from segcore.io.gltf_scene import Instance, mesh_instances
+from segcore.io.limits import ReadLimits
+from segcore.io.polygons import strip_faces
+from segcore.mesh import Mesh
+
+_TRIANGLES, _STRIP, _FAN = 4, 5, 6
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class _Primitive:
+    """Triangles of a mesh of the asset."""
+
+    where: str
+    mode: int
+    positions: int  # accessor
+    indices: int | None  # accessor
+    corners: int  # how many vertices it goes through
+
+    @property
+    def face_count(self) -> int:
+        return self.corners // 3 if self.mode == _TRIANGLES else max(self.corners - 2, 0)
+
+
+def read_gltf(data: bytes, limits: ReadLimits) -> Mesh:
+    """Read all triangles of the default scene, in the coordinates of the scene.
+
+    Face order: the nodes of the scene depth first, the primitives of each mesh, the triangles of each primitive. A mesh
+    that stands at several places is there several times. Points and lines are passed over. Where a transform mirrors a
+    mesh, its faces are turned, as glTF wants it, so that their outside stays outside.
+
+    Raises
+    ------
+    InvalidMesh, UnsupportedFormat, LimitExceeded
+    """
+    document = read_document(data)
+    accessors = Accessors(document)
+    with np.errstate(all="ignore"):  # what leaves the range of floating point numbers is refused as not finite
+        instances = mesh_instances(document)
+        primitives = {mesh: _primitives(document, accessors, mesh) for mesh in {at.mesh for at in instances}}
+        parts = [(instance, primitive) for instance in instances for primitive in primitives[instance.mesh]]
+        limits.check_faces(sum(primitive.face_count for _, primitive in parts))
+        return _assemble(parts, accessors, limits)
+
+
+def _primitives(document: Document, accessors: Accessors, mesh: int) -> list[_Primitive]:
+    entries = document.item("meshes", mesh).get("primitives")
+    if not isinstance(entries, list) or not all(isinstance(entry, dict) for entry in entries):
+        raise InvalidMesh(f"meshes[{mesh}].primitives of the glTF file must be a list of objects.")
+    described = (_primitive(entry, accessors, f"meshes[{mesh}].primitives[{i}]") for i, entry in enumerate(entries))
+    return [primitive for primitive in described if primitive.mode in (_TRIANGLES, _STRIP, _FAN)]
+
+
+def _primitive(entry: Item, accessors: Accessors, where: str) -> _Primitive:
+    mode = integer(entry, "mode", where, _TRIANGLES)
+    positions = integer(member(entry, "attributes", where), "POSITION", f"{where}.attributes")
+    indices = integer(entry, "indices", where) if "indices" in entry else None
+    corners = accessors.count(positions if indices is None else indices)
+    if mode == _TRIANGLES and corners % 3:
+        raise InvalidMesh(f"{where} of the glTF file has {corners} corners, which are not whole triangles.")
+    return _Primitive(where, mode, positions, indices, corners)
+
+
+def _assemble(parts: list[tuple[Instance, _Primitive]], accessors: Accessors, limits: ReadLimits) -> Mesh:
+    """The mesh; an accessor that several primitives share at one place gives its vertices once."""
+    blocks: dict[tuple[int, bytes], int] = {}
+    vertex_count = 0
+    for instance, primitive in parts:
+        key = (primitive.positions, instance.transform.tobytes())
+        if key not in blocks:
+            blocks[key] = vertex_count
+            vertex_count += accessors.count(primitive.positions)
+    limits.check_vertices(vertex_count)
+    vertices = [_place(accessors, positions, np.frombuffer(place)) for positions, place in blocks]
+    faces = [
+        _faces(primitive, accessors, instance) + blocks[primitive.positions, instance.transform.tobytes()]
+        for instance, primitive in parts
+    ]
+    no_faces = np.zeros((0, 3), dtype=np.int64)
+    return Mesh(np.concatenate([np.zeros((0, 3)), *vertices]), np.concatenate([no_faces, *faces]))
+
+
+def _place(accessors: Accessors, positions: int, transform: FloatArray) -> FloatArray:
+    """(V, 3) positions in the scene."""
+    values = accessors.read(positions, "VEC3").astype(np.float64)
+    matrix = transform.reshape(4, 4)
+    return values if (matrix == np.eye(4)).all() else values @ matrix[:3, :3].T + matrix[:3, 3]
+
+
+def _faces(primitive: _Primitive, accessors: Accessors, instance: Instance) -> LongArray:
+    """(F, 3) indices into the positions of the primitive."""
+    corners = _corners(primitive, accessors)
+    if primitive.mode == _TRIANGLES:
+        faces = corners.reshape(-1, 3)
+    elif primitive.mode == _STRIP:
+        faces = strip_faces(corners, np.arange(len(corners)) == 0)
+    else:
+        faces = np.stack([corners[1:-1], corners[2:], np.full(primitive.face_count, corners[0])], axis=1)
+    mirrored = np.linalg.det(instance.transform[:3, :3]) < 0
+    return faces[:, [0, 2, 1]] if mirrored else faces
+
+
+def _corners(primitive: _Primitive, accessors: Accessors) -> LongArray:
+    if primitive.indices is None:
+        return np.arange(primitive.corners)
+    corners = accessors.read(primitive.indices, "SCALAR")[:, 0]
+    if corners.dtype.kind != "u":
+        raise InvalidMesh(f"The indices of {primitive.where} of the glTF file must be unsigned whole numbers.")
+    vertices = accessors.count(primitive.positions)
+    if corners.size and corners.max() >= vertices:
+        raise InvalidMesh(f"{primitive.where} of the glTF file has the index {corners.max()}, but {vertices} vertices.")
+    return corners.astype(np.int64)

@@ -1,0 +1,191 @@
+"""The JSON and the buffers of a glTF 2.0 asset, each value checked as it is taken out."""
+
+import base64
+import binascii
+import json
+import math
+import struct
+from dataclasses import dataclass
+from typing import Any, NoReturn
+
+from segcore.errors import InvalidMesh, UnsupportedFormat
+
+_MAGIC, _HEADER, _CHUNK_HEADER = b"glTF", 12, 8
+_JSON_CHUNK, _BINARY_CHUNK = b"JSON", b"BIN\0"
+# Extensions that change what is drawn on the faces, or describe them, but not where they are.
+_HARMLESS = (
+    "EXT_instance_features", "EXT_lights_", "EXT_mesh_features", "EXT_structural_metadata", "EXT_texture_",
+    "KHR_animation_pointer", "KHR_lights_", "KHR_materials_", "KHR_texture_", "KHR_xmp", "MSFT_texture_dds",
+)  # fmt: skip
+_UNDERSTOOD = ("KHR_mesh_quantization",)
+
+Item = dict[str, Any]
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Document:
+    """A parsed asset; ``name`` in its methods is a member of the top level such as ``accessors``."""
+
+    root: Item
+    binary: memoryview | None  # the BIN chunk of a GLB file
+    size: int  # of the whole file in bytes
+
+    def item(self, name: str, index: int) -> Item:
+        """Entry ``index`` of an array of the top level."""
+        entries = self.root.get(name, [])
+        if not isinstance(entries, list) or index >= len(entries) or not isinstance(entries[index], dict):
+            raise InvalidMesh(f"The glTF file refers to {name}[{index}], which it does not have.")
+        entry: Item = entries[index]
+        return entry
+
+    def count(self, name: str) -> int:
+        entries = self.root.get(name, [])
+        return len(entries) if isinstance(entries, list) else 0
+
+    def buffer(self, index: int) -> memoryview:
+        """The bytes of a buffer, which must be inside the file.
+
+        Raises
+        ------
+        UnsupportedFormat
+            Where the buffer is another file.
+        InvalidMesh
+            Where it is damaged or shorter than it should be.
+        """
+        entry, where = self.item("buffers", index), f"buffers[{index}]"
+        length = integer(entry, "byteLength", where)
+        uri = entry.get("uri")
+        if uri is None and index == 0 and self.binary is not None:
+            data = self.binary
+        elif isinstance(uri, str):
+            data = memoryview(_data_uri(uri, where))
+        else:
+            raise InvalidMesh(f"{where} of the glTF file has no data: it is cut short or its compression is optional.")
+        if len(data) < length:
+            raise InvalidMesh(
+                f"{where} of the glTF file should have {length} bytes and has {len(data)}: it is cut short."
+            )
+        return data[:length]
+
+
+def read_document(data: bytes) -> Document:
+    """Parse a GLB or a glTF file.
+
+    Raises
+    ------
+    InvalidMesh
+        Where it is damaged or cut short.
+    UnsupportedFormat
+        Where it is of another version, or requires an extension that changes its geometry; the message names it.
+    """
+    text, binary = _split_container(data) if data.startswith(_MAGIC) else (data, None)
+    root = _parse(text)
+    asset = root.get("asset")
+    version = asset.get("version") if isinstance(asset, dict) else None
+    if not isinstance(version, str):
+        raise InvalidMesh("The file is JSON, but not glTF: it has no asset.version.")
+    if not version.startswith("2."):
+        raise UnsupportedFormat(f"glTF version {version[:20]!r} is not read: save it as glTF 2.0.")
+    _check_extensions(root.get("extensionsRequired", []))
+    return Document(root, binary, len(data))
+
+
+def integer(item: Item, key: str, where: str, default: int | None = None) -> int:
+    """A whole number >= 0."""
+    value = item.get(key, default)
+    if type(value) is not int or value < 0:
+        _refuse(where, key, "a whole number of at least 0")
+    return value
+
+
+def numbers(item: Item, key: str, where: str, default: list[float]) -> list[float]:
+    """As many finite numbers as ``default`` has."""
+    values = item.get(key, default)
+    if not isinstance(values, list) or len(values) != len(default) or not all(_is_finite(value) for value in values):
+        _refuse(where, key, f"{len(default)} finite numbers")
+    return [float(value) for value in values]
+
+
+def indices(item: Item, key: str, where: str) -> list[int]:
+    """A list of whole numbers >= 0, empty where there is none."""
+    values = item.get(key, [])
+    if not isinstance(values, list) or not all(type(value) is int and value >= 0 for value in values):
+        _refuse(where, key, "a list of whole numbers of at least 0")
+    return values
+
+
+def member(item: Item, key: str, where: str) -> Item:
+    """An object."""
+    value = item.get(key)
+    if not isinstance(value, dict):
+        _refuse(where, key, "an object")
+    return value
+
+
+def _refuse(where: str, key: str, form: str) -> NoReturn:
+    raise InvalidMesh(f"{where}.{key} of the glTF file must be {form}.")
+
+
+def _is_finite(value: object) -> bool:
+    return (type(value) is float and math.isfinite(value)) or (type(value) is int and abs(value) < 2**64)
+
+
+def _split_container(data: bytes) -> tuple[bytes, memoryview | None]:
+    if len(data) < _HEADER:
+        raise InvalidMesh("The GLB file ends within its header: it is cut short.")
+    _, version, length = struct.unpack_from("<4sII", data)
+    if version != 2:
+        raise UnsupportedFormat(f"GLB version {version} is not read: save it as glTF 2.0.")
+    if length > len(data):
+        raise InvalidMesh(f"The GLB file should have {length} bytes and has {len(data)}: it is cut short.")
+    chunks = _chunks(memoryview(data)[:length])
+    if not chunks or chunks[0][0] != _JSON_CHUNK:
+        raise InvalidMesh("The GLB file does not begin with a JSON chunk: it is damaged.")
+    binary = next((chunk for kind, chunk in chunks[1:] if kind == _BINARY_CHUNK), None)
+    return bytes(chunks[0][1]), binary
+
+
+def _chunks(data: memoryview) -> list[tuple[bytes, memoryview]]:
+    chunks, at = [], _HEADER
+    while at < len(data):
+        if at + _CHUNK_HEADER > len(data):
+            raise InvalidMesh(f"Byte {at}: the GLB file ends within the head of a chunk: it is damaged.")
+        length, kind = struct.unpack_from("<I4s", data, at)
+        begin = at + _CHUNK_HEADER
+        at = begin + length
+        if at > len(data):
+            raise InvalidMesh(f"Byte {begin}: a chunk of the GLB file is longer than the file: it is damaged.")
+        chunks.append((kind, data[begin:at]))
+    return chunks
+
+
+def _parse(text: bytes) -> Item:
+    try:
+        root = json.loads(text)
+    except (ValueError, RecursionError) as error:
+        raise InvalidMesh("The JSON of the glTF file is damaged or cut short.") from error
+    if not isinstance(root, dict):
+        raise InvalidMesh("The JSON of the glTF file is not an object.")
+    return root
+
+
+def _check_extensions(required: object) -> None:
+    if not isinstance(required, list) or not all(isinstance(name, str) for name in required):
+        raise InvalidMesh("extensionsRequired of the glTF file must be a list of names.")
+    for name in required:
+        if not name.startswith(_HARMLESS + _UNDERSTOOD):
+            raise UnsupportedFormat(
+                f"The glTF file requires the extension {name[:60]!r}: save it without that extension."
+            )
+
+
+def _data_uri(uri: str, where: str) -> bytes:
+    head, comma, body = uri.partition(",")
+    if not head.startswith("data:") or not comma:
+        raise UnsupportedFormat(f"{where} of the glTF file is another file: save it as GLB or with embedded buffers.")
+    if not head.endswith(";base64"):
+        raise UnsupportedFormat(f"{where} of the glTF file is a data URI in another encoding than base64.")
+    try:
+        return base64.b64decode(body, validate=True)
+    except (binascii.Error, ValueError) as error:
+        raise InvalidMesh(f"{where} of the glTF file is no valid base64: it is damaged or cut short.") from error
