@@ -11,6 +11,7 @@ from segcore.cheeger import Cut, cut_of, sweep
 from segcore.components import group_by_nearness
 from segcore.fiedler import fiedler_vectors
 from segcore.graph import SurfaceGraph, connected_components
+from segcore.parameters import Order, SegmentationParameters
 
 AUTOMATIC_NCUT = (
     1.485  # normalized cut times sqrt(total area) from which people no longer cut, on the odd benchmark models
@@ -46,14 +47,17 @@ class _Candidate:
 
 
 def bisect(
-    graph: SurfaceGraph, points: FloatArray, max_segments: int, on_split: Callable[[float], None] = lambda _: None
+    graph: SurfaceGraph,
+    points: FloatArray,
+    parameters: SegmentationParameters,
+    on_split: Callable[[float], None] = lambda _: None,
 ) -> Tree:
     """Part the components of a graph, then cut the segment with the least normalized cut again and again.
 
     Parameters
     ----------
     points : (N, 3) positions of the nodes, for the nearness of components.
-    max_segments : where to stop; components are parted in any case.
+    parameters : ``max_segments`` says where to stop (components are parted in any case), ``order`` which is next.
     on_split : called with the fraction of ``max_segments`` that is reached.
 
     Notes
@@ -63,18 +67,19 @@ def bisect(
     total volume is made after all others.
     """
     component = connected_components(graph)
-    tree = _GrowingTree(graph)
+    tree = _GrowingTree(graph, parameters.order)
     for node, members in tree.part_components(component, group_by_nearness(points, component)):
         tree.add(node, _Segment(members, graph.subgraph(members)))
-    while tree.segments < max_segments and tree.split_next():
-        on_split(tree.segments / max_segments)
+    while tree.segments < parameters.max_segments and tree.split_next():
+        on_split(tree.segments / parameters.max_segments)
     return tree.finished()
 
 
 class _GrowingTree:
     """The state of a best-first bisection."""
 
-    def __init__(self, graph: SurfaceGraph) -> None:
+    def __init__(self, graph: SurfaceGraph, order: Order) -> None:
+        self._order = order
         self._volume = graph.volume
         self._total = graph.total_volume
         self._split_node: list[int] = []
@@ -113,7 +118,9 @@ class _GrowingTree:
         if volume >= 2 * _SMALLEST_SIDE * self._total:
             self._candidates[node] = self._best_cut(segment.graph)
             if not self._candidates[node].late:
-                heappush(self._queue, (False, self._candidates[node].value, node))
+                heappush(
+                    self._queue, (False, -volume if self._order == "volume" else self._candidates[node].value, node)
+                )
                 return
         heappush(self._queue, (True, -volume, node))
 
@@ -121,11 +128,11 @@ class _GrowingTree:
         """Make the next split; False where every segment is a single node."""
         if not self._queue:
             return False
-        late, value, node = heappop(self._queue)
-        if self._automatic is None and (late or value >= AUTOMATIC_NCUT):
-            self._automatic = self.segments
+        late, _, node = heappop(self._queue)
         segment = self._segments.pop(node)
         candidate = self._candidates.pop(node, None) or self._best_cut(segment.graph)
+        if self._automatic is None and (late or candidate.cut.ncut * np.sqrt(self._total) >= AUTOMATIC_NCUT):
+            self._automatic = self.segments
         larger, smaller = self._split(node, candidate.value)
         inside_larger = candidate.cut.side == (candidate.cut.inside >= candidate.cut.outside)
         self.add(larger, _part(segment, inside_larger))
@@ -148,7 +155,8 @@ class _GrowingTree:
     def _best_cut(self, graph: SurfaceGraph) -> _Candidate:
         cut = with_connected_sides(graph, sweep(graph, fiedler_vectors(graph)[:, 0]))
         late = min(cut.inside, cut.outside) < _SMALLEST_SIDE * self._total
-        return _Candidate(cut, cut.ncut * np.sqrt(self._total), late)
+        value = cut.ncc if self._order == "ncc" else cut.ncut
+        return _Candidate(cut, value * np.sqrt(self._total), late)
 
 
 def _part(segment: _Segment, side: BoolArray) -> _Segment:

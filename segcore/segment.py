@@ -4,12 +4,13 @@ from collections.abc import Callable
 
 import numpy as np
 
-from segcore.affinity import concavity
 from segcore.arrays import group_sums
-from segcore.dual_graph import FaceClusters, cluster_faces, face_dual_graph
+from segcore.clusters import cluster_nodes
 from segcore.hierarchy import Hierarchy
 from segcore.mesh import Mesh
+from segcore.mesh_graph import mesh_graph
 from segcore.parameters import SegmentationParameters
+from segcore.projection import project
 from segcore.recursion import Tree, bisect
 from segcore.surface import Surface, build_surface
 
@@ -33,30 +34,28 @@ def segment(
     The hierarchy of cuts, with a label for every face of the mesh, in its order. The same mesh and parameters give the
     same hierarchy.
     """
-    choices = parameters or SegmentationParameters()
-    rng = np.random.default_rng(choices.seed)
+    chosen = parameters or SegmentationParameters()
+    rng = np.random.default_rng(chosen.seed)
     on_progress("clean", 0.0)
     surface = build_surface(mesh)
     on_progress("affinity", 0.25)
-    affinity = concavity(surface)
-    graph = face_dual_graph(surface, affinity)
+    nodes = mesh_graph(surface, chosen)
     on_progress("coarsen", 0.45)
-    clusters = cluster_faces(surface, graph, affinity, choices.clusters, choices.max_segments // 2, rng)
+    clusters = cluster_nodes(nodes, chosen.clusters, chosen.max_segments // 2, rng)
     on_progress("cut", 0.6)
-    tree = bisect(
-        clusters.graph, clusters.centroids, choices.max_segments, lambda done: on_progress("cut", 0.6 + 0.39 * done)
-    )
-    hierarchy = _hierarchy_of_input(surface, clusters, tree)
-    on_progress("done", 1.0)
+    tree = bisect(clusters.graph, clusters.points, chosen, lambda done: on_progress("cut", 0.6 + 0.35 * done))
+    on_progress("label", 0.95)
+    tree = project(tree, clusters.of_node[nodes.corners], surface.face_graph())
+    hierarchy = _of_input(surface, tree)
+    on_progress("label", 1.0)
     return hierarchy
 
 
-def _hierarchy_of_input(surface: Surface, clusters: FaceClusters, tree: Tree) -> Hierarchy:
-    """Carry the tree over the clusters to the faces of the input, and sum up areas and faces from the leaves."""
-    leaf_of_face = tree.leaf[clusters.of_face]
-    leaf_of_input = leaf_of_face[surface.face_of_input]
+def _of_input(surface: Surface, tree: Tree) -> Hierarchy:
+    """Carry a tree over the faces of a surface to those of the input, and sum up areas and faces from the leaves."""
+    leaf_of_input = tree.leaf[surface.face_of_input]
     nodes = 2 * len(tree.split_node) + 1
-    area = group_sums(leaf_of_face, surface.areas * surface.unit**2, nodes)
+    area = group_sums(tree.leaf, surface.areas * surface.unit**2, nodes)
     face_count = np.bincount(leaf_of_input, minlength=nodes)
     for split in reversed(range(len(tree.split_node))):
         node = tree.split_node[split]

@@ -11,7 +11,7 @@ import numpy as np
 from scipy.spatial import KDTree
 
 from segcore.arrays import BoolArray, FloatArray, IntArray, group_sums
-from segcore.graph import rows_of
+from segcore.graph import SurfaceGraph, rows_of
 from segcore.mesh import Mesh, face_normals_and_areas
 from segcore.topology import as_bits, consistent_orientation, dual_edges, first_equal_row
 
@@ -31,6 +31,10 @@ class Surface:
     edge_vertices: IntArray  # (E, 2) the two vertices of the mesh edge that it crosses
     face_of_input: IntArray  # (F_input,) the face that stands for every input face
     unit: float  # length of one unit here, in units of the input
+
+    def face_graph(self) -> SurfaceGraph:
+        """The face dual graph with all weights 1 and the areas as volumes."""
+        return SurfaceGraph(self.edge_faces, np.ones(len(self.edge_faces)), self.areas)
 
 
 def build_surface(mesh: Mesh) -> Surface:

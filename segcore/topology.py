@@ -135,6 +135,15 @@ def consistent_orientation(
     return patch, turned
 
 
+def mesh_edges(faces: IntArray) -> IntArray:
+    """(E, 2) the different edges of faces (F, 3), smaller vertex first, in ascending order."""
+    pairs = np.sort(faces[:, [[0, 1], [1, 2], [2, 0]]].reshape(-1, 2), axis=1).astype(np.int64)
+    pairs = pairs[pairs[:, 0] != pairs[:, 1]]
+    count = int(faces.max()) + 1
+    unique = np.unique(pairs[:, 0] * count + pairs[:, 1])
+    return np.stack([unique // count, unique % count], axis=1).astype(np.int32)
+
+
 def as_bits(positions: FloatArray) -> LongArray:
     """The bit patterns of coordinates, with -0.0 made equal to 0.0."""
     bits: LongArray = (positions + 0.0).view(np.int64)

@@ -19,5 +19,5 @@ def test_parameters_come_from_names_and_values():
 
 
 def test_an_unknown_name_is_refused_with_the_known_ones():
-    with pytest.raises(InvalidParameters, match=r"'segments'.*clusters, max_segments, seed"):
+    with pytest.raises(InvalidParameters, match=r"'segments'.*affinity, .*max_segments, "):
         SegmentationParameters.from_mapping({"segments": 9})

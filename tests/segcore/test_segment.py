@@ -151,7 +151,7 @@ def test_progress_runs_from_0_to_1():
     assert fractions[-1] == 1
     assert fractions == sorted(fractions)
     assert [stage for i, (stage, _) in enumerate(told) if i == 0 or told[i - 1][0] != stage] == [
-        "clean", "affinity", "coarsen", "cut", "done"]  # fmt: skip
+        "clean", "affinity", "coarsen", "cut", "label"]  # fmt: skip
 
 
 @settings(max_examples=60, deadline=None)

@@ -1,0 +1,73 @@
+"""The graphs of a surface: its faces or its vertices as nodes, weighted by an affinity."""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from segcore.affinity import FACE_AFFINITIES, VERTEX_AFFINITIES, edge_lengths
+from segcore.arrays import FloatArray, IntArray
+from segcore.graph import SurfaceGraph, connected_components
+from segcore.parameters import SegmentationParameters
+from segcore.surface import Surface
+from segcore.topology import mesh_edges
+
+_SMALLEST_FACE = 1e-4  # least volume of a face, in mean areas
+_SHORTEST_EDGE = 1e-9  # least length of an edge, in mean lengths
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class MeshGraph:
+    """A graph of the faces or vertices of a surface."""
+
+    graph: SurfaceGraph
+    affinity: FloatArray  # (E,) g in (0, 1]; weight / g is the length of the border that an edge stands for
+    points: FloatArray  # (N, 3) where the nodes are
+    corners: IntArray  # (F, C) the nodes of every face: itself, or its three vertices
+
+
+def mesh_graph(surface: Surface, parameters: SegmentationParameters) -> MeshGraph:
+    """The graph that the parameters name, with the affinity that they name."""
+    return _GRAPHS[parameters.graph](surface, parameters)
+
+
+def face_dual_graph(surface: Surface, parameters: SegmentationParameters) -> MeshGraph:
+    """The face dual graph: W = edge length times affinity, the volume of a node is the area of its face.
+
+    A face counts for at least 1e-4 of the mean area and an edge for at least 1e-9 of the mean length, so that degenerate
+    ones do not vanish from the sums.
+    """
+    affinity = FACE_AFFINITIES[parameters.affinity](surface, parameters)
+    weight = _at_least(edge_lengths(surface), _SHORTEST_EDGE) * affinity
+    graph = SurfaceGraph(surface.edge_faces, weight, _at_least(surface.areas, _SMALLEST_FACE))
+    centroids = surface.vertices[surface.faces].mean(axis=1)
+    return MeshGraph(graph, affinity, centroids, np.arange(len(surface.faces), dtype=np.int32)[:, None])
+
+
+def vertex_graph(surface: Surface, parameters: SegmentationParameters) -> MeshGraph:
+    """The vertex graph of the paper: W = affinity, the volume of a node is its weighted degree.
+
+    A vertex at which components touch is a node of each of them.
+    """
+    corners, vertex = _vertices_of_components(surface)
+    edges = mesh_edges(corners)
+    affinity = VERTEX_AFFINITIES[parameters.affinity](surface, vertex[edges], parameters)
+    graph = SurfaceGraph(edges, affinity, np.ones(len(vertex)))
+    return MeshGraph(SurfaceGraph(edges, affinity, graph.degrees()), affinity, surface.vertices[vertex], corners)
+
+
+_GRAPHS = {"faces": face_dual_graph, "vertices": vertex_graph}
+
+
+def _at_least(values: FloatArray, share: float) -> FloatArray:
+    """Values raised to a share of their mean; all 1 where they vanish."""
+    mean = float(values.mean()) if len(values) else 0.0
+    return np.maximum(values, share * mean) if mean > np.finfo(float).tiny else np.ones_like(values)
+
+
+def _vertices_of_components(surface: Surface) -> tuple[IntArray, IntArray]:
+    """(F, 3) the nodes at the corners of every face, and (N,) the vertex of every node."""
+    faces = SurfaceGraph(surface.edge_faces, np.ones(len(surface.edge_faces)), np.ones(len(surface.faces)))
+    component = connected_components(faces).astype(np.int64)
+    keys = component[:, None] * len(surface.vertices) + surface.faces
+    unique, corners = np.unique(keys, return_inverse=True)
+    return corners.reshape(-1, 3).astype(np.int32), (unique % len(surface.vertices)).astype(np.int32)
