@@ -1,5 +1,7 @@
 """Cut a triangle mesh into the parts that a person would name.
 
+Usage::
+
     import segcore
 
     mesh = segcore.read_mesh("hand.off")

@@ -57,7 +57,9 @@ def _shaded(label: IntArray, light: FloatArray, size: int) -> ByteArray:
         behind = np.roll(label, 1, axis)
         border |= (label != behind) & covered & (behind != _NOTHING)
     shade = np.where(border, 0.35, 1.0) * light
-    image = np.concatenate([np.minimum(colors * shade[..., None], 1.0) * covered[..., None], covered[..., None]], axis=2)
+    image = np.concatenate(
+        [np.minimum(colors * shade[..., None], 1.0) * covered[..., None], covered[..., None]], axis=2
+    )
     image = image.reshape(size, _SAMPLES, size, _SAMPLES, 4).mean(axis=(1, 3))
     image[..., :3] /= np.maximum(image[..., 3:], 1e-6)
     pixels: ByteArray = np.rint(255 * image).astype(np.uint8)
