@@ -1,5 +1,7 @@
 """From a tree of cuts of the nodes of a mesh graph to a tree of cuts of the faces of the mesh."""
 
+from dataclasses import dataclass
+
 import numpy as np
 
 from segcore.arrays import BoolArray, IntArray
@@ -26,39 +28,48 @@ def project(tree: Tree, corners: IntArray, faces: SurfaceGraph) -> Tree:
     """
     if corners.shape[1] == 1:
         return Tree(tree.split_node, tree.cut_value, tree.leaf[corners[:, 0]], tree.automatic_segments)
-    position, first, end = _intervals(tree)
-    place = position[tree.leaf][corners]
-    members: dict[int, IntArray] = {0: np.arange(len(corners), dtype=np.int32)}
-    graphs = {0: faces}
-    now = {0: 0}  # node of the given tree -> node of the new one
+    place, first, end = _intervals(tree)
+    corner_place = place[tree.leaf][corners]
+    parts = {0: _Part(np.arange(len(corners), dtype=np.int32), faces, 0)}
     split_node: list[int] = []
     cut_value: list[float] = []
     automatic = 1
     for split, node in enumerate(tree.split_node.tolist()):
-        nodes, graph = members.pop(node), graphs.pop(node)
-        children = (2 * split + 1, 2 * split + 2)
-        side = _votes(place[nodes], *((first[child], end[child]) for child in children))
-        if side.any() and not side.all() and tree.cut_value[split] > 0:
-            side = with_connected_sides(graph, cut_of(graph, side)).side
-        if side.all() or not side.any():
-            kept, lost = children if side.all() else children[::-1]
-            members[kept], graphs[kept], now[kept] = nodes, graph, now[node]
-            members[lost], graphs[lost] = nodes[:0], graph.subgraph(nodes[:0])
+        if node not in parts:
             continue
-        inside = graph.volume[side].sum() >= graph.volume[~side].sum()
-        split_node.append(now[node])
+        part = parts.pop(node)
+        one, other = 2 * split + 1, 2 * split + 2
+        side = _votes(corner_place[part.faces], (first[one], end[one]), (first[other], end[other]))
+        if side.all() or not side.any():
+            parts[one if side.all() else other] = part
+            continue
+        if tree.cut_value[split] > 0:
+            side = with_connected_sides(part.graph, cut_of(part.graph, side)).side
+        split_node.append(part.node)
         cut_value.append(float(tree.cut_value[split]))
-        for child, part, larger in zip(children, (side, ~side), (inside, not inside), strict=True):
-            local = np.flatnonzero(part).astype(np.int32)
-            members[child], graphs[child] = nodes[local], graph.subgraph(local)
-            now[child] = 2 * len(split_node) - (1 if larger else 0)
+        larger, smaller = 2 * len(split_node) - 1, 2 * len(split_node)
+        one_is_larger = part.graph.volume[side].sum() >= part.graph.volume[~side].sum()
+        parts[one] = part.half(side, larger if one_is_larger else smaller)
+        parts[other] = part.half(~side, smaller if one_is_larger else larger)
         if split + 1 < tree.automatic_segments:
             automatic = len(split_node) + 1
     leaf = np.zeros(len(corners), dtype=np.int32)
-    for node, nodes in members.items():
-        if len(nodes):
-            leaf[nodes] = now[node]
+    for part in parts.values():
+        leaf[part.faces] = part.node
     return Tree(np.array(split_node, dtype=np.int32), np.array(cut_value), leaf, automatic)
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class _Part:
+    """The faces that follow a node, the face dual graph among them, and their node in the tree over the faces."""
+
+    faces: IntArray
+    graph: SurfaceGraph
+    node: int
+
+    def half(self, side: BoolArray, node: int) -> "_Part":
+        local = np.flatnonzero(side).astype(np.int32)
+        return _Part(self.faces[local], self.graph.subgraph(local), node)
 
 
 def _intervals(tree: Tree) -> tuple[IntArray, IntArray, IntArray]:
