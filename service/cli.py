@@ -1,0 +1,185 @@
+"""The command `cleave`."""
+
+import argparse
+import sys
+from collections.abc import Callable, Sequence
+from pathlib import Path
+from typing import NoReturn
+
+from worker.logs import configure_logging
+from worker.settings import InvalidSettings, Settings, load_settings
+
+_DESCRIPTION = """\
+Cuts a 3D mesh into the parts that a person would name.
+
+  cleave serve                          an HTTP service with its workers, on http://127.0.0.1:8000
+  cleave segment hand.off -o parts.glb  one mesh, without a server
+"""
+
+
+def main(arguments: Sequence[str] | None = None) -> int:
+    """Run a command; what was expected to go wrong is one line and exit status 2."""
+    choices = _parser().parse_args(arguments)
+    try:
+        choices.run(choices)
+    except KeyboardInterrupt:
+        return 130
+    except _expected_errors() as error:
+        print(f"cleave: {_sentence(error)}", file=sys.stderr)
+        return 2
+    return 0
+
+
+class _Parser(argparse.ArgumentParser):
+    def error(self, message: str) -> NoReturn:
+        self.exit(2, f"cleave: {message}; {self.prog} --help shows what there is.\n")
+
+
+def _parser() -> argparse.ArgumentParser:
+    parser = _Parser(prog="cleave", description=_DESCRIPTION, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("--version", action=_Version, nargs=0, help="show the version and exit")
+    commands = parser.add_subparsers(title="commands", metavar="COMMAND", required=True)
+    _add_serve(commands)
+    _add_worker(commands)
+    _add_segment(commands)
+    return parser
+
+
+def _add_serve(commands: "argparse._SubParsersAction[_Parser]") -> None:
+    serve = commands.add_parser(
+        "serve",
+        help="run the service, its workers and its queue",
+        description="Run the service, its workers and, unless CLEAVE_REDIS_URL names one, its own queue server.",
+        epilog=_settings_help(),
+        formatter_class=argparse.RawDescriptionHelpFormatter,
+    )
+    serve.add_argument("--host", default="127.0.0.1", help="address to listen on (%(default)s)")
+    serve.add_argument("--port", type=_port, default=8000, help="port to listen on, 0 for a free one (%(default)s)")
+    _add_workers(serve, least=0)
+    serve.set_defaults(run=_serve)
+
+
+def _add_worker(commands: "argparse._SubParsersAction[_Parser]") -> None:
+    worker = commands.add_parser(
+        "worker",
+        help="run workers for a service elsewhere",
+        description="Run workers that share the data folder and the queue server of a service elsewhere.",
+        epilog=_settings_help(),
+        formatter_class=argparse.RawDescriptionHelpFormatter,
+    )
+    worker.add_argument("--redis-url", metavar="URL", help="the queue server, in place of CLEAVE_REDIS_URL")
+    _add_workers(worker, least=1)
+    worker.set_defaults(run=_work)
+
+
+def _add_workers(parser: argparse.ArgumentParser, least: int) -> None:
+    parser.add_argument("--workers", type=_at_least(least), metavar="N", help="jobs at a time (one less than cores)")
+    parser.add_argument("--data-dir", type=Path, metavar="DIR", help="the data folder, in place of CLEAVE_DATA_DIR")
+
+
+def _add_segment(commands: "argparse._SubParsersAction[_Parser]") -> None:
+    segment = commands.add_parser(
+        "segment",
+        help="segment one mesh without a server",
+        description="Segment one mesh and write what is asked for; without outputs only a summary is printed.",
+    )
+    segment.add_argument("mesh", type=Path, metavar="MESH", help="the mesh file")
+    segment.add_argument("--segments", type=int, metavar="K", help="number of segments (chosen by the mesh)")
+    segment.add_argument("--max-segments", type=int, metavar="N", help="how far the hierarchy goes (64, or K)")
+    segment.add_argument("-o", "--output", type=_glb, metavar="PARTS.glb", help="the mesh with a colour per segment")
+    segment.add_argument("--labels", type=Path, metavar="LABELS.seg", help="the segment of every face, one per line")
+    segment.add_argument("--hierarchy", type=Path, metavar="TREE.json", help="the tree of cuts")
+    segment.add_argument("--result", type=Path, metavar="MESH.cleave", help="mesh and tree, to be opened again")
+    segment.set_defaults(run=_segment)
+
+
+# Each command imports what it needs when it runs: `cleave --help` does not wait for the numerics.
+
+
+def _serve(choices: argparse.Namespace) -> None:
+    from service.serve_command import serve
+
+    configure_logging(load_settings().log_level)
+    serve(choices.host, choices.port, choices.workers, choices.data_dir, _say)
+
+
+def _work(choices: argparse.Namespace) -> None:
+    from service.serve_command import work
+
+    configure_logging(load_settings().log_level)
+    work(choices.redis_url, choices.workers, choices.data_dir, _say)
+
+
+def _segment(choices: argparse.Namespace) -> None:
+    from service.segment_command import SegmentRequest, segment_file
+
+    summary = segment_file(
+        SegmentRequest(
+            mesh=choices.mesh,
+            segments=choices.segments,
+            max_segments=choices.max_segments,
+            model=choices.output,
+            labels=choices.labels,
+            hierarchy=choices.hierarchy,
+            result=choices.result,
+        )
+    )
+    _say("\n".join(summary))
+
+
+def _say(text: str) -> None:
+    print(text, flush=True)
+
+
+def _expected_errors() -> tuple[type[Exception], ...]:
+    from segcore.errors import CleaveError
+    from service.queue_server import NoQueueServer
+    from service.serve_command import CannotListen
+    from service.supervisor import DataInUse
+
+    return CleaveError, InvalidSettings, NoQueueServer, CannotListen, DataInUse, OSError
+
+
+def _sentence(error: Exception) -> str:
+    if isinstance(error, OSError) and error.strerror:
+        return f"{error.filename}: {error.strerror}." if error.filename else f"{error.strerror}."
+    return " ".join(str(error).split())
+
+
+class _Version(argparse.Action):
+    def __call__(self, parser: argparse.ArgumentParser, *_: object) -> None:
+        from service.app import installed_version
+
+        parser.exit(message=f"cleave {installed_version()}\n")
+
+
+def _settings_help() -> str:
+    rows = [(f"CLEAVE_{name.upper()}", field.description or "") for name, field in Settings.model_fields.items()]
+    return "settings from the environment:\n" + "\n".join(f"  {name:<26} {text}" for name, text in rows)
+
+
+def _port(text: str) -> int:
+    number = int(text)
+    if not 0 <= number <= 65535:
+        raise argparse.ArgumentTypeError("a port is a number from 0 to 65535")
+    return number
+
+
+def _at_least(least: int) -> Callable[[str], int]:
+    def number(text: str) -> int:
+        value = int(text)
+        if value < least:
+            raise argparse.ArgumentTypeError(f"must be at least {least}")
+        return value
+
+    return number
+
+
+def _glb(text: str) -> Path:
+    if Path(text).suffix.lower() != ".glb":
+        raise argparse.ArgumentTypeError(f"{text!r} must end in .glb, the one format that is written here")
+    return Path(text)
+
+
+if __name__ == "__main__":
+    sys.exit(main())

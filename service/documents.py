@@ -1,0 +1,127 @@
+"""What the service answers, as types: the OpenAPI document is made of them."""
+
+from datetime import datetime
+from typing import Any, Literal
+
+from pydantic import BaseModel, Field
+
+from service.problems import JobError
+from worker.jobs import Attempt, Canceled, Failed, Job, Outcome, Succeeded
+from worker.queue import Activity
+
+Status = Literal["queued", "running", "succeeded", "failed", "canceled"]
+
+
+class MeshSummary(BaseModel):
+    faces: int
+    vertices: int
+
+
+class JobLinks(BaseModel):
+    """Paths on this server; those of the results answer once the job has succeeded."""
+
+    self: str
+    labels: str
+    hierarchy: str
+    model: str
+    cancel: str
+
+
+class JobDocument(BaseModel):
+    id: str
+    status: Status
+    stage: str | None = Field(description="What a running job is doing.")
+    progress: float = Field(ge=0, le=1, description="The part of the work that is done.")
+    created_at: datetime
+    started_at: datetime | None = Field(description="When the latest attempt began.")
+    finished_at: datetime | None
+    parameters: dict[str, Any] = Field(description="Every parameter of the segmentation, defaults included.")
+    mesh: MeshSummary | None = Field(description="Known when the job has succeeded.")
+    max_segments: int | None = Field(description="The largest number of segments that can be asked for.")
+    automatic_segments: int | None = Field(description="The number of segments where none is asked for.")
+    error: JobError | None = Field(description="Why the job failed.")
+    links: JobLinks
+
+
+class LabelsDocument(BaseModel):
+    segments: int
+    labels: list[int] = Field(description="For every face, in the order of the file, its segment 0..segments-1.")
+
+
+class HierarchyNode(BaseModel):
+    """A segment at some level. Node 0 is the whole mesh."""
+
+    id: int
+    parent: int | None
+    children: list[int] = Field(description="Two, the larger first, or none.")
+    level: int = Field(description="The smallest number of segments at which the node is a segment.")
+    label: int = Field(description="Its label wherever it is a segment.")
+    area: float = Field(description="In squared units of the mesh.")
+    faces: int
+    cut_value: float | None = Field(description="Of the cut that splits the node; null for a leaf.")
+
+
+class HierarchyDocument(BaseModel):
+    max_segments: int
+    automatic_segments: int
+    cut_values: list[float | None] = Field(description="Entry i is of the cut from i + 1 to i + 2 segments.")
+    nodes: list[HierarchyNode]
+
+
+class Health(BaseModel):
+    status: Literal["ok"] = "ok"
+
+
+class Readiness(BaseModel):
+    ready: bool
+    queue: bool = Field(description="The queue server answers.")
+    store: bool = Field(description="The store can be written.")
+    workers: int = Field(description="Workers that are alive.")
+    missing: list[str] = Field(description="What keeps the service from being ready, in sentences.")
+
+
+def job_document(job: Job, outcome: Outcome | None, attempts: list[Attempt], activity: Activity | None) -> JobDocument:
+    """What clients are told about a job; ``activity`` is None where the queue does not answer."""
+    is_running = outcome is None and _is_running(attempts, activity)
+    progress = activity.progress if activity is not None and is_running else None
+    return JobDocument(
+        id=job.id,
+        status=outcome.status if outcome else "running" if is_running else "queued",
+        stage=progress.stage if progress else None,
+        progress=1.0 if isinstance(outcome, Succeeded) else progress.fraction if progress else 0.0,
+        created_at=job.created_at,
+        started_at=attempts[-1].started_at if attempts else None,
+        finished_at=outcome.finished_at if outcome else None,
+        parameters=job.parameters,
+        links=_links(job.id),
+        **_result_fields(outcome),
+    )
+
+
+def _is_running(attempts: list[Attempt], activity: Activity | None) -> bool:
+    if activity is not None:
+        return activity.running
+    return bool(attempts) and attempts[-1].ended_at is None
+
+
+def _result_fields(outcome: Outcome | None) -> dict[str, Any]:
+    fields: dict[str, Any] = {"mesh": None, "max_segments": None, "automatic_segments": None, "error": None}
+    match outcome:
+        case Succeeded(faces=faces, vertices=vertices, max_segments=most, automatic_segments=automatic):
+            mesh = MeshSummary(faces=faces, vertices=vertices)
+            return fields | {"mesh": mesh, "max_segments": most, "automatic_segments": automatic}
+        case Failed(code=code, message=message):
+            return fields | {"error": JobError(code=code, message=message)}
+        case Canceled() | None:
+            return fields
+
+
+def _links(job_id: str) -> JobLinks:
+    path = f"/v1/jobs/{job_id}"
+    return JobLinks(
+        self=path,
+        labels=f"{path}/labels",
+        hierarchy=f"{path}/hierarchy",
+        model=f"{path}/model.glb",
+        cancel=f"{path}/cancel",
+    )

@@ -1,0 +1,53 @@
+"""Whether the service lives, and whether it can do its work."""
+
+from fastapi import APIRouter
+from starlette.responses import Response
+
+from service.context import Context, ContextOf
+from service.documents import Health, Readiness
+from worker.queue import QueueError
+
+router = APIRouter(tags=["health"])
+
+
+@router.get("/healthz", response_model=Health)
+async def get_health() -> Health:
+    """The process answers."""
+    return Health()
+
+
+@router.get(
+    "/readyz", response_model=Readiness, responses={503: {"model": Readiness, "description": "Something is missing."}}
+)
+def get_readiness(response: Response, context: ContextOf) -> Readiness:
+    """A job that is submitted now would be run: the queue answers, the store is writable and a worker is alive."""
+    readiness = _readiness(context)
+    response.status_code = 200 if readiness.ready else 503
+    return readiness
+
+
+def _readiness(context: Context) -> Readiness:
+    workers = _worker_count(context)
+    store = _is_writable(context)
+    sentences = {
+        "The queue server does not answer.": workers is None,
+        "The store cannot be written.": not store,
+        "No worker is ready.": not workers,
+    }
+    missing = [sentence for sentence, applies in sentences.items() if applies]
+    return Readiness(ready=not missing, queue=workers is not None, store=store, workers=workers or 0, missing=missing)
+
+
+def _worker_count(context: Context) -> int | None:
+    try:
+        return context.queue.worker_count()
+    except QueueError:
+        return None
+
+
+def _is_writable(context: Context) -> bool:
+    try:
+        context.store.check_writable()
+    except OSError:
+        return False
+    return True

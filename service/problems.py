@@ -1,0 +1,155 @@
+"""Every error body of the service: problem details as in RFC 9457, with a stable ``code`` for programs."""
+
+import errno
+import json
+import logging
+from collections.abc import Mapping
+from http import HTTPStatus
+from typing import Any
+
+from fastapi import FastAPI, Request
+from fastapi.exceptions import RequestValidationError
+from pydantic import BaseModel, Field
+from starlette.exceptions import HTTPException
+from starlette.requests import ClientDisconnect
+from starlette.responses import Response
+
+from segcore.errors import InvalidParameters
+from worker.queue import QueueError
+from worker.store import UnknownJob
+
+log = logging.getLogger("cleave.service")
+
+MEDIA_TYPE = "application/problem+json"
+
+STATUS = {
+    "malformed_request": 400,
+    "not_found": 404,
+    "job_not_found": 404,
+    "method_not_allowed": 405,
+    "not_finished": 409,
+    "already_finished": 409,
+    "job_failed": 409,
+    "job_canceled": 409,
+    "too_large": 413,
+    "unsupported_media_type": 415,
+    "invalid_mesh": 422,
+    "invalid_parameters": 422,
+    "invalid_request": 422,
+    "internal_error": 500,
+    "queue_unavailable": 503,
+    "storage_full": 507,
+}
+_RETRY_AFTER_S = {"not_finished": 1, "queue_unavailable": 5, "storage_full": 60}
+_DISK_FULL = {errno.ENOSPC, errno.EDQUOT}
+
+
+class JobError(BaseModel):
+    """Why a job failed."""
+
+    code: str = Field(description="Stable, for programs.", examples=["invalid_mesh"])
+    message: str = Field(description="One sentence for people.")
+
+
+class ProblemDocument(BaseModel):
+    """Problem details as in RFC 9457."""
+
+    type: str = Field(examples=["about:blank"])
+    title: str = Field(description="The phrase of the HTTP status.", examples=["Not Found"])
+    status: int = Field(examples=[404])
+    detail: str = Field(description="One sentence that says what to do.")
+    code: str = Field(description="Stable, for programs.", examples=list(STATUS))
+    error: JobError | None = Field(default=None, description="With code job_failed: why the job failed.")
+
+
+class Problem(Exception):  # noqa: N818
+    """An answer that is not what the client asked for; ``code`` is a key of STATUS."""
+
+    def __init__(self, code: str, detail: str, error: JobError | None = None) -> None:
+        super().__init__(detail)
+        self.code = code
+        self.detail = detail
+        self.error = error
+
+    def response(self, headers: Mapping[str, str] | None = None) -> Response:
+        status = STATUS[self.code]
+        document: dict[str, Any] = {
+            "type": "about:blank",
+            "title": _phrase(status),
+            "status": status,
+            "detail": self.detail,
+            "code": self.code,
+        }
+        if self.error is not None:
+            document["error"] = self.error.model_dump()
+        retry = {"Retry-After": str(_RETRY_AFTER_S[self.code])} if self.code in _RETRY_AFTER_S else {}
+        # Pure ASCII: a lone surrogate that a client sent can be quoted, and NaN cannot get in.
+        body = json.dumps(document, ensure_ascii=True, allow_nan=False)
+        return Response(body, status, {**retry, **(headers or {})}, MEDIA_TYPE)
+
+
+def translate(exception: Exception) -> Problem:
+    """The one table in which exceptions meet HTTP."""
+    match exception:
+        case Problem():
+            return exception
+        case UnknownJob():
+            return Problem("job_not_found", "There is no job of this id: it was deleted, or the id is wrong.")
+        case InvalidParameters():
+            return Problem("invalid_parameters", str(exception))
+        case RequestValidationError():
+            return _invalid_request(exception)
+        case HTTPException(status_code=404):
+            return Problem("not_found", "There is nothing at this path: GET /openapi.json lists what there is.")
+        case HTTPException(status_code=405):
+            return Problem("method_not_allowed", "This path does not take this method: see the Allow header.")
+        case ClientDisconnect() | HTTPException():
+            return Problem("malformed_request", "The request could not be read to its end: send it again.")
+        case QueueError():
+            return Problem("queue_unavailable", "The queue does not answer at the moment: try again later.")
+        case OSError(errno=number) if number in _DISK_FULL:
+            return Problem("storage_full", "The disk of the server is full: try again later or tell the operator.")
+    log.error("a request stopped at an error that it does not expect", exc_info=exception)
+    return Problem("internal_error", "The server stopped at an internal error: its log has the details.")
+
+
+def handle_problems(app: FastAPI) -> None:
+    """Have every error of an application answered as a problem."""
+
+    def answer(_: Request, exception: Exception) -> Response:
+        return translate(exception).response(getattr(exception, "headers", None))
+
+    kinds: tuple[type[Exception], ...] = (
+        Problem,
+        UnknownJob,
+        InvalidParameters,
+        RequestValidationError,
+        HTTPException,
+        ClientDisconnect,
+        QueueError,
+        OSError,
+        Exception,
+    )
+    for kind in kinds:
+        app.add_exception_handler(kind, answer)
+
+
+def documented(*codes: str) -> dict[int | str, dict[str, Any]]:
+    """The ``responses`` of a route that may answer with these problems, for the OpenAPI document."""
+    grouped: dict[int | str, dict[str, Any]] = {}
+    for code in codes:
+        status = STATUS[code]
+        entry = grouped.setdefault(status, {"model": ProblemDocument, "description": _phrase(status) + ":"})
+        entry["description"] += f" `{code}`"
+    return grouped
+
+
+def _phrase(status: int) -> str:
+    """The phrase of RFC 9110; Python's own differ from version to version."""
+    return {413: "Content Too Large", 422: "Unprocessable Content"}.get(status) or HTTPStatus(status).phrase
+
+
+def _invalid_request(exception: RequestValidationError) -> Problem:
+    first = exception.errors()[0]
+    place, *path = (str(part) for part in first["loc"])
+    return Problem("invalid_request", f"{' '.join(path)} in the {place} is not valid: {first['msg']}.")

@@ -1,0 +1,91 @@
+"""`cleave serve` and `cleave worker`: the processes of an installation under one supervisor."""
+
+import os
+import socket
+from collections.abc import Callable
+from contextlib import ExitStack
+from pathlib import Path
+from urllib.parse import urlsplit
+
+from service.programs import api_program, queue_server_program, worker_programs
+from service.queue_server import NoQueueServer, embedded_queue_server, stop_orphan
+from service.supervisor import Program, Supervisor, lock_data
+from worker.settings import Settings, load_settings
+
+Say = Callable[[str], None]  # tells the person who gave the command
+
+_BACKLOG = 1024
+
+
+class CannotListen(Exception):  # noqa: N818
+    """The address cannot be listened on; the message says why."""
+
+
+def serve(host: str, port: int, workers: int | None, data_dir: Path | None, say: Say) -> None:
+    """Run the service, its workers and, where no other is named, its queue server, until a signal comes."""
+    settings = load_settings(data_dir=data_dir)
+    count = default_workers() if workers is None else workers
+    with ExitStack() as stack:
+        listening = stack.enter_context(listen(host, port))
+        stack.enter_context(lock_data(settings.data_dir))
+        support: list[Program] = []
+        if settings.redis_url is None:
+            server = embedded_queue_server(settings.data_dir)
+            stop_orphan(server)
+            settings = settings.model_copy(update={"redis_url": server.url})
+            support = [queue_server_program(server)]
+        say(_announcement(settings, count, listening, own_queue=bool(support)))
+        programs = [*support, api_program(settings, listening.fileno()), *worker_programs(settings, count)]
+        Supervisor(programs).run()
+
+
+def work(redis_url: str | None, workers: int | None, data_dir: Path | None, say: Say) -> None:
+    """Run workers and a janitor against a queue server that runs elsewhere, until a signal comes."""
+    settings = load_settings(redis_url=redis_url, data_dir=data_dir)
+    if settings.redis_url is None:
+        raise NoQueueServer("A worker needs the queue server of its service: set CLEAVE_REDIS_URL or give --redis-url.")
+    count = default_workers() if workers is None else workers
+    say(_announcement(settings, count, None, own_queue=False))
+    Supervisor(worker_programs(settings, count)).run()
+
+
+def default_workers() -> int:
+    """One for every core but one, which is left for answering."""
+    cores = len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1
+    return max(1, cores - 1)
+
+
+def listen(host: str, port: int) -> socket.socket:
+    """A listening socket; a port of 0 is one that is free.
+
+    Raises
+    ------
+    CannotListen
+        Where the host is not an address of this machine, or the port is taken.
+    """
+    try:
+        family, _, _, _, address = socket.getaddrinfo(host, port, type=socket.SOCK_STREAM, flags=socket.AI_PASSIVE)[0]
+        return socket.create_server(address[:2], family=family, backlog=_BACKLOG)
+    except OSError as error:
+        raise CannotListen(f"Cannot listen on {host} port {port}: {error.strerror}.") from error
+
+
+def _announcement(settings: Settings, workers: int, listening: socket.socket | None, *, own_queue: bool) -> str:
+    """Where everything is."""
+    lines = {"data": str(settings.data_dir), "queue": _queue_name(settings, own_queue), "workers": str(workers)}
+    if listening is not None:
+        lines = {"listening on": _url(listening), **lines}
+    text = "\n".join(f"  {name:<13} {value}" for name, value in lines.items())
+    return f"Cleave\n{text}\nCtrl-C stops it; what is queued then is finished after the next start."
+
+
+def _url(listening: socket.socket) -> str:
+    host, port = listening.getsockname()[:2]
+    return f"http://[{host}]:{port}" if ":" in host else f"http://{host}:{port}"
+
+
+def _queue_name(settings: Settings, own_queue: bool) -> str:
+    if own_queue:
+        return "a server of its own, in the data folder"
+    parts = urlsplit(settings.redis_url or "")
+    return f"{parts.scheme}://{parts.hostname or ''}{f':{parts.port}' if parts.port else ''}{parts.path}"
