@@ -7,7 +7,7 @@ from segcore.arrays import FloatArray
 from segcore.graph import SurfaceGraph
 from segcore.laplacian import LaplacianFactor, factorise
 
-TOLERANCE = 1e-7  # residual of an eigenvector of the pseudo-inverse of L, relative to its eigenvalue
+TOLERANCE = 1e-5  # residual of an eigenvector of the pseudo-inverse of L, relative to its eigenvalue
 MOST_STEPS = 250  # of Lanczos; eigenvalues that are not told apart by then are equal for every purpose here
 CHECK_EVERY = 3  # steps
 EXHAUSTED = 1e-12  # what is left of a vector, relatively, once the Krylov space is invariant
@@ -34,7 +34,11 @@ def fiedler_vectors(graph: SurfaceGraph, count: int = 1) -> FloatArray:
     ValueError
         Where the graph is not connected: its components are cuts of no cost, to be made first.
     """
-    factor = factorise(graph)
+    return eigenvectors(graph, factorise(graph), count)
+
+
+def eigenvectors(graph: SurfaceGraph, factor: LaplacianFactor, count: int) -> FloatArray:
+    """``fiedler_vectors`` where the factor of the graph's Laplacian is at hand."""
     if factor.component_count != 1:
         raise ValueError("The graph is not connected: cut its components apart first.")
     count = min(count, graph.node_count - 1)

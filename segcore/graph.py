@@ -1,13 +1,16 @@
 """A weighted graph whose nodes have volumes: what every cut is made on."""
 
 from dataclasses import dataclass
-from typing import Any
+from typing import Any, TypeAlias
 
 import numpy as np
 from numba import njit
+from numpy.typing import NDArray
 from scipy.sparse import csr_matrix
 
 from segcore.arrays import FloatArray, IntArray, group_sums
+
+IndexArray: TypeAlias = NDArray[np.uint32]  # unsigned: compiled loops then need not look for negative indices
 
 
 @dataclass(frozen=True, slots=True, eq=False)

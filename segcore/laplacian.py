@@ -6,7 +6,7 @@ import numpy as np
 from numba import njit
 
 from segcore.arrays import FloatArray, IntArray, LongArray
-from segcore.graph import SurfaceGraph
+from segcore.graph import IndexArray, SurfaceGraph
 from segcore.ordering import minimum_degree
 
 
@@ -20,7 +20,7 @@ class LaplacianFactor:
 
     order: IntArray  # (N,) node k of the elimination is node order[k] of the graph
     start: LongArray  # (N + 1,) column k has the entries start[k]..start[k + 1]
-    row: IntArray  # (nnz,) ascending in each column
+    row: IndexArray  # (nnz,) ascending in each column
     share: FloatArray  # (nnz,) the entries of C
     pivot: FloatArray  # (N,)
 
@@ -79,7 +79,7 @@ def _structure(adjacency_start, neighbour, order):  # type: ignore[no-untyped-de
     for k in range(node_count):
         start[k + 1] += start[k]
     filled = start[:node_count].copy()
-    row = np.empty(start[node_count], dtype=np.int32)
+    row = np.empty(start[node_count], dtype=np.uint32)
     visited_by[:] = -1
     for i in range(node_count):
         visited_by[i] = i
