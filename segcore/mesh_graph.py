@@ -33,7 +33,7 @@ def mesh_graph(surface: Surface, parameters: SegmentationParameters) -> MeshGrap
 def face_dual_graph(surface: Surface, parameters: SegmentationParameters) -> MeshGraph:
     """The face dual graph: W = edge length times affinity, the volume of a node is the area of its face.
 
-    A face counts for at least 1e-4 of the mean area and an edge for at least 1e-9 of the mean length, so that degenerate
+    A face counts for at least 1e-4 of the mean area and an edge for 1e-9 of the mean length, so that degenerate
     ones do not vanish from the sums.
     """
     affinity = FACE_AFFINITIES[parameters.affinity](surface, parameters)

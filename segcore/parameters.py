@@ -8,6 +8,7 @@ from segcore.errors import InvalidParameters
 Graph: TypeAlias = Literal["faces", "vertices"]
 Affinity: TypeAlias = Literal["concavity", "minima_rule", "adjacency"]
 Thinning: TypeAlias = Literal["walk", "revisit", "none"]
+Solver: TypeAlias = Literal["flow", "fiedler"]
 Order: TypeAlias = Literal["ncut", "ncc", "volume"]
 
 
@@ -24,6 +25,7 @@ class SegmentationParameters:
     graph: Graph = "faces"  # the nodes of the graph that is cut
     affinity: Affinity = "concavity"  # the weights of its edges
     thinning: Thinning = "none"  # of the concave regions of affinity "minima_rule"
+    solver: Solver = "flow"  # how a segment is cut
     order: Order = "ncut"  # the segment with the least value, or the largest volume, is split next
     max_segments: int = 64  # 1..10000: where the hierarchy ends
     clusters: int = 2500  # 100..100000: nodes of the coarse graph that is cut in place of the mesh; 0: the mesh itself
@@ -33,6 +35,7 @@ class SegmentationParameters:
         _check_choice("graph", self.graph, get_args(Graph))
         _check_choice("affinity", self.affinity, get_args(Affinity))
         _check_choice("thinning", self.thinning, get_args(Thinning))
+        _check_choice("solver", self.solver, get_args(Solver))
         _check_choice("order", self.order, get_args(Order))
         _check_integer("max_segments", self.max_segments, 1, 10_000)
         if self.clusters != 0:

@@ -7,15 +7,14 @@ from heapq import heappop, heappush
 import numpy as np
 
 from segcore.arrays import BoolArray, FloatArray, IntArray, group_sums
-from segcore.cheeger import Cut, cut_of, sweep
+from segcore.cheeger import Cut, cut_of
 from segcore.components import group_by_nearness
-from segcore.fiedler import fiedler_vectors
 from segcore.graph import SurfaceGraph, connected_components
-from segcore.parameters import Order, SegmentationParameters
+from segcore.parameters import SegmentationParameters
+from segcore.solvers import SOLVERS
 
-AUTOMATIC_NCUT = (
-    1.485  # normalized cut times sqrt(total area) from which people no longer cut, on the odd benchmark models
-)
+# The normalized cut times sqrt(total area) from which people no longer cut, on the odd-numbered benchmark models.
+AUTOMATIC_NCUT = 1.485
 _SMALLEST_SIDE = 0.002  # share of the total area below which a part is cut off only after everything else
 
 
@@ -50,6 +49,7 @@ def bisect(
     graph: SurfaceGraph,
     points: FloatArray,
     parameters: SegmentationParameters,
+    rng: np.random.Generator,
     on_split: Callable[[float], None] = lambda _: None,
 ) -> Tree:
     """Part the components of a graph, then cut the segment with the least normalized cut again and again.
@@ -57,17 +57,18 @@ def bisect(
     Parameters
     ----------
     points : (N, 3) positions of the nodes, for the nearness of components.
-    parameters : ``max_segments`` says where to stop (components are parted in any case), ``order`` which is next.
+    parameters : ``max_segments`` says where to stop (components are parted in any case), ``order`` which segment is
+        next, ``solver`` how a segment is cut.
+    rng : for the solvers with random starts.
     on_split : called with the fraction of ``max_segments`` that is reached.
 
     Notes
     -----
-    Volumes stay those of the whole graph. A cut is found by the sweep of the second eigenvector for the least
-    normalized Cheeger cut, and made to have two connected sides. A cut whose smaller side has less than 0.2 % of the
-    total volume is made after all others.
+    Volumes stay those of the whole graph. Every cut is made to have two connected sides. A cut whose smaller side has
+    less than 0.2 % of the total volume is made after all others.
     """
     component = connected_components(graph)
-    tree = _GrowingTree(graph, parameters.order)
+    tree = _GrowingTree(graph, parameters, rng)
     for node, members in tree.part_components(component, group_by_nearness(points, component)):
         tree.add(node, _Segment(members, graph.subgraph(members)))
     while tree.segments < parameters.max_segments and tree.split_next():
@@ -78,8 +79,9 @@ def bisect(
 class _GrowingTree:
     """The state of a best-first bisection."""
 
-    def __init__(self, graph: SurfaceGraph, order: Order) -> None:
-        self._order = order
+    def __init__(self, graph: SurfaceGraph, parameters: SegmentationParameters, rng: np.random.Generator) -> None:
+        self._parameters = parameters
+        self._rng = rng
         self._volume = graph.volume
         self._total = graph.total_volume
         self._split_node: list[int] = []
@@ -119,7 +121,8 @@ class _GrowingTree:
             self._candidates[node] = self._best_cut(segment.graph)
             if not self._candidates[node].late:
                 heappush(
-                    self._queue, (False, -volume if self._order == "volume" else self._candidates[node].value, node)
+                    self._queue,
+                    (False, -volume if self._parameters.order == "volume" else self._candidates[node].value, node),
                 )
                 return
         heappush(self._queue, (True, -volume, node))
@@ -153,9 +156,10 @@ class _GrowingTree:
         return 2 * len(self._split_node) - 1, 2 * len(self._split_node)
 
     def _best_cut(self, graph: SurfaceGraph) -> _Candidate:
-        cut = with_connected_sides(graph, sweep(graph, fiedler_vectors(graph)[:, 0]))
+        cut = SOLVERS[self._parameters.solver](graph, self._parameters, self._rng)
+        cut = with_connected_sides(graph, cut)
         late = min(cut.inside, cut.outside) < _SMALLEST_SIDE * self._total
-        value = cut.ncc if self._order == "ncc" else cut.ncut
+        value = cut.ncc if self._parameters.order == "ncc" else cut.ncut
         return _Candidate(cut, value * np.sqrt(self._total), late)
 
 

@@ -43,7 +43,7 @@ def segment(
     on_progress("coarsen", 0.45)
     clusters = cluster_nodes(nodes, chosen.clusters, chosen.max_segments // 2, rng)
     on_progress("cut", 0.6)
-    tree = bisect(clusters.graph, clusters.points, chosen, lambda done: on_progress("cut", 0.6 + 0.35 * done))
+    tree = bisect(clusters.graph, clusters.points, chosen, rng, lambda done: on_progress("cut", 0.6 + 0.35 * done))
     on_progress("label", 0.95)
     tree = project(tree, clusters.of_node[nodes.corners], surface.face_graph())
     hierarchy = _of_input(surface, tree)

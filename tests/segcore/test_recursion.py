@@ -24,6 +24,11 @@ def graphs(draw):
     return SurfaceGraph(graph.edges, rng.uniform(0.1, 2, len(graph.edges)), rng.uniform(0.2, 2, count))
 
 
+def grown(graph, max_segments):
+    rng = np.random.default_rng(0)
+    return bisect(graph, rng.random((graph.node_count, 3)), SegmentationParameters(max_segments=max_segments), rng)
+
+
 def is_connected(graph, nodes):
     return connected_components(graph.subgraph(np.flatnonzero(nodes).astype(np.int32))).max() == 0
 
@@ -31,9 +36,7 @@ def is_connected(graph, nodes):
 @settings(max_examples=80)
 @given(graphs())
 def test_every_segment_of_every_level_is_connected_within_its_component(graph):
-    tree = bisect(
-        graph, np.random.default_rng(0).random((graph.node_count, 3)), SegmentationParameters(max_segments=50)
-    )
+    tree = grown(graph, 50)
     components = int(connected_components(graph).max()) + 1
     nodes = 2 * len(tree.split_node) + 1
     below = {node: {node} for node in range(nodes)}
@@ -46,7 +49,7 @@ def test_every_segment_of_every_level_is_connected_within_its_component(graph):
 @settings(max_examples=80)
 @given(graphs())
 def test_splitting_ends_when_every_segment_is_one_node(graph):
-    tree = bisect(graph, np.zeros((graph.node_count, 3)), SegmentationParameters(max_segments=10_000))
+    tree = grown(graph, 10_000)
     assert len(tree.split_node) + 1 == graph.node_count
     assert len(set(tree.leaf)) == graph.node_count
 
@@ -69,9 +72,7 @@ def test_the_least_normalized_cut_is_made_first():
     graph = graph_of([*cliques, (4, 5), (9, 10)], 15)
     weight = np.where((graph.edges == [9, 10]).all(axis=1), 0.5, graph.weight)
     weight[(graph.edges == [4, 5]).all(axis=1)] = 0.1
-    tree = bisect(
-        SurfaceGraph(graph.edges, weight, graph.volume), np.zeros((15, 3)), SegmentationParameters(max_segments=3)
-    )
+    tree = grown(SurfaceGraph(graph.edges, weight, graph.volume), 3)
     np.testing.assert_array_equal(tree.split_node, [0, 1])
     np.testing.assert_array_equal(tree.leaf, np.repeat([2, 3, 4], 5))
     np.testing.assert_allclose(tree.cut_value, np.sqrt(15) * np.array([0.1 * (1 / 5 + 1 / 10), 0.5 * (1 / 5 + 1 / 5)]))
@@ -80,7 +81,7 @@ def test_the_least_normalized_cut_is_made_first():
 def test_the_automatic_number_counts_the_cuts_below_the_threshold():
     cliques = [(5 * c + i, 5 * c + j) for c in range(4) for i in range(5) for j in range(i)]
     graph = graph_of([*cliques, (4, 5), (9, 10), (14, 15)], 20)
-    tree = bisect(graph, np.zeros((20, 3)), SegmentationParameters(max_segments=20))
+    tree = grown(graph, 20)
     below = np.argmax(tree.cut_value >= AUTOMATIC_NCUT)
     assert tree.automatic_segments == below + 1
     assert 1 < tree.automatic_segments < 20
@@ -89,6 +90,6 @@ def test_the_automatic_number_counts_the_cuts_below_the_threshold():
 def test_a_side_of_less_than_a_five_hundredth_waits_for_all_others():
     """A tiny node on a thread beside two halves joined by a band: the thread is by far the better cut."""
     graph = graph_of([(0, 1), (1, 2)], 3, np.array([0.5, 1e-9]), np.array([1.0, 1.0, 0.001]))
-    tree = bisect(graph, np.zeros((3, 3)), SegmentationParameters(max_segments=3))
+    tree = grown(graph, 3)
     assert tree.leaf[1] != tree.leaf[2]
     assert tree.split_node[1] == np.flatnonzero(np.isin(np.arange(5), [1, 2]) & ~np.isin(np.arange(5), tree.leaf))[0]
