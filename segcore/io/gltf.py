@@ -44,12 +44,11 @@ def read_gltf(data: bytes, limits: ReadLimits) -> Mesh:
     """
     document = read_document(data)
     accessors = Accessors(document)
-    with np.errstate(all="ignore"):  # what leaves the range of floating point numbers is refused as not finite
-        instances = mesh_instances(document)
-        primitives = {mesh: _primitives(document, accessors, mesh) for mesh in {at.mesh for at in instances}}
-        parts = [(instance, primitive) for instance in instances for primitive in primitives[instance.mesh]]
-        limits.check_faces(sum(primitive.face_count for _, primitive in parts))
-        return _assemble(parts, accessors, limits)
+    instances = mesh_instances(document)
+    primitives = {mesh: _primitives(document, accessors, mesh) for mesh in {at.mesh for at in instances}}
+    parts = [(instance, primitive) for instance in instances for primitive in primitives[instance.mesh]]
+    limits.check_faces(sum(primitive.face_count for _, primitive in parts))
+    return _assemble(parts, accessors, limits)
 
 
 def _primitives(document: Document, accessors: Accessors, mesh: int) -> list[_Primitive]:

@@ -15,7 +15,7 @@ from segcore.mesh import Mesh
 
 _CONTINUATION = re.compile(rb"\\[ \t\r]*\n")
 _COORDINATE = re.compile(r"[-+]?(\d+\.?\d*|\.\d+)([eE][-+]?\d+)?")
-_CORNER = re.compile(r"-?\d+(/-?\d*){0,2}")
+_CORNER = re.compile(r"[-+]?\d+(/-?\d*){0,2}")
 _SPACE, _SLASH = 32, 47
 _IN_SUFFIX = np.isin(np.arange(256), list(b"/-0123456789"))
 
@@ -86,9 +86,11 @@ def _numbers(
     """The numbers after the keyword on the selected lines, of ``7/8/9`` the first."""
     text = words.text_of_lines(selected)
     if text.count(keyword) == len(counts):
-        text = text.replace(keyword, b" ")
         try:
-            return parse_numbers(_without_suffixes(text) if b"/" in text else text, int(counts.sum()), dtype)
+            text = text.replace(keyword, b" ")
+            if keyword == b"f" and b"/" in text:
+                text = _without_suffixes(text)
+            return parse_numbers(text, int(counts.sum()), dtype)
         except ValueError:
             pass
     raise _unreadable(words, selected, _CORNER if keyword == b"f" else _COORDINATE)

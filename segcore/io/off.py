@@ -19,8 +19,9 @@ _KEYWORD = re.compile(rb"\s*+(ST)?(C)?(N)?(4)?(n)?OFF(\s+BINARY)?")
 def read_off(data: bytes, limits: ReadLimits) -> Mesh:
     """Read an OFF file, also with the prefixes ST, C and N, whose texture, colours and normals are passed over.
 
-    Every vertex is on a line of its own, or the lines do not matter and it has as many numbers as the prefixes say. A
-    face ends with its line: what follows its indices there is its colour.
+    A vertex has as many numbers as the prefixes say, in whatever lines; where the file makes no sense so, each vertex
+    is a line, and what follows its coordinates there is passed over. A face ends with its line: what follows its
+    indices there is its colour.
 
     The last number of a file that lacks the newline at its end cannot be told from one that is cut short within it.
 
@@ -40,15 +41,14 @@ def read_off(data: bytes, limits: ReadLimits) -> Mesh:
     words = find_words(b" " * keyword.end() + text[keyword.end() :])
     vertex_count, face_count = _counts(words, limits)
     width = 3 + (2 if texture else 0) + (4 if color else 0) + (3 if normal else 0)
-    layouts = (_vertex_lines(words, vertex_count), _vertex_words(words, vertex_count, width))
     problem = InvalidMesh(f"The OFF file ends within its {vertex_count} vertices: it is cut short.")
-    for number, first in enumerate(layout for layout in layouts if layout is not None):
+    for first in (_vertex_words(words, vertex_count, width), _vertex_lines(words, vertex_count)):
         try:
-            polygons = _polygons(words, int(first[-1]), face_count)
+            if first is not None:
+                polygons = _polygons(words, int(first[-1]), face_count)
+                return mesh_of_polygons(_vertices(words, first), polygons, limits)
         except InvalidMesh as error:
-            problem = problem if number else error
-        else:
-            return mesh_of_polygons(_vertices(words, first), polygons, limits)
+            problem = error
     raise problem
 
 
@@ -69,19 +69,19 @@ def _counts(words: Words, limits: ReadLimits) -> tuple[int, int]:
     return vertex_count, face_count
 
 
+def _vertex_words(words: Words, count: int, width: int) -> LongArray | None:
+    """The first word of every vertex and the one after the last, or None where there are too few."""
+    first = 3 + width * np.arange(count + 1, dtype=np.int64)
+    return first if first[-1] <= words.count else None
+
+
 def _vertex_lines(words: Words, count: int) -> LongArray | None:
-    """The first word of every vertex and the one after the last, or None where vertices are not lines."""
+    """The same where every vertex is a line, or None where it is not."""
     body = int(np.searchsorted(words.line_start, 3))
     first = words.line_start[body : body + count + 1]
     if len(first) <= count or first[0] != 3 or (np.diff(first) < 3).any():
         return None
     return first
-
-
-def _vertex_words(words: Words, count: int, width: int) -> LongArray | None:
-    """The same where the lines do not matter."""
-    first = 3 + width * np.arange(count + 1, dtype=np.int64)
-    return first if first[-1] <= words.count else None
 
 
 def _vertices(words: Words, first: LongArray) -> FloatArray:

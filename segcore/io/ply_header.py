@@ -106,6 +106,8 @@ def read_header(data: bytes) -> Header:
 
 def _split(data: bytes) -> tuple[list[str], int]:
     """The lines before ``end_header``, and where the one after it begins."""
+    if not data.startswith((b"ply\n", b"ply\r")):
+        raise InvalidMesh("The file does not begin with the word 'ply': send a PLY file, or name its real format.")
     newline = b"\r\n" if data.startswith(b"ply\r\n") else data[3:4]
     end = data.find(newline + b"end_header")
     after = data.find(newline, end + len(newline))

@@ -4,6 +4,8 @@ import os
 from collections.abc import Callable
 from typing import BinaryIO
 
+import numpy as np
+
 from segcore.io.formats import declared_format, detect_format
 from segcore.io.gltf import read_gltf
 from segcore.io.limits import ReadLimits
@@ -57,4 +59,6 @@ def read_mesh(
     limits = limits or ReadLimits()
     declared = declared_format(source, format)
     data = read_source(source, limits)
-    return _READERS[detect_format(data, declared)](data, limits)
+    reader = _READERS[detect_format(data, declared)]
+    with np.errstate(all="ignore"):  # what leaves the range of floating point numbers is refused as not finite
+        return reader(data, limits)

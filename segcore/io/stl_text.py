@@ -73,7 +73,8 @@ def _solid_lines(words: Words) -> BoolArray:
 
 
 def _has_keywords(words: Words, lines: LongArray) -> bool:
-    return all(words.equal(lines[:, i], keyword).all() for i, keyword in enumerate(_KEYWORDS))
+    first = all(words.equal(lines[:, i], keyword).all() for i, keyword in enumerate(_KEYWORDS))
+    return bool(first and words.equal(lines[:, 0] + 1, b"normal").all() and words.equal(lines[:, 1] + 1, b"loop").all())
 
 
 def _read_any_layout(text: bytes, limits: ReadLimits) -> Mesh:
