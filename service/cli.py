@@ -150,7 +150,8 @@ class _Version(argparse.Action):
     def __call__(self, parser: argparse.ArgumentParser, *_: object) -> None:
         from service.app import installed_version
 
-        parser.exit(message=f"cleave {installed_version()}\n")
+        _say(f"cleave {installed_version()}")
+        parser.exit()
 
 
 def _settings_help() -> str:

@@ -6,10 +6,10 @@ import shutil
 import stat
 import tempfile
 import time
+from contextlib import suppress
 from dataclasses import dataclass
 from pathlib import Path
 
-from redis import Redis
 from redis.exceptions import RedisError
 
 from worker.queue import connect_impatiently
@@ -30,9 +30,16 @@ class QueueServer:
     url: str
     socket: Path
 
+    def clear_away(self) -> None:
+        """Remove the socket of a server that has ended, and the folder that was made for it alone."""
+        self.socket.unlink(missing_ok=True)
+        with suppress(OSError):  # it holds the server's files
+            self.socket.parent.rmdir()
+
     def is_answering(self) -> bool:
         try:
-            return bool(connect_impatiently(self.url).ping())
+            with connect_impatiently(self.url) as connection:
+                return bool(connection.ping())
         except RedisError:
             return False
 
@@ -85,8 +92,8 @@ def stop_orphan(server: QueueServer) -> None:
     """End a server of an earlier supervisor that still has the files open."""
     if not server.is_answering():
         return
-    connection: Redis = connect_impatiently(server.url)
-    connection.shutdown(nosave=True)
+    with connect_impatiently(server.url) as connection:
+        connection.shutdown(nosave=True)
     gives_up_at = time.monotonic() + _ORPHAN_PATIENCE_S
     while server.is_answering():
         if time.monotonic() > gives_up_at:

@@ -58,10 +58,12 @@ def segment_file(request: SegmentRequest) -> list[str]:
 
 def _parameters(request: SegmentRequest) -> segcore.SegmentationParameters:
     """The number of segments that is wanted must be within the hierarchy, also where nobody said how far it goes."""
-    if request.segments is not None and request.segments < 1:
-        raise segcore.InvalidParameters(f"The number of segments must be at least 1, not {request.segments}.")
     most = segcore.SegmentationParameters().max_segments if request.max_segments is None else request.max_segments
-    return segcore.SegmentationParameters(max_segments=max(most, request.segments or 1))
+    if request.segments is None:
+        return segcore.SegmentationParameters(max_segments=most)
+    if request.segments < 1:
+        raise segcore.InvalidParameters(f"The number of segments must be at least 1, not {request.segments}.")
+    return segcore.SegmentationParameters(max_segments=max(most, request.segments))
 
 
 def _check_folders(request: SegmentRequest) -> None:

@@ -32,6 +32,7 @@ def serve(host: str, port: int, workers: int | None, data_dir: Path | None, say:
         if settings.redis_url is None:
             server = embedded_queue_server(settings.data_dir)
             stop_orphan(server)
+            stack.callback(server.clear_away)
             settings = settings.model_copy(update={"redis_url": server.url})
             support = [queue_server_program(server)]
         say(_announcement(settings, count, listening, own_queue=bool(support)))

@@ -178,6 +178,8 @@ class JobWorker(Worker):  # type: ignore[misc]  # rq is not analysed
 
     def _settle(self, job_id: str) -> None:
         """Leave the queue as the store says: nothing of a job that has ended, another entry for one that has not."""
+        outcome = self._store.outcome(job_id)
+        log.info("job %s: %s", job_id, outcome.status if outcome else "no outcome")
         self._queue.release(job_id, self.name)
         if self._is_open(job_id):
             self._queue.requeue(job_id, at_front=True)

@@ -45,7 +45,7 @@ class Activity:
     progress: Progress | None
 
 
-def connect_impatiently(url: str, timeout_s: float = 1.0) -> Redis:
+def connect_impatiently(url: str, timeout_s: float = 0.9) -> Redis:
     """A connection for callers that have something better to do than to wait: an error within about two timeouts."""
     return Redis.from_url(url, socket_timeout=timeout_s, socket_connect_timeout=timeout_s, retry=Retry(NoBackoff(), 1))
 

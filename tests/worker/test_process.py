@@ -54,7 +54,7 @@ def horse_of(worker: "subprocess.Popen[bytes]") -> int:
 
 
 def submitted(store: LocalStore, queue: JobQueue, **parameters: object) -> Job:
-    job = accepted(store, sphere(150 if parameters else 20), **parameters)
+    job = accepted(store, sphere(100 if parameters else 20), **parameters)
     queue.enqueue(job.id)
     return job
 

@@ -1,0 +1,109 @@
+"""Nothing that was accepted is lost, whichever process dies, and nothing is left behind when all of them shall go."""
+
+import json
+import os
+import signal
+import socket
+from pathlib import Path
+
+import pytest
+
+from end_to_end.installation import Installation
+from support import LONG, sphere, wait_until
+
+SECONDS = json.dumps({"clusters": 20_000, "max_segments": 300})  # with sphere(100), a second or so of work
+
+
+def results(installation: Installation) -> set[bytes]:
+    return {file.read_bytes() for file in installation.data_dir.glob("jobs/*/result.cleave")}
+
+
+def kill_one(pids: list[int]) -> None:
+    os.kill(pids[0], signal.SIGKILL)
+
+
+def test_killing_a_work_horse_a_worker_and_the_queue_server_loses_no_job() -> None:
+    with Installation() as installation:
+        paths = [installation.submit(sphere(100), SECONDS) for _ in range(20)]
+        wait_until(installation.horses)
+        kill_one(installation.horses())
+        wait_until(lambda: "succeeded" in installation.statuses(paths))
+        wait_until(installation.horses)
+        kill_one(installation.children("worker.process"))
+        wait_until(installation.horses)
+        kill_one(installation.children("queue.sock"))
+        assert {"queued", "running"} <= installation.statuses(paths)
+        wait_until(lambda: installation.statuses(paths) == {"succeeded"}, within_s=120)
+        assert len(results(installation)) == 1  # what was run twice came out the same
+
+
+@pytest.mark.parametrize("signals", [[signal.SIGTERM], [signal.SIGINT], [signal.SIGKILL]])
+def test_a_restart_finishes_what_was_queued_and_running(signals: list[signal.Signals]) -> None:
+    with Installation() as installation:
+        paths = [installation.submit(sphere(100), json.dumps(LONG)) for _ in range(2)]
+        paths += [installation.submit(sphere(20)) for _ in range(6)]
+        wait_until(lambda: len(installation.horses()) == 2)
+        if signals == [signal.SIGKILL]:
+            installation.kill()
+        else:
+            assert installation.stop(signals[0]) == 0
+        wait_until(lambda: not installation.processes(), within_s=10)
+        installation.start()
+        wait_until(lambda: installation.statuses(paths) == {"succeeded"}, within_s=120)
+
+
+def test_a_signal_to_all_processes_at_once_fails_no_job() -> None:
+    with Installation() as installation:
+        path = installation.submit(sphere(100), json.dumps(LONG))
+        wait_until(installation.horses)
+        for pid in installation.processes():
+            os.kill(pid, signal.SIGTERM)
+        assert installation.wait() == 0
+        wait_until(lambda: not installation.processes(), within_s=10)
+        installation.start()
+        wait_until(lambda: installation.status(path) == "succeeded", within_s=120)
+
+
+def test_a_second_service_on_the_same_data_is_refused() -> None:
+    with Installation(workers=1) as installation:
+        second = installation.command("serve", "--port", "0")
+        output, _ = second.communicate(timeout=60)
+        assert (second.returncode, output) == (2, "")
+        assert installation.is_ready()
+
+
+def test_a_taken_port_is_refused_before_anything_starts() -> None:
+    installation = Installation()
+    with socket.create_server(("127.0.0.1", 0)) as taken:
+        process = installation.command("serve", "--port", str(taken.getsockname()[1]))
+        output, _ = process.communicate(timeout=60)
+        assert (process.returncode, output) == (2, "")
+    assert list(installation.data_dir.iterdir()) == []
+    installation.data_dir.rmdir()
+
+
+def test_workers_alone_do_the_jobs_of_a_service_elsewhere() -> None:
+    with Installation(workers=1) as installation:
+        url = f"unix://{installation.data_dir}/queue/queue.sock"
+        for worker in installation.children("worker.process"):
+            os.kill(worker, signal.SIGSTOP)
+        workers = installation.command("worker", "--redis-url", url, "--workers", "1")
+        try:
+            path = installation.submit(sphere(20))
+            wait_until(lambda: installation.status(path) == "succeeded")
+        finally:
+            workers.terminate()
+            assert workers.wait(60) == 0
+            assert workers.stdout is not None
+            workers.stdout.close()
+
+
+def test_a_long_path_to_the_data_needs_no_long_socket_path(tmp_path: Path) -> None:
+    installation = Installation(workers=1)
+    installation.data_dir.rmdir()
+    installation.data_dir = tmp_path / ("long" * 20) / "with spaces"
+    with installation:
+        path = installation.submit(sphere(12))
+        wait_until(lambda: installation.status(path) == "succeeded")
+        installation.stop()
+        assert not (installation.data_dir / "queue" / "queue.sock").exists()

@@ -1,0 +1,69 @@
+"""The queue server that comes along: found, reachable by a short path, and private."""
+
+import os
+import stat
+import subprocess
+from pathlib import Path
+
+import pytest
+
+from service import queue_server
+from service.queue_server import NoQueueServer, embedded_queue_server, find_server_binary, socket_path, stop_orphan
+from support import wait_until
+
+
+def test_without_a_binary_the_error_says_what_to_set(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
+    monkeypatch.setattr(queue_server, "_packaged_binary", lambda: None)
+    monkeypatch.setenv("PATH", str(tmp_path))
+    with pytest.raises(NoQueueServer, match="CLEAVE_REDIS_URL"):
+        find_server_binary()
+    redis = tmp_path / "redis-server"
+    redis.touch(mode=0o755)
+    assert find_server_binary() == redis
+
+
+def test_a_socket_path_is_never_too_long_for_the_kernel(tmp_path: Path) -> None:
+    folder = tmp_path / ("long" * 30)
+    path = socket_path(folder)
+    assert len(os.fsencode(path)) <= 100
+    assert path == socket_path(folder)
+    assert path != socket_path(folder / "other")
+    assert stat.S_IMODE(path.parent.stat().st_mode) == 0o700
+    for created in (path, socket_path(folder / "other")):
+        created.parent.rmdir()
+
+
+def test_a_folder_that_others_can_write_is_not_used_for_the_socket(tmp_path: Path) -> None:
+    folder = tmp_path / ("long" * 30)
+    short = socket_path(folder).parent
+    short.chmod(0o777)
+    try:
+        with pytest.raises(NoQueueServer, match="must belong to this user alone"):
+            socket_path(folder)
+    finally:
+        short.rmdir()
+
+
+def test_the_server_keeps_its_queue_over_a_kill_and_listens_on_no_network(tmp_path: Path) -> None:
+    server = embedded_queue_server(tmp_path / "data with spaces")
+    for number in range(2):
+        with subprocess.Popen(server.command) as process:
+            wait_until(server.is_answering)
+            with queue_server.connect_impatiently(server.url, timeout_s=10) as connection:
+                assert connection.llen("list") == number
+                connection.rpush("list", "entry")
+                settings = connection.config_get()
+            process.kill()
+    assert (settings["port"], settings["maxmemory-policy"], settings["appendonly"]) == ("0", "noeviction", "yes")
+    assert not server.is_answering()
+    server.clear_away()
+
+
+def test_a_server_that_was_left_behind_is_ended_first(tmp_path: Path) -> None:
+    server = embedded_queue_server(tmp_path)
+    stop_orphan(server)
+    with subprocess.Popen(server.command) as process:
+        wait_until(server.is_answering)
+        stop_orphan(server)
+        assert process.wait(30) == 0
+    server.clear_away()

@@ -1,0 +1,70 @@
+"""The supervisor: what dies is started again, what shall end ends, and one supervisor has a data folder."""
+
+import signal
+import subprocess
+import sys
+import textwrap
+import time
+from pathlib import Path
+
+import pytest
+
+from service.supervisor import DataInUse, lock_data
+from support import children_of, is_alive, wait_until
+
+
+def supervise(tmp_path: Path, *programs: str) -> "subprocess.Popen[bytes]":
+    """A process that supervises Python programs, each given by its source."""
+    sources = []
+    for number, source in enumerate(programs):
+        path = tmp_path / f"program{number}.py"
+        path.write_text(textwrap.dedent(source))
+        sources.append(str(path))
+    script = textwrap.dedent(
+        f"""
+        import sys
+        from service.supervisor import Program, Supervisor
+        Supervisor(Program(path, [sys.executable, path], grace_s=1.0) for path in {sources!r}).run()
+        """
+    )
+    return subprocess.Popen([sys.executable, "-c", script], stderr=subprocess.DEVNULL)
+
+
+FOREVER = "import time\ntime.sleep(1000)"
+STUBBORN = "import signal, time\nsignal.signal(signal.SIGTERM, signal.SIG_IGN)\ntime.sleep(1000)"
+
+
+def test_a_program_that_dies_is_started_again_after_growing_pauses(tmp_path: Path) -> None:
+    starts = tmp_path / "starts"
+    began_at = time.monotonic()
+    with supervise(tmp_path, f"print('start', file=open({str(starts)!r}, 'a'))") as supervisor:
+        wait_until(lambda: starts.exists() and starts.read_text().count("start") >= 3)
+        assert time.monotonic() - began_at > 1 + 2
+        supervisor.terminate()
+        assert supervisor.wait(30) == 0
+
+
+@pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM])
+def test_a_signal_ends_all_programs_also_stubborn_ones(tmp_path: Path, number: signal.Signals) -> None:
+    with supervise(tmp_path, FOREVER, STUBBORN) as supervisor:
+        wait_until(lambda: len(children_of(supervisor.pid)) == 2)
+        children = children_of(supervisor.pid)
+        supervisor.send_signal(number)
+        assert supervisor.wait(30) == 0
+    assert not any(is_alive(child) for child in children)
+
+
+def test_a_killed_supervisor_takes_its_programs_along(tmp_path: Path) -> None:
+    with supervise(tmp_path, FOREVER, STUBBORN) as supervisor:
+        wait_until(lambda: len(children_of(supervisor.pid)) == 2)
+        children = children_of(supervisor.pid)
+        supervisor.kill()
+    wait_until(lambda: not any(is_alive(child) for child in children), within_s=10)
+
+
+def test_a_data_folder_has_one_holder_at_a_time(tmp_path: Path) -> None:
+    data_dir = tmp_path / "data"
+    with lock_data(data_dir), pytest.raises(DataInUse, match=str(data_dir)):
+        lock_data(data_dir)
+    with lock_data(data_dir):
+        pass
