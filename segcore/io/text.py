@@ -11,6 +11,9 @@ from numpy.typing import NDArray
 from segcore.arrays import BoolArray, FloatArray, LongArray
 from segcore.errors import InvalidMesh
 
+_WHITE_SPACE = b" \t\n\v\f\r"
+_NO_CONTROLS = _WHITE_SPACE + bytes(range(33, 256))
+_FILLING = b"\0\x1a"  # blocks that were not full, and the end of a file in DOS
 _SPACE = 32  # this byte and all below it separate words
 _NEWLINE = 10
 _BLOCK = 2**20  # bytes that are looked at together, so that the helper arrays stay in the cache
@@ -82,7 +85,20 @@ class Words:
 
 
 def plain_text(data: bytes) -> bytes:
-    """The text with every line ended by a newline byte and without a byte order mark; no offset changes."""
+    """The text with every line ended by a newline byte, without a byte order mark and bytes that only fill up its end.
+
+    No offset changes.
+
+    Raises
+    ------
+    InvalidMesh
+        Where there are control characters in it: it is damaged or no text.
+    """
+    data = data.rstrip(_FILLING)
+    if controls := data.translate(None, _NO_CONTROLS):
+        raise InvalidMesh(
+            f"Byte {data.index(controls[0])}: the file has a control character in its text: it is damaged."
+        )
     if b"\r" in data and b"\n" not in data:
         data = data.replace(b"\r", b"\n")
     return b"   " + data[3:] if data.startswith(b"\xef\xbb\xbf") else data

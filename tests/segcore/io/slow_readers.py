@@ -40,7 +40,8 @@ def checked(vertices: list[Point], faces: list[Triangle]) -> Result:
 
 
 def lines_of(data: bytes) -> list[bytes]:
-    data = data.removeprefix(b"\xef\xbb\xbf")
+    data = data.rstrip(b"\0\x1a").removeprefix(b"\xef\xbb\xbf")
+    assert not re.search(rb"[\x00-\x08\x0e-\x1f]", data)
     return (data if b"\n" in data else data.replace(b"\r", b"\n")).split(b"\n")
 
 
@@ -124,9 +125,10 @@ _PLY = {
 
 def slow_ply(data: bytes) -> Result:
     newline = b"\r\n" if data[3:5] == b"\r\n" else data[3:4]
-    header, end, body = data.partition(newline + b"end_header" + newline)
-    assert header.startswith(b"ply")
+    end = re.search(newline + rb"end_header[ \t\v\f]*" + newline, data)
     assert end
+    header, body = data[: end.start()], data[end.end() :]
+    assert header.startswith(b"ply")
     elements: list[tuple[bytes, int, list[list[bytes]]]] = []
     encoding = b""
     for line in header.split(newline)[1:]:
@@ -186,7 +188,7 @@ def _ply_row(properties: list[list[bytes]], take: Callable[[str], float]) -> dic
 
 
 def _take_words(body: bytes) -> Callable[[str], float]:
-    words = iter(body.split())
+    words = iter(body.rstrip(b"\0\x1a").split())
 
     def take(_: str) -> float:
         word = next(words, None)

@@ -77,11 +77,24 @@ def test_a_cut_file_is_never_half_read() -> None:
         SQUARE.replace(b"OFF\n", b"OFF"),
         SQUARE.replace(b"\n", b"\r"),
         b"\xef\xbb\xbf" + SQUARE,
+        SQUARE + b"\0" * 500,
+        SQUARE + b"\x1a",
         b"# a comment before the keyword\n\n" + SQUARE,
         b"C" + SQUARE.replace(b"0\n", b"0 10 20 30\n").replace(b"0 10 20 30\n0", b"0\n0", 1),
         SQUARE.replace(b"0\n1 0 0", b"0 0.5 0.5 0.5\n1 0 0 0.5 0.5 0.5"),
     ],
-    ids=["no end of line", "counts on the first line", "counts glued on", "CR", "BOM", "comment", "RGB", "undeclared"],
+    ids=[
+        "no end of line",
+        "counts on the first line",
+        "counts glued on",
+        "CR",
+        "BOM",
+        "NUL",
+        "DOS",
+        "comment",
+        "RGB",
+        "undeclared",
+    ],
 )
 def test_usual_variants_are_read(data: bytes) -> None:
     assert_is_soup(read(data), SOUP)
@@ -105,6 +118,7 @@ def test_a_polygon_without_area_has_no_faces_but_keeps_its_number() -> None:
     ("old", "new", "message"),
     [
         (b"1 1 0", b"1 x 0", "Line 5: 'x' is not a number"),
+        (b"1 1 0", b"1 1\x000", "Byte 25: .* control character"),
         (b"1 1 0", b"1 nan 0", "not finite"),
         (b"1 1 0", b"1 1e999 0", "not finite"),
         (b"3 0 2 3", b"3 0 2 4", "outside 0..3"),
