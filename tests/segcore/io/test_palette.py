@@ -1,0 +1,45 @@
+"""The colours of segments."""
+
+import numpy as np
+
+from segcore.io.palette import linear_rgb, segment_colors
+
+# How a deuteranope sees sRGB values: Vienot, Brettel and Mollon 1999, another model than the one that made the palette.
+_TO_LMS = np.array([[17.8824, 43.5161, 4.11935], [3.45565, 27.1554, 3.86714], [0.0299566, 0.184309, 1.46709]])
+_DEUTERANOPE = np.array([[1, 0, 0], [0.494207, 0, 1.24827], [0, 0, 1]])
+_PROTANOPE = np.array([[0, 2.02344, -2.52581], [0, 1, 0], [0, 0, 1]])
+
+
+def closest(colors: np.ndarray) -> float:
+    distance = np.linalg.norm(colors[:, None] - colors[None], axis=2)
+    return float(distance[~np.eye(len(colors), dtype=bool)].min())
+
+
+def test_the_colour_of_a_label_does_not_depend_on_how_many_there_are() -> None:
+    longest = segment_colors(300)
+    assert longest.shape == (300, 3)
+    assert (longest >= 0).all()
+    assert (longest <= 1).all()
+    for n in (0, 1, 7, 64, 299):
+        assert np.array_equal(segment_colors(n), longest[:n])
+
+
+def test_colours_of_the_first_256_labels_differ() -> None:
+    assert len(np.unique(segment_colors(256), axis=0)) == 256
+
+
+def test_the_first_colours_differ_for_people_who_confuse_red_and_green() -> None:
+    light = linear_rgb(segment_colors(8))
+    for blindness in (_DEUTERANOPE, _PROTANOPE):
+        seen = light @ (np.linalg.inv(_TO_LMS) @ blindness @ _TO_LMS).T
+        assert closest(np.cbrt(np.clip(seen, 0, 1))) > 0.08
+
+
+def test_colours_are_farther_apart_than_random_ones() -> None:
+    random = np.random.default_rng(0).random((100, 16, 3))
+    assert closest(segment_colors(16)) > np.quantile([closest(colors) for colors in random], 0.9)
+
+
+def test_linear_light_is_that_of_the_standard() -> None:
+    assert linear_rgb(np.array([0.0, 1.0])).tolist() == [0.0, 1.0]
+    np.testing.assert_allclose(linear_rgb(np.array([0.04, 0.5])), [0.04 / 12.92, 0.21404114], rtol=1e-7)
