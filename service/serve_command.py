@@ -11,6 +11,7 @@ from service.programs import api_program, queue_server_program, worker_programs
 from service.queue_server import NoQueueServer, embedded_queue_server, stop_orphan
 from service.supervisor import Program, Supervisor, lock_data
 from worker.settings import Settings, load_settings
+from worker.store import LocalStore
 
 Say = Callable[[str], None]  # tells the person who gave the command
 
@@ -28,6 +29,7 @@ def serve(host: str, port: int, workers: int | None, data_dir: Path | None, say:
     with ExitStack() as stack:
         listening = stack.enter_context(listen(host, port))
         stack.enter_context(lock_data(settings.data_dir))
+        LocalStore(settings.data_dir).check_writable()
         support: list[Program] = []
         if settings.redis_url is None:
             server = embedded_queue_server(settings.data_dir)

@@ -16,7 +16,7 @@ log = logging.getLogger("cleave.janitor")
 # A job between the queue and its lease, or between the store and the queue, is in neither for a moment, and a running
 # one has no lease for a second or two after Redis was wiped. Only what stays away for longer is lost.
 MISSING_S = 5.0
-_LEADER_INTERVALS = 4
+_LEADER_INTERVALS = 3  # that a leader may be late before another takes over
 _UPLOAD_UNTOUCHED_S = 3600.0
 
 
@@ -35,7 +35,7 @@ class Janitor:
 
         ``at_s`` is the time in seconds on any clock that only goes forward.
         """
-        if not self._queue.lead(self._name, _LEADER_INTERVALS * self._settings.janitor_interval_s + MISSING_S):
+        if not self._queue.lead(self._name, _LEADER_INTERVALS * self._settings.janitor_interval_s):
             self._missing_since.clear()
             return
         for job_id in self._lost(at_s):
@@ -74,13 +74,24 @@ def main() -> None:
     assert settings.redis_url, "the parent process sets CLEAVE_REDIS_URL"
     queue = JobQueue(connect_impatiently(settings.redis_url))
     janitor = Janitor(LocalStore(settings.data_dir), queue, settings)
+    trouble = ""
     while True:
-        try:
-            janitor.sweep(time.monotonic())
-        except (QueueError, OSError) as error:
-            log.warning("the sweep is put off: %s", error)
-            janitor.forget_sightings()
+        trouble = sweep_or_tell(janitor, trouble)
         time.sleep(settings.janitor_interval_s)
+
+
+def sweep_or_tell(janitor: Janitor, trouble: str) -> str:
+    """Sweep once; what keeps it from that is told when it changes, not at every sweep, and returned."""
+    try:
+        janitor.sweep(time.monotonic())
+    except (QueueError, OSError) as error:
+        janitor.forget_sightings()
+        if str(error) != trouble:
+            log.warning("lost jobs are not looked for at the moment: %s", error)
+        return str(error)
+    if trouble:
+        log.warning("lost jobs are looked for again")
+    return ""
 
 
 if __name__ == "__main__":

@@ -121,6 +121,8 @@ class JobWorker(Worker):  # type: ignore[misc]  # rq is not analysed
     # One job.
 
     def _run_if_open(self, entry: Entry, queue: Any) -> None:
+        if self._store.job(entry.id) is None:
+            log.warning("job %s is not in the store: it was deleted, or CLEAVE_DATA_DIR is another's", entry.id)
         if not self._is_open(entry.id):
             return
         failed = exhausted(self._store.attempts(entry.id), self._settings.max_attempts)

@@ -105,9 +105,18 @@ class LocalStore:
         return attempt
 
     def end_attempt(self, job_id: str, attempt: Attempt, cause: Cause) -> None:
-        """Note why a run ended without an outcome."""
+        """Note why a run ended without an outcome.
+
+        Raises
+        ------
+        UnknownJob
+            Where the job was deleted.
+        """
         ended = _ATTEMPT.dump_json(replace(attempt, ended_at=now(), cause=cause))
-        replace_file(_attempt_file(self._folder(job_id), attempt), lambda target: target.write(ended))
+        try:
+            replace_file(_attempt_file(self._folder(job_id), attempt), lambda target: target.write(ended))
+        except FileNotFoundError as error:
+            raise UnknownJob(job_id) from error
 
     def withdraw_attempt(self, job_id: str, attempt: Attempt) -> None:
         """Uncount a run that was stopped through no fault of the job."""
@@ -157,10 +166,9 @@ class LocalStore:
                 shutil.rmtree(folder, ignore_errors=True)
 
     def check_writable(self) -> None:
-        """Raise an OSError where nothing can be written."""
+        """Raise an OSError where jobs cannot be written here."""
         with self.begin_upload() as probe:
-            probe.write(b"?")
-            probe.make_durable()
+            create_file(probe.folder / "probe", b"?")
 
     def _folder(self, job_id: str) -> Path:
         if not is_job_id(job_id):

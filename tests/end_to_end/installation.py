@@ -9,6 +9,7 @@ import sys
 import tempfile
 from contextlib import suppress
 from pathlib import Path
+from typing import ClassVar
 
 import httpx
 from redis import Redis
@@ -21,6 +22,8 @@ START_S = 120.0  # kernels may have to be compiled, on a busy machine
 
 class Installation:
     """`cleave serve` on a data folder of its own. As a context it is gone afterwards, processes and files."""
+
+    settings: ClassVar = {"CLEAVE_LEASE_S": "5", "CLEAVE_SHUTDOWN_GRACE_S": "0.5", "CLEAVE_LOG_LEVEL": "error"}
 
     def __init__(self, workers: int = 2) -> None:
         self.data_dir = Path(tempfile.mkdtemp(prefix="cleave-test-"))
@@ -41,7 +44,7 @@ class Installation:
         """Start the command `cleave` with the data folder of this installation."""
         return subprocess.Popen(
             [sys.executable, "-m", "service.cli", *arguments],
-            env=os.environ | {"CLEAVE_DATA_DIR": str(self.data_dir), "CLEAVE_LOG_LEVEL": "error"},
+            env=os.environ | self.settings | {"CLEAVE_DATA_DIR": str(self.data_dir)},
             stdout=subprocess.PIPE,
             text=True,
             start_new_session=True,

@@ -102,12 +102,14 @@ def test_a_new_attempt_clears_what_a_killed_one_was_writing(store: LocalStore, t
 
 def test_a_deleted_job_is_gone_and_cannot_be_finished(store: LocalStore, tmp_path: Path) -> None:
     job = accepted(store, b"mesh")
+    attempt = store.begin_attempt(job.id, "worker")
     store.delete(job.id)
     assert store.job(job.id) is None
     assert files_below(tmp_path) == []
     for forbidden in (
         lambda: store.finish(job.id, succeeded()),
         lambda: store.begin_attempt(job.id, "worker"),
+        lambda: store.end_attempt(job.id, attempt, "worker_lost"),
         lambda: store.open_result(job.id),
         lambda: store.delete(job.id),
     ):
