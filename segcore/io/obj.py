@@ -93,7 +93,7 @@ def _numbers(
             return parse_numbers(text, int(counts.sum()), dtype)
         except ValueError:
             pass
-    raise _unreadable(words, selected, _CORNER if keyword == b"f" else _COORDINATE)
+    raise _unreadable(words, selected, keyword)
 
 
 def _without_suffixes(text: bytes) -> bytes:
@@ -112,10 +112,11 @@ def _without_suffixes(text: bytes) -> bytes:
     return letters.tobytes()
 
 
-def _unreadable(words: Words, selected: BoolArray, pattern: re.Pattern[str]) -> InvalidMesh:
+def _unreadable(words: Words, selected: BoolArray, keyword: bytes) -> InvalidMesh:
     """What is wrong on the first of the selected lines with a word that is not as it should be."""
+    pattern, what = (_CORNER, "a vertex index") if keyword == b"f" else (_COORDINATE, "a number")
     for line in np.flatnonzero(selected).tolist():
         for index in range(words.line_start[line] + 1, words.line_start[line + 1]):
             if not pattern.fullmatch(words.word(index)):
-                return InvalidMesh(f"Line {words.line_number(index)}: {words.word(index)!r} is not a number.")
+                return InvalidMesh(f"Line {words.line_number(index)}: {words.word(index)!r} is not {what}.")
     return InvalidMesh("The OBJ file has characters between its numbers that do not belong there.")

@@ -8,25 +8,17 @@ from typing import Any
 import numpy as np
 import pytest
 from damage import damaged
-from gltf_files import FLOAT, Asset, assets
+from gltf_files import Asset, assets
 from hypothesis import given
 from hypothesis import strategies as st
+from samples import SQUARE
+from samples import gltf_square as square
 from slow_readers import slow_gltf
 from soups import read, read_or_none
 
 from segcore.errors import CleaveError, InvalidMesh, LimitExceeded, UnsupportedFormat
 from segcore.io import ReadLimits
 from segcore.mesh import Mesh
-
-POINTS = [(0.0, 0.0, 0.0), (1.0, 0.0, 0.0), (1.0, 1.0, 0.0), (0.0, 1.0, 0.5)]
-
-
-def square() -> Asset:
-    asset = Asset()
-    positions = asset.accessor(POINTS, FLOAT)
-    asset.add("meshes", {"primitives": [asset.primitive(positions, [0, 1, 2, 0, 2, 3])]})
-    asset.root(mesh=0)
-    return asset
 
 
 def assert_has_corners(mesh: Mesh, corners: list[Any]) -> None:
@@ -50,7 +42,7 @@ def test_vertices_are_bit_for_bit_those_of_the_file_and_shared_where_the_file_sh
     asset = square()
     asset.document["meshes"][0]["primitives"].append(asset.primitive(0, [3, 2, 1]))
     mesh = read(asset.glb())
-    assert mesh.vertices.tolist() == [list(point) for point in POINTS]
+    assert mesh.vertices.tolist() == [list(point) for point in SQUARE.vertices]
     assert mesh.faces.tolist() == [[0, 1, 2], [0, 2, 3], [3, 2, 1]]
     assert mesh.source_polygon is None
 
@@ -84,20 +76,20 @@ def test_instances_are_expanded_in_the_order_of_the_nodes() -> None:
     asset.root(mesh=0, translation=[10, 0, 0])
     mesh = read(asset.glb())
     assert mesh.faces.tolist() == [[0, 1, 2], [0, 2, 3], [4, 5, 6], [4, 6, 7]]
-    assert mesh.vertices[4:].tolist() == [[x + 10, y, z] for x, y, z in POINTS]
+    assert mesh.vertices[4:].tolist() == [[x + 10, y, z] for x, y, z in SQUARE.vertices]
 
 
 def test_a_node_with_a_skin_stands_where_the_skin_was_made() -> None:
     asset = square()
     asset.document["nodes"][0] |= {"skin": 0, "translation": [5, 5, 5]}
-    assert read(asset.glb()).vertices.tolist() == [list(point) for point in POINTS]
+    assert read(asset.glb()).vertices.tolist() == [list(point) for point in SQUARE.vertices]
 
 
 def test_without_scenes_all_trees_of_nodes_count() -> None:
     asset = square()
     asset.add("nodes", {"children": [0], "scale": [2, 2, 2]})
     del asset.document["scenes"]
-    assert read(asset.glb()).vertices.tolist() == [[2 * x, 2 * y, 2 * z] for x, y, z in POINTS]
+    assert read(asset.glb()).vertices.tolist() == [[2 * x, 2 * y, 2 * z] for x, y, z in SQUARE.vertices]
 
 
 def change(path: str, value: object) -> bytes:

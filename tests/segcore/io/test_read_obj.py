@@ -4,14 +4,14 @@ import pytest
 from damage import assert_agrees, assert_never_half_read, damaged
 from hypothesis import given
 from hypothesis import strategies as st
+from samples import OBJ as SQUARE
+from samples import SQUARE as SOUP
 from slow_readers import slow_obj
 from soups import Soup, assert_is_soup, read, soups
 
 from segcore.errors import InvalidMesh, LimitExceeded
 from segcore.io import ReadLimits
 
-SQUARE = b"v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nf 1 2 3\nf 1 3 4\n"
-SOUP = Soup([(0.0, 0.0, 0.0), (1.0, 0.0, 0.0), (1.0, 1.0, 0.0), (0.0, 1.0, 0.0)], [[0, 1, 2], [0, 2, 3]])
 FULL = (
     b"# Exported \\\nmtllib ../../etc/passwd\no part 1\ng front f v\nusemtl red#1\ns off\n"
     b"v 0 0 0 1 0 0\nv\t1 0\t0 1.0\nvt 0 0\nvn 0 0 1\nv 1 1 0\nv .5 \\\n 1 -1e-1\n"
@@ -93,14 +93,14 @@ def test_everything_but_vertices_and_faces_is_passed_over() -> None:
         (b"f 1 3 4", b"f 1 3 5", "Line 6: there is no vertex 5"),
         (b"f 1 3 4", b"f 1 3 -5", "Line 6: there is no vertex -5"),
         (b"f 1 3 4", b"f 1 3", "Line 6: a face needs"),
-        (b"f 1 3 4", b"f 1 3 4.5", "Line 6: '4.5' is not a number|Line 6: '4.5'"),
+        (b"f 1 3 4", b"f 1 3 4.5", "Line 6: '4.5' is not a vertex index"),
         (b"f 1 3 4", b"f 1/x 3 4", "Line 6: '1/x'"),
-        (b"f 1 3 4", b"f /1 3 4", "Line 6: '/1'"),
+        (b"f 1 3 4", b"f /1 3 4", "Line 6: '/1' is not a vertex index"),
         (b"f 1 3 4", b"f 1 3 4f", "Line 6: '4f'"),
-        (b"v 0 1 0", b"v 0 1", "Line 4: a vertex needs"),
-        (b"v 0 1 0", b"v 0 v1 0", "Line 4: 'v1'"),
-        (b"v 0 1 0", b"v 0 inf 0", "not finite"),
-        (b"v 0 1 0", b"v 0 1e999 0", "not finite"),
+        (b"v 0 1 .5", b"v 0 1", "Line 4: a vertex needs"),
+        (b"v 0 1 .5", b"v 0 v1 0", "Line 4: 'v1'"),
+        (b"v 0 1 .5", b"v 0 inf 0", "not finite"),
+        (b"v 0 1 .5", b"v 0 1e999 0", "not finite"),
         (b"f 1 2 3\nf 1 3 4\n", b"", "no faces"),
     ],
 )

@@ -4,14 +4,14 @@ import pytest
 from damage import assert_agrees, assert_never_half_read, damaged
 from hypothesis import given
 from hypothesis import strategies as st
+from samples import OFF as SQUARE
+from samples import SQUARE as SOUP
 from slow_readers import slow_off
 from soups import Soup, assert_is_soup, read, soups
 
 from segcore.errors import InvalidMesh, LimitExceeded, UnsupportedFormat
 from segcore.io import ReadLimits
 
-SQUARE = b"OFF\n4 2 0\n0 0 0\n1 0 0\n1 1 0\n0 1 0\n3 0 1 2\n3 0 2 3\n"
-SOUP = Soup([(0.0, 0.0, 0.0), (1.0, 0.0, 0.0), (1.0, 1.0, 0.0), (0.0, 1.0, 0.0)], [[0, 1, 2], [0, 2, 3]])
 MIXED = (
     b"COFF # made by hand\n5 3 9\n0 0 0 1 0 0 1\n1 0 0 1 0 0 1\n1 1 0 1 0 0 1\n0 1 0 1 0 0 1\n.5 .5 1 0 1 0 1\n"
     b"4 0 1 2 3 255 0 0\n3 0 1 4 0.5 0.5 0.5 1\n5 0 1 2 3 4\n"
@@ -80,8 +80,8 @@ def test_a_cut_file_is_never_half_read() -> None:
         SQUARE + b"\0" * 500,
         SQUARE + b"\x1a",
         b"# a comment before the keyword\n\n" + SQUARE,
-        b"C" + SQUARE.replace(b"0\n", b"0 10 20 30\n").replace(b"0 10 20 30\n0", b"0\n0", 1),
-        SQUARE.replace(b"0\n1 0 0", b"0 0.5 0.5 0.5\n1 0 0 0.5 0.5 0.5"),
+        b"COFF\n4 2 0\n0 0 0 9 9 9\n1 0 0 9 9 9\n1 1 0 9 9 9\n0 1 .5 9 9 9\n3 0 1 2\n3 0 2 3\n",
+        SQUARE.replace(b"1 0 0", b"1 0 0 0.5 0.5 0.5"),
     ],
     ids=[
         "no end of line",

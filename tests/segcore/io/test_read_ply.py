@@ -1,51 +1,20 @@
 """PLY files, in text and in both byte orders: every face in its place; nothing half-read."""
 
-import struct
-
 import pytest
 from damage import assert_agrees, assert_never_half_read, damaged
 from hypothesis import given
 from hypothesis import strategies as st
+from ply_files import ENCODINGS, TYPES, Properties, Rows, ply
+from samples import PLY as SQUARES
+from samples import PLY_CORNERS as CORNERS
+from samples import SQUARE as SOUP
+from samples import XYZ
 from slow_readers import slow_ply
 from soups import Soup, assert_is_soup, assert_same_mesh, read, soups
 
 from segcore.errors import InvalidMesh, LimitExceeded, UnsupportedFormat
 from segcore.io import ReadLimits
 
-ENCODINGS = {"ascii": "", "binary_little_endian": "<", "binary_big_endian": ">"}
-TYPES = {"char": "b", "uint8": "B", "short": "h", "uint16": "H", "int": "i", "uint32": "I", "float": "f", "double": "d"}
-Rows = list[list[float | list[float]]]
-Properties = list[tuple[str, ...]]
-
-
-def ply(encoding: str, elements: list[tuple[str, Properties, Rows]], newline: str = "\n", comment: str = "") -> bytes:
-    """A PLY file; a property is (type, name) or ("list", count type, type, name)."""
-    header = ["ply", f"format {encoding} 1.0", f"comment {comment}", "obj_info by hand"]
-    body = b""
-    for name, properties, rows in elements:
-        header += [f"element {name} {len(rows)}", *("property " + " ".join(entry) for entry in properties)]
-        body += b"".join(row_bytes(properties, row, ENCODINGS[encoding]) for row in rows)
-    return newline.join([*header, "end_header", ""]).encode() + body
-
-
-def row_bytes(properties: Properties, row: list[float | list[float]], order: str) -> bytes:
-    values: list[tuple[str, float]] = []
-    for entry, value in zip(properties, row, strict=True):
-        if isinstance(value, list):
-            values += [(entry[1], len(value)), *((entry[2], item) for item in value)]
-        else:
-            values.append((entry[0], value))
-    if not order:
-        return (" ".join(repr(value) for _, value in values) + "\n").encode()
-    return b"".join(struct.pack(order + TYPES[kind], value) for kind, value in values)
-
-
-XYZ: Properties = [("float", "x"), ("float", "y"), ("float", "z")]
-INDICES: Properties = [("list", "uint8", "int", "vertex_indices")]
-SOUP = Soup([(0.0, 0.0, 0.0), (1.0, 0.0, 0.0), (1.0, 1.0, 0.0), (0.0, 1.0, 0.5)], [[0, 1, 2], [0, 2, 3]])
-CORNERS: Rows = [list(vertex) for vertex in SOUP.vertices]
-FACES: Rows = [[[0, 1, 2]], [[0, 2, 3]]]
-SQUARES = {name: ply(name, [("vertex", XYZ, CORNERS), ("face", INDICES, FACES)]) for name in ENCODINGS}
 MIXED_ELEMENTS: list[tuple[str, Properties, Rows]] = [
     ("camera", [("list", "uint16", "double", "matrix"), ("char", "on")], [[[1.5, 2.5], 1], [[], 0]]),
     (

@@ -1,42 +1,22 @@
 """STL files, binary and in text: every face in its place; nothing half-read."""
 
-import struct
-
 import pytest
 from damage import assert_agrees, assert_never_half_read, damaged
 from hypothesis import given
 from hypothesis import strategies as st
+from samples import ASCII_STL as ASCII
+from samples import BINARY_STL as BINARY
+from samples import TRIANGLES, unshared
+from samples import UNSHARED_SQUARE as SOUP
+from samples import binary_stl as binary
 from slow_readers import slow_ascii_stl, slow_binary_stl
-from soups import Point, Soup, assert_is_soup, read, soups, triangle_soups
+from soups import Soup, assert_is_soup, read, soups, triangle_soups
 
 from segcore.errors import InvalidMesh, LimitExceeded
 from segcore.io import ReadLimits
 
-TRIANGLES = [((0.0, 0.0, 0.0), (1.0, 0.0, 0.0), (1.0, 1.0, 0.0)), ((0.0, 0.0, 0.0), (1.0, 1.0, 0.0), (0.0, 1.0, 0.5))]
-ASCII = (
-    b"solid a facet of it\n"
-    b"facet normal 0 0 1\nouter loop\nvertex 0 0 0\nvertex 1 0 0\nvertex 1 1 0\nendloop\nendfacet\n"
-    b"facet normal 0 0 1\nouter loop\nvertex 0 0 0\nvertex 1 1 0\nvertex 0 1 .5\nendloop\nendfacet\n"
-    b"endsolid a facet of it\n"
-)
 line_ends = st.sampled_from(["\n", "\r\n", "\n\n", " \t\n"])
 gaps = st.sampled_from([" ", "  ", "\t", "\n", "\r\n\t"])
-
-
-def unshared(soup: Soup) -> Soup:
-    """The soup as STL has it: no vertex is shared by two polygons."""
-    vertices = [soup.vertices[corner] for polygon in soup.polygons for corner in polygon]
-    corners = iter(range(len(vertices)))
-    return Soup(vertices, [[next(corners) for _ in polygon] for polygon in soup.polygons])
-
-
-def binary(triangles: list[tuple[Point, Point, Point]], header: bytes = b"") -> bytes:
-    faces = b"".join(struct.pack("<12fH", 0, 0, 0, *a, *b, *c, 0xABCD) for a, b, c in triangles)
-    return header.ljust(80, b" ") + struct.pack("<I", len(triangles)) + faces
-
-
-BINARY = binary(TRIANGLES)
-SOUP = unshared(Soup([TRIANGLES[0][0], TRIANGLES[0][1], TRIANGLES[0][2], TRIANGLES[1][2]], [[0, 1, 2], [0, 2, 3]]))
 
 
 @st.composite
