@@ -34,6 +34,8 @@ class SegmentationParameters:
     def __post_init__(self) -> None:
         _check_choice("graph", self.graph, get_args(Graph))
         _check_choice("affinity", self.affinity, get_args(Affinity))
+        if self.graph == "vertices" and self.affinity == "concavity":
+            raise InvalidParameters("affinity 'concavity' needs the graph of the faces: choose graph 'faces'.")
         _check_choice("thinning", self.thinning, get_args(Thinning))
         _check_choice("solver", self.solver, get_args(Solver))
         _check_choice("order", self.order, get_args(Order))

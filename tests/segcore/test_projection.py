@@ -1,0 +1,59 @@
+import numpy as np
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from segcore import shapes
+from segcore.graph import connected_components
+from segcore.projection import project
+from segcore.recursion import Tree
+from segcore.surface import build_surface
+
+SURFACE = build_surface(shapes.icosphere(1))
+FACES = SURFACE.face_graph()
+
+
+@st.composite
+def trees(draw):
+    """Random trees over the 42 vertices of a sphere, as scattered as a tree can be."""
+    splits = draw(st.integers(0, 8))
+    leaves, split_node = [0], []
+    for s in range(splits):
+        split_node.append(leaves.pop(draw(st.integers(0, len(leaves) - 1))))
+        leaves += [2 * s + 1, 2 * s + 2]
+    rng = np.random.default_rng(draw(st.integers(0, 10**6)))
+    leaf = rng.choice(leaves, 42).astype(np.int32)
+    return Tree(np.array(split_node, np.int32), np.ones(splits), leaf, draw(st.integers(1, splits + 1)))
+
+
+@settings(max_examples=60)
+@given(trees())
+def test_every_node_of_the_tree_over_the_faces_is_a_connected_set_of_faces(tree):
+    projected = project(tree, SURFACE.faces, FACES)
+    nodes = 2 * len(projected.split_node) + 1
+    below = {node: {node} for node in range(nodes)}
+    for split in reversed(range(len(projected.split_node))):
+        below[int(projected.split_node[split])] |= below[2 * split + 1] | below[2 * split + 2]
+    for node in range(nodes):
+        members = np.flatnonzero(np.isin(projected.leaf, list(below[node]))).astype(np.int32)
+        assert len(members) > 0
+        assert connected_components(FACES.subgraph(members)).max() == 0
+    assert 1 <= projected.automatic_segments <= min(tree.automatic_segments, len(projected.split_node) + 1)
+
+
+def test_a_clean_cut_of_the_vertices_is_kept():
+    upper = SURFACE.vertices[:, 2] > 0.01
+    tree = Tree(np.zeros(1, np.int32), np.ones(1), np.where(upper, 1, 2).astype(np.int32), 2)
+    projected = project(tree, SURFACE.faces, FACES)
+    votes = upper[SURFACE.faces].sum(axis=1) >= 2
+    assert len(set(projected.leaf[votes])) == len(set(projected.leaf[~votes])) == 1
+    np.testing.assert_array_equal(projected.split_node, [0])
+    np.testing.assert_array_equal(projected.cut_value, [1])
+
+
+def test_a_split_that_no_face_follows_is_left_out():
+    leaf = np.ones(42, np.int32)
+    leaf[7] = 2
+    tree = Tree(np.zeros(1, np.int32), np.ones(1), leaf, 2)
+    projected = project(tree, SURFACE.faces, FACES)
+    assert len(projected.split_node) == 0
+    assert projected.automatic_segments == 1
