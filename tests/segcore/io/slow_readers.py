@@ -275,7 +275,12 @@ def slow_gltf(data: bytes) -> list[tuple[Point, Point, Point]]:
         for buffer in document["buffers"]
     ]
     corners: list[tuple[Point, Point, Point]] = []
-    for root in document["scenes"][document.get("scene", 0)]["nodes"]:
+    if document.get("scenes"):
+        roots = document["scenes"][document.get("scene", 0)].get("nodes", [])
+    else:
+        children = {child for node in document.get("nodes", []) for child in node.get("children", [])}
+        roots = [node for node in range(len(document.get("nodes", []))) if node not in children]
+    for root in roots:
         _visit(document, buffers, root, [[float(i == k) for k in range(4)] for i in range(4)], corners)
     return corners
 
