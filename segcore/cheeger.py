@@ -38,6 +38,11 @@ class Cut:
     def value(self, criterion: Criterion) -> float:
         return self.ncc if criterion == "ncc" else self.ncut
 
+    @property
+    def key(self) -> bytes:
+        """The same for two cuts of a graph just when they are the same bipartition, whichever side is S."""
+        return np.packbits(self.side == self.side[0]).tobytes()
+
 
 def cut_of(graph: SurfaceGraph, side: BoolArray) -> Cut:
     """The cut that a set of nodes makes.
@@ -78,6 +83,17 @@ def ncut(graph: SurfaceGraph, side: BoolArray) -> float:
     Shi and Malik, Normalized cuts and image segmentation, PAMI 22(8), 2000.
     """
     return cut_of(graph, side).ncut
+
+
+def balance_subgradient(graph: SurfaceGraph, cut: Cut) -> FloatArray:
+    """(N,): vol[i] on the smaller side, -r vol[i] on the larger one, r = vol(smaller) / vol(larger); the sum is 0.
+
+    At the indicator of the smaller side it is a subgradient of the balance B(f) = min over c of sum vol[i] |f[i] - c|.
+    B is min(vol(A), vol(rest)) at the indicator of any set A, and the sum over A is at most that.
+    """
+    if cut.inside <= cut.outside:
+        return np.where(cut.side, graph.volume, -cut.inside / cut.outside * graph.volume)
+    return np.where(cut.side, -cut.outside / cut.inside * graph.volume, graph.volume)
 
 
 def sweep(graph: SurfaceGraph, values: FloatArray, criterion: Criterion = "ncc") -> Cut:

@@ -4,10 +4,8 @@ from bisect import insort
 from collections.abc import Iterator
 from math import inf
 
-import numpy as np
-
 from segcore.arrays import BoolArray, FloatArray
-from segcore.cheeger import Cut, cut_of, sweep
+from segcore.cheeger import Cut, balance_subgradient, cut_of, sweep
 from segcore.fiedler import eigenvectors
 from segcore.graph import SurfaceGraph
 from segcore.max_flow import Network
@@ -83,18 +81,13 @@ class Contest:
         if cut.ncc > HOPELESS * best:
             return
         for step, improved in enumerate(_descent(self.network, cut)):
-            if self._seen_before(improved):
+            if improved.key in self._seen:
                 return
+            self._seen.add(improved.key)
             cut = improved
             if step > 0 and cut.ncc > best:
                 break
         insort(self.found, cut, key=_ncc)
-
-    def _seen_before(self, cut: Cut) -> bool:
-        key = np.packbits(cut.side == (cut.inside <= cut.outside)).tobytes()
-        seen = key in self._seen
-        self._seen.add(key)
-        return seen
 
 
 def _descent(network: Network, cut: Cut) -> Iterator[Cut]:
@@ -103,7 +96,7 @@ def _descent(network: Network, cut: Cut) -> Iterator[Cut]:
     while cut.ncc < previous * (1 - LEAST_GAIN):
         yield cut
         previous = cut.ncc
-        cut = cut_of(network.graph, network.minimum_cut(cut.ncc * _supply(network.graph, cut)))
+        cut = cut_of(network.graph, network.minimum_cut(cut.ncc * balance_subgradient(network.graph, cut)))
 
 
 def _tilted(vectors: FloatArray) -> Iterator[FloatArray]:
@@ -115,16 +108,9 @@ def _tilted(vectors: FloatArray) -> Iterator[FloatArray]:
 
 def _mixture(network: Network, cut: Cut, other: Cut) -> FloatArray:
     """One step of the inverse iteration L f' = D f from two cuts at once: f is their sum."""
-    supply = _supply(network.graph, cut)
-    second = _supply(network.graph, other)
+    supply = balance_subgradient(network.graph, cut)
+    second = balance_subgradient(network.graph, other)
     return network.factor.solve(supply + second if supply @ second > 0 else supply - second)
-
-
-def _supply(graph: SurfaceGraph, cut: Cut) -> FloatArray:
-    """(N,): vol[i] on the smaller side, -r vol[i] on the larger one, a subgradient of the balance; the sum is 0."""
-    if cut.inside <= cut.outside:
-        return np.where(cut.side, graph.volume, -cut.inside / cut.outside * graph.volume)
-    return np.where(cut.side, -cut.outside / cut.inside * graph.volume, graph.volume)
 
 
 def _ncc(cut: Cut) -> float:
