@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass
+from importlib.util import find_spec
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -38,19 +39,17 @@ class Bar:
     group: int  # bars of one group have one colour
 
 
-def metric_chart(title: str, bars: Sequence[Bar], people: Scores) -> Figure:
-    """The four metrics of all methods in a panel each, the people's values as lines.
+def require_matplotlib() -> None:
+    """See that charts can be drawn, before anything that takes long; BenchmarkError where they cannot."""
+    if find_spec("matplotlib") is None:
+        raise BenchmarkError("Charts need matplotlib: pip install matplotlib, or leave --output out.")
 
-    Raises
-    ------
-    BenchmarkError
-        Where matplotlib is not installed.
-    """
-    try:
-        # Not pyplot: nothing here needs a display or a state that outlives the call.
-        from matplotlib.figure import Figure
-    except ImportError as error:
-        raise BenchmarkError("Charts need matplotlib: pip install matplotlib, or leave --output out.") from error
+
+def metric_chart(title: str, bars: Sequence[Bar], people: Scores) -> Figure:
+    """The four metrics of all methods in a panel each, the people's values as lines."""
+    # Not pyplot: nothing here needs a display or a state that outlives the call.
+    from matplotlib.figure import Figure
+
     figure = Figure(figsize=(11, 1.6 + 0.72 * len(bars)), layout="constrained")
     figure.suptitle(title)
     panels = figure.subplots(2, 2, sharey=True)

@@ -13,10 +13,11 @@ from collections.abc import Iterable, Sequence
 from pathlib import Path
 from tempfile import TemporaryDirectory
 
+from bench.charts import require_matplotlib
 from bench.dataset import read_models
 from bench.errors import BenchmarkError
 from bench.paper.evaluation import MethodResults, evaluate_methods
-from bench.paper.items import ITEMS, Evaluation
+from bench.paper.items import ITEMS, Evaluation, bearing
 from bench.paper.label_cache import LabelCache
 from bench.peers import PEERS
 from bench.peers.method import Method
@@ -66,6 +67,10 @@ def run(arguments: argparse.Namespace) -> None:
 
 def _run(arguments: argparse.Namespace, kept: Path) -> None:
     models = read_models(arguments.data, arguments.limit)
+    if arguments.output is not None:
+        require_matplotlib()
+    if "figure5" in arguments.only:
+        bearing(arguments.data)
     peers = [PEERS[name](kept) for name in arguments.peers]
     methods = _methods(arguments.only, peers)
     for method in methods:

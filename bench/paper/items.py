@@ -98,10 +98,16 @@ def _table2(evaluation: Evaluation) -> str:
     return time_table(evaluation.of(_figure4_methods(evaluation.peers)))
 
 
-def _figure5(evaluation: Evaluation) -> str:
-    model = next((model for model in read_models(evaluation.data) if model.number == BEARING), None)
+def bearing(data: Path) -> Model:
+    """The model of Figure 5; BenchmarkError where the data does not have it."""
+    model = next((model for model in read_models(data) if model.number == BEARING), None)
     if model is None:
         raise BenchmarkError(f"Figure 5 shows model {BEARING}, which the data does not have: leave it out by --only.")
+    return model
+
+
+def _figure5(evaluation: Evaluation) -> str:
+    model = bearing(evaluation.data)
     mesh = model.read_mesh()
     surface = Surface.from_mesh(mesh.vertices, mesh.faces)
     people = [Segmentation.of(surface, labels) for labels in model.read_people(len(mesh.faces))]
