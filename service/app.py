@@ -5,7 +5,7 @@ from typing import Any
 
 from fastapi import FastAPI
 
-from service import health, home, routes
+from service import health, home, result_routes, routes
 from service.context import Context, QueueView
 from service.problems import MEDIA_TYPE, handle_problems
 from service.results import ResultCache
@@ -30,7 +30,7 @@ def create_app(settings: Settings) -> FastAPI:
     app.state.context = Context(
         settings, store, queue, QueueView(queue), ResultCache(store, settings.result_cache_bytes)
     )
-    for router in (home.router, health.router, routes.router):
+    for router in (home.router, health.router, routes.router, result_routes.router):
         app.include_router(router)
     handle_problems(app)
     app.openapi = lambda: _with_problems_only(FastAPI.openapi(app))  # type: ignore[method-assign]

@@ -44,7 +44,7 @@ class Context:
     results: ResultCache
 
 
-def _context(request: Request) -> Context:
+async def _context(request: Request) -> Context:
     context: Context = request.app.state.context
     return context
 

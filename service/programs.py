@@ -5,7 +5,6 @@ import sys
 import sysconfig
 from pathlib import Path
 
-import worker
 from service.queue_server import QueueServer
 from service.supervisor import Program
 from worker.settings import Settings
@@ -45,7 +44,7 @@ def _environment(settings: Settings) -> dict[str, str]:
     """The settings as they were resolved here, and where the modules are."""
     assert settings.redis_url, "the queue server is known by now"
     environment = {"CLEAVE_DATA_DIR": str(settings.data_dir), "CLEAVE_REDIS_URL": settings.redis_url}
-    root = Path(worker.__file__).parent.parent
+    root = Path(__file__).parent.parent
     if root != Path(sysconfig.get_path("purelib")):  # a checkout: -P keeps the working folder off the path
         environment["PYTHONPATH"] = os.pathsep.join(filter(None, [str(root), os.environ.get("PYTHONPATH")]))
     if not os.access(root / "segcore", os.W_OK) and "NUMBA_CACHE_DIR" not in os.environ:

@@ -1,32 +1,23 @@
-"""The job API: submit a mesh, poll the job, fetch its results at any number of segments."""
+"""The job API: submit a mesh, poll the job, cancel it, delete it."""
 
-import io
-import json
 from dataclasses import asdict
 from typing import Annotated, Any
 
-from fastapi import APIRouter, Path, Query, Request
+from fastapi import APIRouter, Path, Request
 from starlette.concurrency import run_in_threadpool
 from starlette.responses import Response
 
-from segcore.io.glb import write_glb
-from segcore.io.labels import hierarchy_document, labels_document
-from segcore.io.result import Segmentation
 from service.context import Context, ContextOf
-from service.documents import HierarchyDocument, JobDocument, LabelsDocument, job_document
-from service.problems import JobError, Problem, documented
+from service.documents import JobDocument, job_document
+from service.problems import Problem, documented
 from service.upload import mesh_format, parse_parameters, receive_form
-from worker.jobs import Canceled, Failed, Job, Succeeded, new_job_id, now
+from worker.jobs import Canceled, Job, new_job_id, now
 from worker.queue import QueueError
 from worker.store import UnknownJob
 
 router = APIRouter(prefix="/v1/jobs", tags=["jobs"])
 
 JobId = Annotated[str, Path(description="As in the answer to POST /v1/jobs.")]
-Segments = Annotated[
-    int | None, Query(ge=1, description="The number of segments, 1 to max_segments; by default automatic_segments.")
-]
-GLB = "model/gltf-binary"
 
 _FORM: dict[str, Any] = {
     "requestBody": {
@@ -49,10 +40,6 @@ _FORM: dict[str, Any] = {
         },
     }
 }
-_RESULT_PROBLEMS = documented("job_not_found", "not_finished", "job_failed", "job_canceled")
-_LEVEL_PROBLEMS = documented(
-    "job_not_found", "not_finished", "job_failed", "job_canceled", "invalid_parameters", "invalid_request"
-)
 
 
 @router.post(
@@ -84,7 +71,7 @@ async def create_job(request: Request, response: Response, context: ContextOf) -
 @router.get("/{job_id}", response_model=JobDocument, responses=documented("job_not_found"))
 def get_job(job_id: JobId, context: ContextOf) -> JobDocument:
     """How a job is."""
-    return _describe(_known(context, job_id), context)
+    return _describe(known_job(context, job_id), context)
 
 
 @router.post(
@@ -94,7 +81,7 @@ def get_job(job_id: JobId, context: ContextOf) -> JobDocument:
 )
 def cancel_job(job_id: JobId, context: ContextOf) -> JobDocument:
     """Cancel a job: one that waits at once, one that runs within seconds. A second time changes nothing."""
-    job = _known(context, job_id)
+    job = known_job(context, job_id)
     outcome = context.store.finish(job.id, Canceled(finished_at=now()))
     if not isinstance(outcome, Canceled):
         raise Problem("already_finished", f"The job has {outcome.status} already: delete it to remove its files.")
@@ -107,45 +94,25 @@ def cancel_job(job_id: JobId, context: ContextOf) -> JobDocument:
 )
 def delete_job(job_id: JobId, context: ContextOf) -> None:
     """Remove a job with its files; one that has not finished is canceled first."""
-    job = _known(context, job_id)
+    job = known_job(context, job_id)
     context.store.finish(job.id, Canceled(finished_at=now()))
     context.store.delete(job.id)
     context.results.drop(job.id)
     _forget(context, job.id)
 
 
-@router.get(
-    "/{job_id}/labels",
-    response_class=Response,
-    responses={200: {"model": LabelsDocument, "description": "The labels."}, **_LEVEL_PROBLEMS},
-)
-def get_labels(job_id: JobId, context: ContextOf, segments: Segments = None) -> Response:
-    """The segment of every face, in the order of the file, at any number of segments."""
-    return _json(labels_document(_result(context, job_id).hierarchy, segments))
+def known_job(context: Context, job_id: str) -> Job:
+    """The record of a job.
 
-
-@router.get(
-    "/{job_id}/hierarchy",
-    response_class=Response,
-    responses={200: {"model": HierarchyDocument, "description": "The tree of cuts."}, **_RESULT_PROBLEMS},
-)
-def get_hierarchy(job_id: JobId, context: ContextOf) -> Response:
-    """The tree of cuts from which every number of segments is read."""
-    return _json(hierarchy_document(_result(context, job_id).hierarchy))
-
-
-@router.get(
-    "/{job_id}/model.glb",
-    response_class=Response,
-    responses={200: {"content": {GLB: {}}, "description": "A node and a colour per segment."}, **_LEVEL_PROBLEMS},
-)
-def get_model(job_id: JobId, context: ContextOf, segments: Segments = None) -> Response:
-    """The mesh as binary glTF, a named node and a colour for every segment, at any number of segments."""
-    result, target = _result(context, job_id), io.BytesIO()
-    write_glb(target, result.mesh, result.hierarchy, segments)
-    return Response(
-        target.getvalue(), headers={"Content-Disposition": f'attachment; filename="{job_id}.glb"'}, media_type=GLB
-    )
+    Raises
+    ------
+    UnknownJob
+        Where there is none.
+    """
+    job = context.store.job(job_id)
+    if job is None:
+        raise UnknownJob(job_id)
+    return job
 
 
 async def _accept(request: Request, context: Context) -> Job:
@@ -177,32 +144,7 @@ def _forget(context: Context, job_id: str) -> None:
         return  # the worker that takes the entry drops it
 
 
-def _known(context: Context, job_id: str) -> Job:
-    job = context.store.job(job_id)
-    if job is None:
-        raise UnknownJob(job_id)
-    return job
-
-
 def _describe(job: Job, context: Context) -> JobDocument:
     outcome = context.store.outcome(job.id)
     activity = None if outcome else context.view.activity(job.id)
     return job_document(job, outcome, context.store.attempts(job.id), activity)
-
-
-def _result(context: Context, job_id: str) -> Segmentation:
-    job = _known(context, job_id)
-    match context.store.outcome(job.id):
-        case Succeeded():
-            return context.results.get(job.id)
-        case Failed(code=code, message=message):
-            raise Problem("job_failed", f"The job failed: {message}", JobError(code=code, message=message))
-        case Canceled():
-            raise Problem("job_canceled", "The job was canceled and has no result: submit the mesh again.")
-        case None:
-            raise Problem("not_finished", "The job has not finished: poll it until its status is succeeded.")
-
-
-def _json(document: dict[str, Any]) -> Response:
-    body = json.dumps(document, allow_nan=False, separators=(",", ":"))
-    return Response(body, media_type="application/json")

@@ -38,14 +38,12 @@ async def receive_form(request: Request, upload: MeshUpload, max_upload_bytes: i
         Where the request is no such form, is cut short or is too large; a declared length is refused before the body
         is read, an undeclared one as soon as the limit is passed.
     """
-    max_body_bytes = max_upload_bytes + MAX_PARAMETERS_BYTES + _MAX_ENVELOPE_BYTES
     reader = FormReader(_boundary(request), upload, max_upload_bytes)
-    _check_declared_length(request, max_body_bytes)
+    _check_length(_declared_length(request), max_upload_bytes)
     received, piece = 0, bytearray()
     async for chunk in request.stream():
         received += len(chunk)
-        if received > max_body_bytes:
-            _refuse_size(max_upload_bytes)
+        _check_length(received, max_upload_bytes)
         piece += chunk
         if len(piece) >= _PIECE_BYTES:
             await run_in_threadpool(reader.feed, bytes(piece))
@@ -159,16 +157,20 @@ def _boundary(request: Request) -> bytes:
     return boundary
 
 
-def _check_declared_length(request: Request, max_body_bytes: int) -> None:
+def _declared_length(request: Request) -> int:
     declared = request.headers.get("content-length", "0")
     if not (declared.isascii() and declared.isdigit()):
         raise Problem("malformed_request", "The Content-Length is not a number.")
-    if len(declared) > 18 or int(declared) > max_body_bytes:
-        _refuse_size(max_body_bytes)
+    return int(declared[:18])  # more digits are as much too large
 
 
-def _refuse_size(limit: int) -> NoReturn:
-    raise Problem("too_large", f"The mesh is larger than the {limit} bytes that this server takes.")
+def _check_length(body_bytes: int, max_upload_bytes: int) -> None:
+    if body_bytes > max_upload_bytes + MAX_PARAMETERS_BYTES + _MAX_ENVELOPE_BYTES:
+        _refuse_size(max_upload_bytes)
+
+
+def _refuse_size(max_upload_bytes: int) -> NoReturn:
+    raise Problem("too_large", f"The mesh is larger than the {max_upload_bytes} bytes that this server takes.")
 
 
 def _refuse_constant(name: str) -> NoReturn:

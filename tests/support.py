@@ -62,7 +62,7 @@ def accepted(store: LocalStore, mesh: bytes, **parameters: object) -> Job:
     return job
 
 
-LONG = {"clusters": 30_000, "max_segments": 1_500}  # with sphere(100), seconds of work
+LONG = {"clusters": 20_000, "max_segments": 400}  # with sphere(100), seconds of work
 
 
 def children_of(pid: int) -> list[int]:

@@ -2,14 +2,11 @@
 
 import logging
 import os
-import resource
 import secrets
 import select
 import signal
 import socket
 import time
-from collections.abc import Callable
-from pathlib import Path
 from types import FrameType
 from typing import Any
 
@@ -29,13 +26,13 @@ from worker.queue import TASK, JobQueue, QueueError, connect_impatiently, connec
 from worker.settings import Settings, load_settings
 from worker.store import LocalStore, UnknownJob
 from worker.tasks import perform
+from worker.work_horse import cause_of_death, exit_status, limit_memory, out_of_memory_kills
 
 log = logging.getLogger("cleave.worker")
 
 _TICK_S = 1.0  # how often a running job is looked at
 _REGISTERED_S = 30  # how long a worker counts as alive after its last sign of life
 _DEQUEUE_TTL_S = 20  # rq blocks for 15 s less, and gives a sign of life in between
-_EXIT_OUT_OF_MEMORY = 71
 
 
 class JobWorker(Worker):  # type: ignore[misc]  # rq is not analysed
@@ -204,46 +201,13 @@ def is_allowed(entry: Entry) -> bool:
         return False
 
 
-def exit_status(work: Callable[[], None]) -> int:
-    """Run the work of a work-horse; what its parent can tell from the exit status."""
-    try:
-        work()
-    except MemoryError:
-        log.error("the job needs more memory than it may have")
-        return _EXIT_OUT_OF_MEMORY
-    except Exception:
-        log.exception("the job stopped at an error that it does not expect")
-        return os.EX_SOFTWARE
-    return os.EX_OK
-
-
-def cause_of_death(status: int, kills_before: int) -> Cause:
-    """Why a work-horse ended without an outcome, from its wait status and the kernel's count of kills for memory."""
-    if os.WIFEXITED(status):
-        return "out_of_memory" if os.WEXITSTATUS(status) == _EXIT_OUT_OF_MEMORY else "internal_error"
-    killed = os.WTERMSIG(status) == signal.SIGKILL
-    return "out_of_memory" if killed and out_of_memory_kills() > kills_before else "worker_lost"
-
-
-def out_of_memory_kills() -> int:
-    """How many processes of this machine the kernel has killed for want of memory; 0 where it does not say."""
-    try:
-        lines = Path("/proc/vmstat").read_text().splitlines()
-    except OSError:
-        return 0
-    return sum(int(line.split()[1]) for line in lines if line.startswith("oom_kill "))
-
-
-def limit_memory(address_space_bytes: int | None) -> None:
-    if address_space_bytes is not None:
-        resource.setrlimit(resource.RLIMIT_AS, (address_space_bytes, address_space_bytes))
-
-
 def main() -> None:
     settings = load_settings()
     configure_logging(settings.log_level)
     assert settings.redis_url, "the parent process sets CLEAVE_REDIS_URL"
+    log.info("loading the kernels; the first time they are compiled, which takes up to a minute")
     segcore.warm_up()
+    log.info("ready for jobs")
     queue = JobQueue(connect_patiently(settings.redis_url))
     leases = JobQueue(connect_impatiently(settings.redis_url))
     JobWorker(LocalStore(settings.data_dir), queue, leases, settings).work(logging_level="WARNING")

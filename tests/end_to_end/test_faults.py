@@ -11,7 +11,7 @@ import pytest
 from end_to_end.installation import Installation
 from support import LONG, sphere, wait_until
 
-SECONDS = json.dumps({"clusters": 20_000, "max_segments": 300})  # with sphere(100), a second or so of work
+SECOND = json.dumps({"clusters": 8_000, "max_segments": 300})  # with sphere(60), about a second of work
 
 
 def results(installation: Installation) -> set[bytes]:
@@ -24,7 +24,7 @@ def kill_one(pids: list[int]) -> None:
 
 def test_killing_a_work_horse_a_worker_and_the_queue_server_loses_no_job() -> None:
     with Installation() as installation:
-        paths = [installation.submit(sphere(100), SECONDS) for _ in range(20)]
+        paths = [installation.submit(sphere(60), SECOND) for _ in range(20)]
         wait_until(installation.horses)
         kill_one(installation.horses())
         wait_until(lambda: "succeeded" in installation.statuses(paths))

@@ -3,10 +3,13 @@
 import asyncio
 import io
 from collections.abc import Iterator
+from contextlib import suppress
 from pathlib import Path
 
 import httpx
+import hypothesis
 import pytest
+from hypothesis import strategies as st
 from starlette.requests import ClientDisconnect, Request
 
 from segcore.errors import InvalidParameters
@@ -46,6 +49,24 @@ def test_a_form_means_the_same_however_it_is_cut_up(store: LocalStore, step: int
         assert (upload.folder / "mesh").read_bytes() == content
     assert bytes(result.parameters) == b'{"seed": 1}'
     assert result.file_name == "hand.OFF"
+
+
+@hypothesis.settings(
+    max_examples=200, deadline=None, suppress_health_check=[hypothesis.HealthCheck.function_scoped_fixture]
+)
+@hypothesis.given(
+    st.lists(
+        st.sampled_from([b"\r\n", b"--" + BOUNDARY.encode(), b"--", b"name=mesh", b": ", b"\0"])
+        | st.binary(max_size=40)
+    )
+)
+def test_whatever_is_sent_is_a_form_or_a_problem(store: LocalStore, pieces: list[bytes]) -> None:
+    with store.begin_upload() as upload:
+        reader = FormReader(BOUNDARY.encode(), upload, 10_000)
+        with suppress(Problem):
+            for piece in [form(part("mesh", b"abc"))[:40], *pieces]:
+                reader.feed(piece)
+            reader.finish()
 
 
 @pytest.mark.parametrize(
