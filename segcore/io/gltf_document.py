@@ -12,6 +12,7 @@ from segcore.errors import InvalidMesh, UnsupportedFormat
 
 _MAGIC, _HEADER, _CHUNK_HEADER = b"glTF", 12, 8
 _JSON_CHUNK, _BINARY_CHUNK = b"JSON", b"BIN\0"
+_LARGEST = 2**53
 # Extensions that change what is drawn on the faces, or describe them, but not where they are.
 _HARMLESS = (
     "EXT_instance_features", "EXT_lights_", "EXT_mesh_features", "EXT_structural_metadata", "EXT_texture_",
@@ -91,10 +92,10 @@ def read_document(data: bytes) -> Document:
 
 
 def integer(item: Item, key: str, where: str, default: int | None = None) -> int:
-    """A whole number >= 0."""
+    """A whole number from 0 to 2**53, as far as other readers are exact."""
     value = item.get(key, default)
-    if type(value) is not int or value < 0:
-        _refuse(where, key, "a whole number of at least 0")
+    if type(value) is not int or not 0 <= value <= _LARGEST:
+        _refuse(where, key, f"a whole number from 0 to {_LARGEST}")
     return value
 
 
@@ -107,10 +108,10 @@ def numbers(item: Item, key: str, where: str, default: list[float]) -> list[floa
 
 
 def indices(item: Item, key: str, where: str) -> list[int]:
-    """A list of whole numbers >= 0, empty where there is none."""
+    """A list of whole numbers from 0 to 2**53, empty where there is none."""
     values = item.get(key, [])
-    if not isinstance(values, list) or not all(type(value) is int and value >= 0 for value in values):
-        _refuse(where, key, "a list of whole numbers of at least 0")
+    if not isinstance(values, list) or not all(type(value) is int and 0 <= value <= _LARGEST for value in values):
+        _refuse(where, key, f"a list of whole numbers from 0 to {_LARGEST}")
     return values
 
 
@@ -127,7 +128,7 @@ def _refuse(where: str, key: str, form: str) -> NoReturn:
 
 
 def _is_finite(value: object) -> bool:
-    return (type(value) is float and math.isfinite(value)) or (type(value) is int and abs(value) < 2**64)
+    return (type(value) is float and math.isfinite(value)) or (type(value) is int and abs(value) <= _LARGEST)
 
 
 def _split_container(data: bytes) -> tuple[bytes, memoryview | None]:

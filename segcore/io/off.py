@@ -1,5 +1,6 @@
 """The OFF reader (Geomview's object file format, in text)."""
 
+import math
 import re
 from typing import Any
 
@@ -110,12 +111,13 @@ def _walk(words: Words, numbers: NDArray[Any], first: int, count: int) -> LongAr
     heads = np.zeros(count, dtype=np.int64)
     at = 0
     for i in range(count):
-        if at >= len(values) or values[at] > len(values) - at - 1:
+        size = values[at] if at < len(values) else math.inf
+        if size > len(values) - at - 1:
             raise InvalidMesh(f"The OFF file ends at face {i} of the {count} that it announces: it is cut short.")
-        if values[at] < 0 or values[at] != int(values[at]):
+        if not (size >= 0 and float(size).is_integer()):
             raise InvalidMesh(f"Line {words.line_number(first + at)}: a face begins with its number of corners.")
         heads[i] = at
-        at = after[at + int(values[at])]
+        at = after[at + int(size)]
     if at < len(values):
         raise InvalidMesh(
             f"Line {words.line_number(first + at)}: the OFF file goes on after the {count} faces that it announces: "

@@ -137,4 +137,4 @@ def _property(words: list[str], number: int) -> Property:
         case [kind, name] if kind in _TYPES:
             return Property(name, _TYPES[kind])
         case _:
-            raise InvalidMesh(f"Line {number}: 'property {' '.join(words)[:80]}' is of no known type.")
+            raise InvalidMesh(f"Line {number}: {' '.join(words)[:80]!r} is a property of no known type.")

@@ -279,6 +279,8 @@ def test_errors_are_one_short_sentence_whatever_the_file_holds() -> None:
         PLY["ascii"].replace(b"element face 2", b"element " + long + b" 99999999"),
         ASCII_STL.replace(b"vertex 1 0 0", b"vertex 1 " + long + b" 0"),
         gltf_square().gltf().replace(b'"2.0"', b'"1.' + long + b'"'),
+        gltf_square().gltf().replace(b'"mesh": 0', b'"mesh": ' + b"9" * 4000),
+        gltf_square().gltf().replace(b'"count": 4', b'"count": ' + b"9" * 5000),
         gltf_square().gltf().replace(b'"asset"', b'"extensionsRequired": ["' + long + b'"], "asset"'),
     ]
     for data in hostile:

@@ -126,6 +126,7 @@ def test_a_polygon_without_area_has_no_faces_but_keeps_its_number() -> None:
         (b"3 0 2 3", b"3 0 2 1.5", "not whole"),
         (b"3 0 2 3", b"3 0 2", "cut short"),
         (b"3 0 2 3", b"-3 0 2 3", "Line 8"),
+        (b"3 0 2 3", b"nan 0 2 3", "Line 8"),
         (b"3 0 2 3\n", b"", "cut short"),
         (b"3 0 2 3\n", b"3 0 2 3\n3 0 1 3\n", "Line 9.*goes on"),
         (b"4 2 0", b"4 -2 0", "must be whole"),
