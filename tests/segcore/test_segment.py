@@ -131,8 +131,17 @@ def test_a_thousand_components_end_in_a_hierarchy_of_the_size_asked_for():
     assert len(set(labels[:320])) == len(set(labels[320:332])) == 1
 
 
-def test_the_hierarchy_ends_where_it_is_told_to():
-    assert segment(BURR.mesh, SegmentationParameters(max_segments=9)).max_segments == 9
+@pytest.mark.parametrize("most", [1, 2, 9])
+def test_the_hierarchy_ends_where_it_is_told_to(most):
+    hierarchy = segment(BURR.mesh, SegmentationParameters(max_segments=most))
+    assert hierarchy.max_segments == most
+    assert set(hierarchy.labels(most)) == set(range(most))
+
+
+def test_components_beyond_the_number_of_segments_share_them():
+    boxes = shapes.joined(*[shapes.box(centre=(2.0 * x, 0, 0)) for x in range(5)]).mesh
+    for most in (1, 2, 3):
+        assert segment(boxes, SegmentationParameters(max_segments=most)).max_segments == most
 
 
 @pytest.mark.parametrize(("mesh", "most"), [(shapes.box(), 12), (Mesh(np.eye(3), [[0, 1, 2]]), 1),
