@@ -17,6 +17,7 @@ _CONTINUATION = re.compile(rb"\\[ \t\r]*\n")
 _COORDINATE = re.compile(r"[-+]?(\d+\.?\d*|\.\d+)([eE][-+]?\d+)?")
 _CORNER = re.compile(r"[-+]?\d+(/-?\d*){0,2}")
 _SPACE, _SLASH = 32, 47
+_BLOCK = 2**20  # bytes that are looked at together, so that the helper arrays stay in the cache
 _IN_SUFFIX = np.isin(np.arange(256), list(b"/-0123456789"))
 
 
@@ -98,6 +99,15 @@ def _numbers(
 
 def _without_suffixes(text: bytes) -> bytes:
     """The text with spaces from the first slash of every word to its end; ValueError where they hide other things."""
+    blocks, at = [], 0
+    while at < len(text):
+        end = text.find(b"\n", at + _BLOCK) + 1 or len(text)
+        blocks.append(_block_without_suffixes(text[at:end]))
+        at = end
+    return b"".join(blocks)
+
+
+def _block_without_suffixes(text: bytes) -> bytes:
     letters = np.frombuffer(text, np.uint8).copy()
     marks = np.flatnonzero((letters == _SLASH) | (letters <= _SPACE))
     is_slash = letters[marks] == _SLASH

@@ -63,13 +63,15 @@ class Words:
 
     def equal(self, indices: LongArray, word: bytes) -> BoolArray:
         """(N,): which of the words at ``indices`` are ``word``."""
-        letters = np.frombuffer(self.text, np.uint8)
+        places = len(self.text) - len(word) + 1
+        if places <= 0:
+            return np.zeros(len(indices), dtype=bool)
         first = self.start[indices]
-        same = np.ones(len(first), dtype=bool)
-        for i, letter in enumerate(word):
-            same &= letters.take(first + i, mode="clip") == letter
+        from_here = np.ndarray(places, f"S{len(word)}", self.text, strides=(1,))
+        same = (from_here[np.minimum(first, places - 1)] == word) & (first < places)
         end = first + len(word)
-        return same & ((end >= len(letters)) | (letters.take(end, mode="clip") <= _SPACE))
+        is_end = np.frombuffer(self.text, np.uint8).take(end, mode="clip") <= _SPACE
+        return same & (is_end | (end == len(self.text)))
 
     def text_of_lines(self, selected: BoolArray) -> bytes:
         """The text of the lines for which ``selected``, (L,), is true, one after the other."""
