@@ -1,12 +1,13 @@
 """The inverse power method for the 1-Laplacian, p = 1: the solver that the paper prefers."""
 
+from math import inf
+
 import numpy as np
 
-from segcore.arrays import FloatArray
 from segcore.cheeger import Cut, balance_subgradient, sweep
-from segcore.fiedler import eigenvectors
 from segcore.graph import SurfaceGraph
 from segcore.inner_problem import InnerProblem
+from segcore.starts import start_functions
 
 FIRST_ITERATIONS = 50  # before the first sweep; the second one comes after as many again, and so on
 WORTHWHILE_GAIN = 0.02  # relative: a start is given up once the duality gap leaves less to gain over the best cut
@@ -43,20 +44,19 @@ def inverse_power_cut(graph: SurfaceGraph, *, starts: int = 6, iterations: int =
     """
     problem = InnerProblem.of(graph)
     seen: set[bytes] = set()
-    best = sweep(graph, eigenvectors(graph, problem.factor, 1)[:, 0])
-    best = _descend(problem, best, best, iterations, seen)
-    for _ in range(starts - 1):
-        cut = sweep(graph, _random_function(problem, rng))
-        best = min(best, _descend(problem, cut, best, iterations, seen), key=lambda found: found.ncc)
-    return best
+    found: list[Cut] = []
+    for values in start_functions(graph, problem.factor, starts, rng):
+        best = min((cut.ncc for cut in found), default=inf)
+        found.append(_descend(problem, sweep(graph, values), best, iterations, seen))
+    return min(found, key=lambda cut: cut.ncc)
 
 
-def _descend(problem: InnerProblem, cut: Cut, best: Cut, iterations: int, seen: set[bytes]) -> Cut:
+def _descend(problem: InnerProblem, cut: Cut, best: float, iterations: int, seen: set[bytes]) -> Cut:
     """Steps of the method until one fails, cannot better the best cut by much, or has been made before."""
     while cut.key not in seen:
         seen.add(cut.key)
         problem.aim(cut.ncc * balance_subgradient(problem.graph, cut))
-        cut = _step(problem, cut, min(best.ncc, cut.ncc), iterations)
+        cut = _step(problem, cut, min(best, cut.ncc), iterations)
     return cut
 
 
@@ -73,13 +73,3 @@ def _step(problem: InnerProblem, cut: Cut, best: float, iterations: int) -> Cut:
         if cut.ncc * (1 - problem.gap / cut.weight) >= best * (1 - WORTHWHILE_GAIN):
             break
     return cut
-
-
-def _random_function(problem: InnerProblem, rng: np.random.Generator) -> FloatArray:
-    """(N,): noise after two steps of the linear inverse power method, p = 2, which leave its large features."""
-    volume = problem.graph.volume
-    values = rng.standard_normal(len(volume))
-    for _ in range(2):
-        mean = volume @ values / volume.sum()
-        values = problem.factor.solve(volume * (values - mean))
-    return values
