@@ -18,6 +18,7 @@ MEMORY = 10  # pairs of L-BFGS
 SUFFICIENT_DECREASE = 1e-4  # of a step, relative to the first order (Armijo)
 SHORTEST_STEP = 1e-6
 LEAST_DECREASE = 1e-6  # relative: a stage ends where a step gains less
+BALANCED = 1e-10  # relative imbalance of the pulls on the center c
 SMALLEST_JUMP = 1e-5  # along an edge, relative to the largest, for the first Hessian
 
 
@@ -62,7 +63,7 @@ def p_laplacian_cut(
 def rayleigh_quotient(graph: SurfaceGraph, values: FloatArray, p: float) -> tuple[float, FloatArray]:
     """F(f) and its gradient (N,), for f that is not constant."""
     gradient = np.empty(graph.node_count)
-    center = _center(values, graph.volume, p)
+    center = _center(values, graph.volume, p, BALANCED)
     return _quotient(graph.edges.view(np.uint32), graph.weight, graph.volume, values, center, p, gradient), gradient
 
 
@@ -130,41 +131,62 @@ def _reweighted(graph: SurfaceGraph, f: FloatArray, p: float) -> SurfaceGraph:
 
 
 @njit(cache=True)
-def _center(f, volume, p):  # type: ignore[no-untyped-def]
-    """The c that minimises sum vol[i] |f[i] - c|^p: Newton's method on the derivative, kept in a shrinking bracket."""
+def _center(f, volume, p, balanced):  # type: ignore[no-untyped-def]
+    """The c that minimises sum vol[i] |f[i] - c|^p: there the pulls of the values above and below c are equal.
+
+    Newton's method, and bisection wherever it leaves the bracket or does not halve the imbalance: beside a value it
+    hardly moves. It ends where the imbalance is at most ``balanced`` times all pulls, or with the bracket used up.
+    """
     low = f.min()
     high = f.max()
     c = 0.5 * (low + high)
-    for _ in range(60):
-        pull = 0.0
+    last_imbalance = np.inf
+    while low < c < high:
+        above = 0.0
+        below = 0.0
         stiffness = 0.0
         for i in range(len(f)):
-            distance = abs(f[i] - c)
-            if distance > 0:
-                power = volume[i] * distance ** (p - 2)
-                stiffness += power
-                pull += power * (f[i] - c)
-        if pull > 0:
+            distance = f[i] - c
+            if distance != 0:
+                pull = volume[i] * abs(distance) ** (p - 1)
+                stiffness += pull / abs(distance)
+                if distance > 0:
+                    above += pull
+                else:
+                    below += pull
+        imbalance = above - below
+        if abs(imbalance) <= balanced * (above + below):
+            break
+        if imbalance > 0:
             low = c
         else:
             high = c
-        newton = c + pull / ((p - 1) * stiffness)
-        following = newton if low < newton < high else 0.5 * (low + high)
-        if abs(following - c) <= 1e-12 * (high - low) or following == c:
-            break
-        c = following
+        newton = c + imbalance / ((p - 1) * stiffness)
+        trusted = low < newton < high and abs(imbalance) <= 0.5 * last_imbalance
+        c = newton if trusted else 0.5 * (low + high)
+        last_imbalance = abs(imbalance)
     return c
 
 
 @njit(cache=True)
 def _quotient(edges, weight, volume, f, center, p, gradient):  # type: ignore[no-untyped-def]
-    """R / B; the gradient of B is that at a fixed c, for c is optimal."""
+    """R / B; the gradient of B is that at a fixed c, for c is optimal.
+
+    The pulls on c are in balance, but as p falls towards 1 a node next to c may have any pull within the rounding of c:
+    that node's is taken to be what the others leave.
+    """
     balance = 0.0
+    nearest = 0
+    rest = 0.0
     for i in range(len(f)):
         distance = f[i] - center
         power = volume[i] * abs(distance) ** (p - 1)
         balance += power * abs(distance)
         gradient[i] = -power if distance > 0 else power
+        rest += gradient[i]
+        if abs(distance) < abs(f[nearest] - center):
+            nearest = i
+    gradient[nearest] -= rest
     variation = 0.0
     for e in range(len(edges)):
         jump = f[edges[e, 0]] - f[edges[e, 1]]
