@@ -6,11 +6,11 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from segcore.arrays import BoolArray, FloatArray, IntArray, LongArray
+from segcore.arrays import BoolArray, FloatArray, LongArray
 from segcore.errors import InvalidMesh
 from segcore.io.limits import ReadLimits
 from segcore.io.polygons import Polygons, mesh_of_polygons
-from segcore.io.text import Words, find_words, parse_numbers, plain_text, without_comments
+from segcore.io.text import Words, find_words, first_bad, parse_numbers, plain_text, without_comments
 from segcore.mesh import Mesh
 
 _CONTINUATION = re.compile(rb"\\[ \t\r]*\n")
@@ -49,7 +49,7 @@ def _lines_with(words: Words, keyword: bytes) -> BoolArray:
     return words.equal(words.line_start[:-1], keyword)
 
 
-def _values_per_line(words: Words, lines: IntArray, what: str) -> LongArray:
+def _values_per_line(words: Words, lines: LongArray, what: str) -> LongArray:
     """(N,) the number of words after the keyword of each line, at least three."""
     counts = (words.line_start[lines + 1] - words.line_start[lines] - 1).astype(np.int64)
     if (counts < 3).any():
@@ -59,17 +59,17 @@ def _values_per_line(words: Words, lines: IntArray, what: str) -> LongArray:
 
 
 def _vertices(words: Words, is_vertex: BoolArray) -> FloatArray:
-    lines = np.flatnonzero(is_vertex).astype(np.int32)
+    lines = np.flatnonzero(is_vertex)
     counts = _values_per_line(words, lines, "a vertex")
-    values = _numbers(words, is_vertex, b"v", counts, np.float64)
+    values = _numbers(words, lines, b"v", counts)
     first = np.cumsum(counts) - counts
     return values[first[:, None] + np.arange(3)]
 
 
 def _polygons(words: Words, is_vertex: BoolArray, is_face: BoolArray) -> Polygons:
-    lines = np.flatnonzero(is_face).astype(np.int32)
+    lines = np.flatnonzero(is_face)
     sizes = _values_per_line(words, lines, "a face")
-    indices = _numbers(words, is_face, b"f", sizes, np.int64)
+    indices = _numbers(words, lines, b"f", sizes)
     vertices_before = np.repeat(np.cumsum(is_vertex)[lines], sizes)
     corners = np.where(indices < 0, indices + vertices_before, indices - 1)
     outside = (indices == 0) | (corners < 0) | (corners >= np.count_nonzero(is_vertex))
@@ -81,20 +81,43 @@ def _polygons(words: Words, is_vertex: BoolArray, is_face: BoolArray) -> Polygon
     return Polygons(corners, sizes)
 
 
-def _numbers(
-    words: Words, selected: BoolArray, keyword: bytes, counts: LongArray, dtype: type[np.generic]
-) -> NDArray[Any]:
-    """The numbers after the keyword on the selected lines, of ``7/8/9`` the first."""
-    text = words.text_of_lines(selected)
-    if text.count(keyword) == len(counts):
+def _numbers(words: Words, lines: LongArray, keyword: bytes, counts: LongArray) -> NDArray[Any]:
+    """The numbers after the keyword on the lines, of ``7/8/9`` the first: int64 for ``f``, else float64."""
+
+    def parsed(low: int, high: int) -> NDArray[Any]:
+        return _parsed(words, lines[low:high], keyword, int(counts[low:high].sum()))
+
+    def are_good(low: int, high: int) -> bool:
         try:
-            text = text.replace(keyword, b" ")
-            if keyword == b"f" and b"/" in text:
-                text = _without_suffixes(text)
-            return parse_numbers(text, int(counts.sum()), dtype)
+            parsed(low, high)
         except ValueError:
-            pass
-    raise _unreadable(words, selected, keyword)
+            return False
+        return True
+
+    try:
+        return parsed(0, len(lines))
+    except ValueError:
+        raise _unreadable(words, int(lines[first_bad(0, len(lines), are_good)]), keyword) from None
+
+
+def _parsed(words: Words, lines: LongArray, keyword: bytes, count: int) -> NDArray[Any]:
+    selected = np.zeros(len(words.line_start) - 1, dtype=bool)
+    selected[lines] = True
+    text = words.text_of_lines(selected)
+    if text.count(keyword) != len(lines):
+        raise ValueError("a keyword within a number")
+    text = text.replace(keyword, b" ")
+    if keyword == b"v":
+        return parse_numbers(text, count, np.float64)
+    return parse_numbers(_without_suffixes(text) if b"/" in text else text, count, np.int64)
+
+
+def _unreadable(words: Words, line: int, keyword: bytes) -> InvalidMesh:
+    """What is wrong on a line with a word that is not as it should be."""
+    pattern, what = (_CORNER, "a vertex index") if keyword == b"f" else (_COORDINATE, "a number")
+    values = range(int(words.line_start[line]) + 1, int(words.line_start[line + 1]))
+    bad = next((i for i in values if not pattern.fullmatch(words.word(i))), values[0])
+    return InvalidMesh(f"Line {words.line_number(bad)}: {words.word(bad)[:40]!r} is not {what}.")
 
 
 def _without_suffixes(text: bytes) -> bytes:
@@ -120,13 +143,3 @@ def _block_without_suffixes(text: bytes) -> bytes:
         raise ValueError("a texture or normal index is not a number")
     letters[suffix] = _SPACE
     return letters.tobytes()
-
-
-def _unreadable(words: Words, selected: BoolArray, keyword: bytes) -> InvalidMesh:
-    """What is wrong on the first of the selected lines with a word that is not as it should be."""
-    pattern, what = (_CORNER, "a vertex index") if keyword == b"f" else (_COORDINATE, "a number")
-    for line in np.flatnonzero(selected).tolist():
-        for index in range(words.line_start[line] + 1, words.line_start[line + 1]):
-            if not pattern.fullmatch(words.word(index)):
-                return InvalidMesh(f"Line {words.line_number(index)}: {words.word(index)!r} is not {what}.")
-    return InvalidMesh("The OBJ file has characters between its numbers that do not belong there.")

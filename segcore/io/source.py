@@ -35,13 +35,23 @@ def read_source(source: str | os.PathLike[str] | BinaryIO, limits: ReadLimits) -
 
 def _read_path(path: str | os.PathLike[str], limits: ReadLimits) -> bytes:
     with open(path, "rb") as file:
-        limits.check("max_bytes", os.fstat(file.fileno()).st_size, "bytes")
         return _read_file(file, limits)
 
 
 def _read_file(file: BinaryIO, limits: ReadLimits) -> bytes:
-    chunks = iter(lambda: file.read(_CHUNK), b"")
-    return _join(chunks, limits, "max_bytes")
+    piece = max(_bytes_left(file), _CHUNK)  # a file that knows its size is read at once, without a second copy
+    limits.check("max_bytes", piece if piece > _CHUNK else 0, "bytes")
+    return _join(iter(lambda: file.read(piece), b""), limits, "max_bytes")
+
+
+def _bytes_left(file: BinaryIO) -> int:
+    """0 where the file does not know."""
+    if not file.seekable():
+        return 0
+    position = file.tell()
+    end = file.seek(0, os.SEEK_END)
+    file.seek(position)
+    return end - position
 
 
 def _gunzip(data: bytes, limits: ReadLimits) -> bytes:
@@ -52,16 +62,20 @@ def _gunzip(data: bytes, limits: ReadLimits) -> bytes:
 
 
 def _gunzip_chunks(data: bytes) -> Iterator[bytes]:
-    while data.startswith(GZIP_MAGIC):  # a gzip file is one or more members, one after the other
-        member = zlib.decompressobj(_GZIP_WINDOW)
+    at = 0
+    while data.startswith(GZIP_MAGIC, at):  # a gzip file is one or more members, one after the other
+        member, tail = zlib.decompressobj(_GZIP_WINDOW), b""
         while not member.eof:
-            chunk = member.decompress(data, _CHUNK)
-            data = member.unconsumed_tail
-            if not chunk and not member.eof:
+            if not tail:
+                tail = data[at : at + _CHUNK]
+                at += len(tail)
+            chunk = member.decompress(tail, _CHUNK)
+            if not tail and not chunk and not member.eof:
                 raise InvalidMesh("The compressed file is cut short: send it again.")
+            tail = member.unconsumed_tail
             yield chunk
-        data = member.unused_data
-    if data.strip(b"\0"):
+        at -= len(member.unused_data)
+    if data[at:].strip(b"\0"):
         raise InvalidMesh("There is something else after the compressed data of the file: compress it again.")
 
 

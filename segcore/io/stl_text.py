@@ -8,7 +8,7 @@ from segcore.arrays import BoolArray, FloatArray, LongArray
 from segcore.errors import InvalidMesh
 from segcore.io.limits import ReadLimits
 from segcore.io.polygons import Polygons, mesh_of_polygons
-from segcore.io.text import Words, find_words, parse_numbers, plain_text
+from segcore.io.text import Words, are_numbers, find_words, first_bad, parse_numbers, plain_text
 from segcore.mesh import Mesh
 
 # The lines of a face as nearly every program writes them, and how many words each has.
@@ -92,7 +92,7 @@ def _read_any_layout(text: bytes, limits: ReadLimits) -> Mesh:
     try:
         numbers = parse_numbers(b"".join(loops).replace(b"vertex", b" "), 3 * int(sizes.sum()), np.float64)
     except ValueError:
-        bad = next(i for i, loop in enumerate(loops) if not _is_numeric(loop))
+        bad = first_bad(0, len(loops), lambda low, high: _are_numeric(loops[low:high]))
         raise InvalidMesh(
             f"Line {_line_number(text, starts[bad])}: this face has a coordinate that is no number."
         ) from None
@@ -103,12 +103,9 @@ def _mesh(vertices: FloatArray, sizes: LongArray, limits: ReadLimits) -> Mesh:
     return mesh_of_polygons(vertices, Polygons(np.arange(len(vertices)), sizes), limits)
 
 
-def _is_numeric(loop: bytes) -> bool:
-    try:
-        parse_numbers(loop.replace(b"vertex", b" "), 3 * loop.count(b"vertex"), np.float64)
-    except ValueError:
-        return False
-    return True
+def _are_numeric(loops: list[bytes]) -> bool:
+    text = b"".join(loops)
+    return are_numbers(text.replace(b"vertex", b" "), 3 * text.count(b"vertex"))
 
 
 def _line_number(text: bytes, offset: int) -> int:

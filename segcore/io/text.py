@@ -2,6 +2,7 @@
 
 import re
 import warnings
+from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Any
 
@@ -17,6 +18,7 @@ _FILLING = b"\0\x1a"  # blocks that were not full, and the end of a file in DOS
 _SPACE = 32  # this byte and all below it separate words
 _NEWLINE = 10
 _BLOCK = 2**20  # bytes that are looked at together, so that the helper arrays stay in the cache
+_INT64 = np.iinfo(np.int64)
 _EXACT = 2.0**53  # whole numbers up to here are exact in float64
 _COMMENT = re.compile(rb"#[^\n]*")
 
@@ -34,7 +36,7 @@ class Words:
         return len(self.start)
 
     def word(self, index: int) -> str:
-        return bytes(self.text[self.start[index] :].split(None, 1)[0][:40]).decode("ascii", "backslashreplace")
+        return self._between(index, index + 1).rstrip().decode("ascii", "backslashreplace")
 
     def line_number(self, index: int) -> int:
         """The line of the file, counted from 1, in which a word stands."""
@@ -49,17 +51,19 @@ class Words:
             Where a word is not a number; the message has its line.
         """
         try:
-            return parse_numbers(self._between(first, last), last - first, np.int64)
+            values = parse_numbers(self._between(first, last), last - first, np.int64)
         except ValueError:
             return self.floats(first, last)
+        too_large = (values == _INT64.max) | (values == _INT64.min)  # NumPy does not say when it cuts a number down
+        return self.floats(first, last) if too_large.any() else values
 
     def floats(self, first: int, last: int) -> FloatArray:
         """Words first..last - 1 as float64; raises InvalidMesh as :meth:`numbers` does."""
         try:
             return parse_numbers(self._between(first, last), last - first, np.float64)
         except ValueError:
-            bad = next((i for i in range(first, last) if not _is_number(self.word(i))), first)
-            raise InvalidMesh(f"Line {self.line_number(bad)}: {self.word(bad)!r} is not a number.") from None
+            bad = first_bad(first, last, lambda low, high: are_numbers(self._between(low, high), high - low))
+            raise InvalidMesh(f"Line {self.line_number(bad)}: {self.word(bad)[:40]!r} is not a number.") from None
 
     def equal(self, indices: LongArray, word: bytes) -> BoolArray:
         """(N,): which of the words at ``indices`` are ``word``."""
@@ -148,9 +152,24 @@ def whole_numbers(values: NDArray[Any]) -> LongArray | None:
     return values.astype(np.int64)
 
 
-def _is_number(word: str) -> bool:
+def are_numbers(text: bytes, count: int) -> bool:
+    """Whether a text is exactly ``count`` numbers."""
     try:
-        parse_numbers(word.encode("ascii", "replace"), 1, np.float64)
+        parse_numbers(text, count, np.float64)
     except ValueError:
         return False
     return True
+
+
+def first_bad(low: int, high: int, are_good: Callable[[int, int], bool]) -> int:
+    """The first bad one of low..high - 1, of which one is; ``are_good(a, b)`` says whether all of a..b - 1 are good.
+
+    By bisection, as looking at them one by one would take a long time for files of many millions.
+    """
+    while high - low > 1:
+        middle = (low + high) // 2
+        if are_good(low, middle):
+            low = middle
+        else:
+            high = middle
+    return low

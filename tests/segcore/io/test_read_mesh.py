@@ -100,6 +100,14 @@ def test_files_compressed_with_gzip_are_read(name: str, data: bytes, tmp_path: P
     assert read_mesh(path).faces.tolist() == read(data).faces.tolist()
 
 
+def test_compressed_files_of_any_size_and_ratio_are_read_whole() -> None:
+    noise = "".join(f"0 0 {value}\n" for value in np.random.default_rng(0).random(60_000).tolist()).encode()
+    for body in (noise, b"0 0 0\n" * 600_000):
+        count = body.count(b"\n")
+        data = b"OFF\n%d 1 0\n%s3 0 1 2\n" % (count, body)
+        assert len(read(gzip.compress(data, 1)).vertices) == count
+
+
 def test_a_damaged_or_cut_compression_is_refused() -> None:
     data = gzip.compress(OFF)
     for length in range(2, len(data)):

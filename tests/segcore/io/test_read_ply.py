@@ -129,6 +129,11 @@ def test_a_wrong_file_is_refused_with_the_place(old: bytes, new: bytes, message:
         read(SQUARES["ascii"].replace(old, new))
 
 
+def test_whole_numbers_that_no_integer_holds_are_still_coordinates() -> None:
+    mesh = read(SQUARES["ascii"].replace(b"0.0 1.0 0.5", b"0 100000000000000000000 -9223372036854775808"))
+    assert mesh.vertices[3].tolist() == [0.0, 1e20, -(2.0**63)]
+
+
 def test_points_alone_are_refused() -> None:
     for encoding in ENCODINGS:
         with pytest.raises(InvalidMesh, match="no faces"):
