@@ -8,7 +8,10 @@ from segcore.cheeger import Cut, sweep
 from segcore.fiedler import fiedler_vectors
 from segcore.flow import flow_cut
 from segcore.graph import SurfaceGraph
+from segcore.inverse_power import inverse_power_cut
+from segcore.p_laplacian import p_laplacian_cut
 from segcore.parameters import SegmentationParameters
+from segcore.split_bregman import split_bregman_cut
 
 Solver = Callable[[SurfaceGraph, SegmentationParameters, np.random.Generator], Cut]
 
@@ -23,4 +26,29 @@ def fiedler(graph: SurfaceGraph, _: SegmentationParameters, _rng: np.random.Gene
     return sweep(graph, fiedler_vectors(graph)[:, 0])
 
 
-SOLVERS: dict[str, Solver] = {"flow": flow, "fiedler": fiedler}
+def inverse_power(graph: SurfaceGraph, parameters: SegmentationParameters, rng: np.random.Generator) -> Cut:
+    """p = 1, the paper's choice: the inverse power method of Hein and Buehler."""
+    return inverse_power_cut(graph, starts=parameters.starts, rng=rng, **_iterations(parameters))
+
+
+def split_bregman(graph: SurfaceGraph, parameters: SegmentationParameters, rng: np.random.Generator) -> Cut:
+    """p = 1, the paper's second solver: the total variation of Szlam and Bresson."""
+    return split_bregman_cut(graph, starts=parameters.starts, rng=rng, **_iterations(parameters))
+
+
+def p_laplacian(graph: SurfaceGraph, parameters: SegmentationParameters, rng: np.random.Generator) -> Cut:
+    """1 < p < 2: the continuation in p of Buehler and Hein, from the second eigenvector."""
+    return p_laplacian_cut(graph, p=parameters.p, starts=1, rng=rng, **_iterations(parameters))
+
+
+def _iterations(parameters: SegmentationParameters) -> dict[str, int]:
+    return {} if parameters.iterations is None else {"iterations": parameters.iterations}
+
+
+SOLVERS: dict[str, Solver] = {
+    "flow": flow,
+    "fiedler": fiedler,
+    "inverse_power": inverse_power,
+    "split_bregman": split_bregman,
+    "p_laplacian": p_laplacian,
+}
