@@ -3,6 +3,7 @@
 import argparse
 import sys
 from collections.abc import Callable, Sequence
+from contextlib import suppress
 from pathlib import Path
 from typing import NoReturn
 
@@ -86,6 +87,16 @@ def _add_segment(commands: "argparse._SubParsersAction[_Parser]") -> None:
     segment.add_argument("mesh", type=Path, metavar="MESH", help="the mesh file")
     segment.add_argument("--segments", type=int, metavar="K", help="number of segments (chosen by the mesh)")
     segment.add_argument("--max-segments", type=int, metavar="N", help="how far the hierarchy goes (64, or K)")
+    segment.add_argument("--preset", metavar="NAME", help="a published method, such as chahhou2014")
+    segment.add_argument(
+        "--set",
+        type=_parameter,
+        action="append",
+        default=[],
+        dest="parameters",
+        metavar="NAME=VALUE",
+        help="a parameter of the method, such as solver=inverse_power; may be given again",
+    )
     segment.add_argument("-o", "--output", type=_glb, metavar="PARTS.glb", help="the mesh with a colour per segment")
     segment.add_argument("--labels", type=Path, metavar="LABELS.seg", help="the segment of every face, one per line")
     segment.add_argument("--hierarchy", type=Path, metavar="TREE.json", help="the tree of cuts")
@@ -117,7 +128,9 @@ def _segment(choices: argparse.Namespace) -> None:
         SegmentRequest(
             mesh=choices.mesh,
             segments=choices.segments,
-            max_segments=choices.max_segments,
+            parameters=dict(choices.parameters)
+            | ({} if choices.preset is None else {"preset": choices.preset})
+            | ({} if choices.max_segments is None else {"max_segments": choices.max_segments}),
             model=choices.output,
             labels=choices.labels,
             hierarchy=choices.hierarchy,
@@ -125,6 +138,17 @@ def _segment(choices: argparse.Namespace) -> None:
         )
     )
     _say("\n".join(summary))
+
+
+def _parameter(text: str) -> tuple[str, object]:
+    """A name and a value: a number where it reads as one, otherwise a word."""
+    name, equals, value = text.partition("=")
+    if not name or not equals:
+        raise argparse.ArgumentTypeError(f"a parameter is NAME=VALUE, not {text!r}")
+    for number in (int, float):
+        with suppress(ValueError):
+            return name, number(value)
+    return name, value
 
 
 def _say(text: str) -> None:

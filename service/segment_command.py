@@ -3,7 +3,7 @@
 import json
 import sys
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import BinaryIO
 
@@ -21,7 +21,7 @@ class SegmentRequest:
 
     mesh: Path
     segments: int | None
-    max_segments: int | None
+    parameters: dict[str, object]
     model: Path | None
     labels: Path | None
     hierarchy: Path | None
@@ -58,12 +58,12 @@ def segment_file(request: SegmentRequest) -> list[str]:
 
 def _parameters(request: SegmentRequest) -> segcore.SegmentationParameters:
     """The number of segments that is wanted must be within the hierarchy, also where nobody said how far it goes."""
-    most = segcore.SegmentationParameters().max_segments if request.max_segments is None else request.max_segments
+    parameters = segcore.SegmentationParameters.from_mapping(request.parameters)
     if request.segments is None:
-        return segcore.SegmentationParameters(max_segments=most)
+        return parameters
     if request.segments < 1:
         raise segcore.InvalidParameters(f"The number of segments must be at least 1, not {request.segments}.")
-    return segcore.SegmentationParameters(max_segments=max(most, request.segments))
+    return replace(parameters, max_segments=max(parameters.max_segments, request.segments))
 
 
 def _check_folders(request: SegmentRequest) -> None:

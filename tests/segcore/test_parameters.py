@@ -1,3 +1,5 @@
+from dataclasses import replace
+
 import pytest
 
 from segcore.errors import InvalidParameters
@@ -7,7 +9,9 @@ from segcore.parameters import SegmentationParameters
 @pytest.mark.parametrize(
     ("name", "value"),
     [("max_segments", 0), ("max_segments", 10_001), ("max_segments", 2.0), ("max_segments", True), ("seed", -1),
-     ("seed", 2**32), ("clusters", 99), ("clusters", "many")],
+     ("seed", 2**32), ("starts", 0), ("iterations", 0), ("p", 1), ("p", 2.0), ("p", "1.5"), ("solver", "luck"),
+     ("graph", "edges"), ("affinity", ""), ("thinning", None), ("order", "ncc "), ("clusters", 99),
+     ("clusters", "many")],
 )  # fmt: skip
 def test_a_value_outside_its_range_is_refused_with_name_and_value(name, value):
     with pytest.raises(InvalidParameters, match=f"{name} must be .*{value}"):
@@ -16,6 +20,17 @@ def test_a_value_outside_its_range_is_refused_with_name_and_value(name, value):
 
 def test_parameters_come_from_names_and_values():
     assert SegmentationParameters.from_mapping({"max_segments": 9}) == SegmentationParameters(max_segments=9)
+
+
+def test_a_preset_is_changed_by_the_values_beside_it():
+    mapped = SegmentationParameters.from_mapping({"preset": "chahhou2014", "starts": 2})
+    assert mapped == replace(SegmentationParameters.preset("chahhou2014"), starts=2)
+    assert (mapped.graph, mapped.affinity, mapped.solver) == ("vertices", "minima_rule", "inverse_power")
+
+
+def test_an_unknown_preset_is_refused_with_the_known_ones():
+    with pytest.raises(InvalidParameters, match=r"one of chahhou2014, not 'nobody1999'"):
+        SegmentationParameters.preset("nobody1999")
 
 
 def test_an_unknown_name_is_refused_with_the_known_ones():

@@ -51,9 +51,22 @@ def test_more_segments_than_the_default_hierarchy_has_can_be_asked_for(mesh: Pat
     assert len(set(labels.read_text().split())) == 100
 
 
+def test_a_preset_and_parameters_change_the_method(mesh: Path, tmp_path: Path) -> None:
+    labels = tmp_path / "labels.seg"
+    chosen = ["--preset", "chahhou2014", "--set", "solver=fiedler", "--set", "max_segments=8"]
+    assert main(["segment", str(mesh), "--segments", "4", *chosen, "--labels", str(labels)]) == 0
+    parameters = {"preset": "chahhou2014", "solver": "fiedler", "max_segments": 8}
+    expected = segcore.segment(segcore.read_mesh(mesh), segcore.SegmentationParameters.from_mapping(parameters))
+    assert [int(line) for line in labels.read_text().split()] == expected.labels(4).tolist()
+
+
 @pytest.mark.parametrize(
     ("arguments", "sentence"),
     [
+        (["segment", "MESH", "--preset", "nobody1999"], "preset must be one of chahhou2014, not 'nobody1999'."),
+        (["segment", "MESH", "--set", "solver=luck"], "solver must be one of flow, fiedler"),
+        (["segment", "MESH", "--set", "solver"], "a parameter is NAME=VALUE, not 'solver'"),
+        (["segment", "MESH", "--set", "colour=red"], "Unknown parameter 'colour'"),
         (["segment", "nowhere.off"], "nowhere.off: No such file or directory."),
         (["segment", "MESH", "--segments", "0"], "The number of segments must be at least 1, not 0."),
         (["segment", "MESH", "--segments", "9999"], "The number of segments must be from 1 to"),
