@@ -94,7 +94,7 @@ def _push(start, neighbour, reverse, residual, excess):  # type: ignore[no-untyp
     queued = np.empty(node_count, dtype=np.bool_)
     current = np.empty(node_count, dtype=np.uint32)
     while True:
-        measured = _measure_distances(start, neighbour, reverse, residual, excess, distance, queue)
+        measured = _measure_distances(start, neighbour, reverse, residual, excess, distance, queue, False)
         head = 0
         waiting = 0
         for i in range(node_count):
@@ -104,6 +104,8 @@ def _push(start, neighbour, reverse, residual, excess):  # type: ignore[no-untyp
                 queue[waiting] = i
                 waiting += 1
         if waiting == 0:
+            # Nodes without excess have been given lower bounds only.
+            _measure_distances(start, neighbour, reverse, residual, excess, distance, queue, True)
             return distance
         raised = 0
         enough = max(measured // 2, node_count // 10)  # then measuring again costs less than it saves
@@ -140,15 +142,15 @@ def _push(start, neighbour, reverse, residual, excess):  # type: ignore[no-untyp
 
 
 @njit(cache=True)
-def _measure_distances(start, neighbour, reverse, residual, excess, distance, queue):  # type: ignore[no-untyped-def]
-    """Distances to the nearest deficit in the residual graph, breadth first, as far as there is excess to move.
+def _measure_distances(start, neighbour, reverse, residual, excess, distance, queue, everywhere):  # type: ignore[no-untyped-def]
+    """Distances to the nearest deficit in the residual graph, breadth first, everywhere or as far as there is excess.
 
     Farther nodes get a lower bound. A node from which no deficit can be reached has distance N from then on: nothing is
     ever pushed to it. Returns the number of nodes measured.
     """
     node_count = len(excess)
     end = 0
-    sought = 0
+    sought = node_count if everywhere else 0
     for i in range(node_count):
         if distance[i] == node_count:
             continue
@@ -171,7 +173,7 @@ def _measure_distances(start, neighbour, reverse, residual, excess, distance, qu
                 distance[i] = level
                 queue[end] = i
                 end += 1
-                if excess[i] > 0:
+                if excess[i] > 0 and not everywhere:
                     sought -= 1
     farther = level if sought == 0 else node_count
     for i in range(node_count):
