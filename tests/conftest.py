@@ -1,16 +1,29 @@
-"""A store and a queue server for every test that asks for one."""
+"""A store and a queue server for every test that asks for one; the same random examples in every run."""
 
 import subprocess
+import tempfile
 from collections.abc import Iterator
 from pathlib import Path
 
 import pytest
+from hypothesis import settings
+from hypothesis.configuration import set_hypothesis_home_dir
 from redis import Redis
 
 from service.queue_server import embedded_queue_server
 from support import wait_until
 from worker.queue import JobQueue, connect_impatiently
 from worker.store import LocalStore
+
+# No deadline: the first call of a kernel compiles it. Nothing is left in the folder where the tests run.
+settings.register_profile("repeatable", derandomize=True, deadline=None, database=None)
+settings.load_profile("repeatable")
+_HYPOTHESIS = tempfile.TemporaryDirectory(prefix="hypothesis-")
+set_hypothesis_home_dir(_HYPOTHESIS.name)
+
+
+def pytest_unconfigure() -> None:
+    _HYPOTHESIS.cleanup()
 
 
 @pytest.fixture
