@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -21,6 +22,9 @@ from bench.peers.method import Method
 from bench.summary import overall
 from bench.surface import Segmentation, Surface
 from bench.text import format_table, number
+
+if TYPE_CHECKING:
+    from segcore.arrays import IntArray
 
 # The bearing of Figure 5: five segments given, one of them a narrow groove between two concave rings.
 BEARING = 341
@@ -111,20 +115,26 @@ def _figure5(evaluation: Evaluation) -> str:
     mesh = model.read_mesh()
     surface = Surface.from_mesh(mesh.vertices, mesh.faces)
     people = [Segmentation.of(surface, labels) for labels in model.read_people(len(mesh.faces))]
-    hierarchy = methods.inverse_power().hierarchy(mesh, max(BEARING_SEGMENTS))
-    labels = [hierarchy.labels(min(count, hierarchy.max_segments)) for count in BEARING_SEGMENTS]
-    rows = []
-    for one in labels:
-        segmentation = Segmentation.of(surface, one)
-        scores = mean_scores([evaluate(surface, segmentation, person) for person in people])
-        share = np.bincount(segmentation.label, surface.face_area) / surface.face_area.sum()
-        shares = " ".join(f"{100 * value:.1f}" for value in share)
-        rows.append([str(segmentation.segments), number(scores.one_minus_rand), shares])
+    rows, pictures = [], []
+    for method in (methods.inverse_power(), methods.inverse_power_unthinned()):
+        hierarchy = method.hierarchy(mesh, max(BEARING_SEGMENTS))
+        labels = [hierarchy.labels(min(count, hierarchy.max_segments)) for count in BEARING_SEGMENTS]
+        rows += [[method.title, *_bearing_cells(surface, one, people)] for one in labels]
+        pictures.append(side_by_side(mesh, labels))
     if evaluation.output is not None:
-        save_picture(evaluation.output / "figure5.png", [side_by_side(mesh, labels)])
-    header = ["segments", "1-Rand", "% of the area in each"]
-    note = f"Model {BEARING} ({model.category}, {model.segments} segments given), minima rule, p = 1 (inverse power)."
+        save_picture(evaluation.output / "figure5.png", pictures)
+    header = ["method", "segments", "1-Rand", "% of the area in each"]
+    note = (
+        f"Model {model.number} ({model.category}, {model.segments} segments given). A row of pictures for each method."
+    )
     return "\n".join([note, "", format_table(header, rows)])
+
+
+def _bearing_cells(surface: Surface, labels: IntArray, people: Sequence[Segmentation]) -> list[str]:
+    segmentation = Segmentation.of(surface, labels)
+    score = mean_scores([evaluate(surface, segmentation, person) for person in people]).one_minus_rand
+    share = np.bincount(segmentation.label, surface.face_area) / surface.face_area.sum()
+    return [str(segmentation.segments), number(score), " ".join(f"{100 * value:.1f}" for value in share)]
 
 
 def _figure9_methods(_: Sequence[Method]) -> list[Method]:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import time
-from dataclasses import asdict, dataclass
+from dataclasses import dataclass
 from functools import cache
 from typing import TYPE_CHECKING
 
@@ -16,6 +16,7 @@ if TYPE_CHECKING:
     from segcore.mesh import Mesh
 
 PRESET = "chahhou2014"
+_MOST_TRIED = 3  # cuts for every segment that is asked for
 
 
 @dataclass(frozen=True, slots=True)
@@ -30,7 +31,7 @@ class CleaveMethod:
 
     @property
     def settings(self) -> str:
-        return f"{sorted(self.parameters.items())} {self.only_given} {_segcore_digest()}"
+        return f"{sorted(self.parameters.items())} {self.only_given} {_digest()}"
 
     def prepare(self) -> None:
         """See that the parameters are valid; BenchmarkError where they are not."""
@@ -52,14 +53,35 @@ class CleaveMethod:
         return Outcome(hierarchy.labels(min(segments, hierarchy.max_segments)), cpu_s)
 
     def hierarchy(self, mesh: Mesh, segments: int) -> Hierarchy:
-        """The tree of cuts, at least down to a number of segments; BenchmarkError where there is none."""
-        stop: dict[str, object] = {"max_segments": segments} if self.only_given else {}
-        return CleaveSegmenter({**self.parameters, **stop})(mesh, seed=0)
+        """The tree of cuts, down to a number of segments where the mesh has as many.
+
+        A part of the vertex graph may be so thin that no face follows it: then there are fewer segments than cuts, and
+        the mesh is cut again with as many cuts more.
+
+        Raises
+        ------
+        BenchmarkError
+            Where the mesh cannot be segmented.
+        """
+        if not self.only_given:
+            return CleaveSegmenter(self.parameters)(mesh, seed=0)
+        cuts = segments
+        while True:
+            hierarchy = CleaveSegmenter({**self.parameters, "max_segments": cuts})(mesh, seed=0)
+            if hierarchy.max_segments >= segments or cuts >= _MOST_TRIED * segments:
+                return hierarchy
+            cuts += segments - hierarchy.max_segments
 
 
 def inverse_power() -> CleaveMethod:
     """The paper's method."""
     return _variant("inverse_power", "minima rule, p = 1 (inverse power)", solver="inverse_power")
+
+
+def inverse_power_unthinned() -> CleaveMethod:
+    """The paper's method with every deep concave vertex kept."""
+    title = "minima rule, p = 1 (inverse power), not thinned"
+    return _variant("inverse_power_unthinned", title, solver="inverse_power", thinning="none")
 
 
 def split_bregman() -> CleaveMethod:
@@ -89,16 +111,11 @@ def cleave() -> CleaveMethod:
 
 
 def _variant(key: str, title: str, **changes: object) -> CleaveMethod:
-    from segcore.parameters import SegmentationParameters
-
-    parameters = {**asdict(SegmentationParameters.preset(PRESET)), **changes}
-    # The seed comes with every call.
-    del parameters["seed"]
-    return CleaveMethod(key, title, parameters)
+    return CleaveMethod(key, title, {"preset": PRESET, **changes})
 
 
 @cache
-def _segcore_digest() -> str:
+def _digest() -> str:
     import segcore
 
-    return source_digest(segcore.__path__[0])
+    return source_digest(__file__, segcore.__path__[0])
