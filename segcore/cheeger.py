@@ -39,9 +39,14 @@ class Cut:
         return self.ncc if criterion == "ncc" else self.ncut
 
     @property
+    def canonical(self) -> "Cut":
+        """The same bipartition with node 0 in S: what is left of a cut when it does not matter which side is which."""
+        return self if self.side[0] else Cut(~self.side, self.weight, self.outside, self.inside)
+
+    @property
     def key(self) -> bytes:
-        """The same for two cuts of a graph just when they are the same bipartition, whichever side is S."""
-        return np.packbits(self.side == self.side[0]).tobytes()
+        """The same for two cuts of a graph just when they are the same bipartition."""
+        return np.packbits(self.canonical.side).tobytes()
 
 
 def cut_of(graph: SurfaceGraph, side: BoolArray) -> Cut:

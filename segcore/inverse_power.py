@@ -32,6 +32,10 @@ def inverse_power_cut(graph: SurfaceGraph, *, starts: int = 6, iterations: int =
         others are random smooth functions.
     iterations : the most of FISTA in one inner problem; the duality gap ends most of them earlier.
 
+    Returns
+    -------
+    The cut, node 0 in S.
+
     Raises
     ------
     ValueError
@@ -48,7 +52,7 @@ def inverse_power_cut(graph: SurfaceGraph, *, starts: int = 6, iterations: int =
     for values in start_functions(graph, problem.factor, starts, rng):
         best = min((cut.ncc for cut in found), default=inf)
         found.append(_descend(problem, sweep(graph, values), best, iterations, seen))
-    return min(found, key=lambda cut: cut.ncc)
+    return min(found, key=lambda cut: cut.ncc).canonical
 
 
 def _descend(problem: InnerProblem, cut: Cut, best: float, iterations: int, seen: set[bytes]) -> Cut:

@@ -34,7 +34,7 @@ class LaplacianFactor:
 
         x is determined up to a constant on every component; the one returned is 0 at the node eliminated last.
         """
-        return _solve(self.order, self.start, self.row, self.share, self.pivot, b)
+        return substitute(self.order, self.start, self.row, self.share, self.pivot, b)
 
 
 def factorise(graph: SurfaceGraph) -> LaplacianFactor:
@@ -135,7 +135,7 @@ def _eliminate(adjacency_start, neighbour, weight, order, start, row):  # type: 
 
 
 @njit(cache=True)
-def _solve(order, start, row, share, pivot, b):  # type: ignore[no-untyped-def]
+def substitute(order, start, row, share, pivot, b):  # type: ignore[no-untyped-def]
     node_count = len(order)
     y = np.empty(node_count)
     for k in range(node_count):

@@ -42,6 +42,10 @@ def p_laplacian_cut(
         others are random smooth functions.
     iterations : the most of L-BFGS at one exponent.
 
+    Returns
+    -------
+    The cut, node 0 in S.
+
     Raises
     ------
     InvalidParameters
@@ -57,7 +61,7 @@ def p_laplacian_cut(
         raise InvalidParameters(f"The exponent p must be above 1 and below 2, not {p}.")
     functions = start_functions(graph, factorise(graph), starts, rng)
     cuts = (cut for values in functions for cut in _continuation(graph, values, p, iterations))
-    return min(cuts, key=lambda cut: cut.ncc)
+    return min(cuts, key=lambda cut: cut.ncc).canonical
 
 
 def rayleigh_quotient(graph: SurfaceGraph, values: FloatArray, p: float) -> tuple[float, FloatArray]:
