@@ -115,6 +115,7 @@ def sweep(graph: SurfaceGraph, values: FloatArray, criterion: Criterion = "ncc")
     -------
     The cut, whose ``side`` is the upper level set; it is empty (and both ratios infinite) where all values are equal.
     """
+    values = np.ascontiguousarray(values)
     order = np.argsort(values)
     threshold = _best_threshold(graph.edges, graph.weight, graph.volume, values, order, criterion == "ncut")
     return cut_of(graph, values > threshold)

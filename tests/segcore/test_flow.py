@@ -50,6 +50,17 @@ def test_the_cut_is_between_the_best_one_and_the_sweep_of_the_fiedler_vector(gra
         assert best_ncc(graph) * (1 - 1e-9) <= flow_cut(graph, count=count).ncc <= swept.ncc
 
 
+@given(graphs(decades=6))
+def test_weights_and_volumes_over_twelve_decades_do_no_harm(graph: SurfaceGraph) -> None:
+    cut = flow_cut(graph)
+    assert best_ncc(graph) * (1 - 1e-9) <= cut.ncc <= sweep(graph, fiedler_vectors(graph)[:, 0]).ncc
+
+
+@pytest.mark.parametrize("bridge", [1e-3, 1e-9, 1e-15])
+def test_a_hair_between_two_cliques_is_cut(bridge: float) -> None:
+    assert flow_cut(two_cliques(12, bridge)).weight == bridge
+
+
 @pytest.mark.parametrize("node_count", [2, 3, 10, 101])
 def test_a_path_is_cut_in_the_middle(node_count: int) -> None:
     """The volume of all nodes is 2 (N - 1), and one edge is cut."""
