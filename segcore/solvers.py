@@ -17,7 +17,7 @@ Solver = Callable[[SurfaceGraph, SegmentationParameters, np.random.Generator], C
 
 
 def flow(graph: SurfaceGraph, _: SegmentationParameters, _rng: np.random.Generator) -> Cut:
-    """Several eigenvectors, swept, and improved exactly by maximum flows."""
+    """Eigenvectors, total variation flow, and exact improvement by maximum flows."""
     return flow_cut(graph)
 
 
