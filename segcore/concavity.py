@@ -104,6 +104,21 @@ def _mahalanobis(u: int, v: int, mean: FloatArray, covariance: FloatArray) -> fl
 
 
 @njit(cache=True)
+def _most_alike(
+    here: int, open_: BoolArray, mean: FloatArray, covariance: FloatArray, start: IntArray, neighbour: IntArray
+) -> int:
+    """The open neighbour of a vertex with the least Mahalanobis distance; -1 where none is open."""
+    ahead, nearest = -1, np.inf
+    for p in range(start[here], start[here + 1]):
+        v = neighbour[p]
+        if open_[v]:
+            distance = _mahalanobis(here, v, mean, covariance)
+            if distance < nearest:
+                ahead, nearest = v, distance
+    return ahead
+
+
+@njit(cache=True)
 def _walk(
     deepest_first: IntArray,
     concave: BoolArray,
@@ -122,13 +137,7 @@ def _walk(
         while here != -1:
             path[here] = True
             open_[here] = False
-            ahead, nearest = -1, np.inf
-            for p in range(start[here], start[here + 1]):
-                v = neighbour[p]
-                if open_[v]:
-                    distance = _mahalanobis(here, v, mean, covariance)
-                    if distance < nearest:
-                        ahead, nearest = v, distance
+            ahead = _most_alike(here, open_, mean, covariance, start, neighbour)
             for p in range(start[here], start[here + 1]):
                 if neighbour[p] != ahead:
                     open_[neighbour[p]] = False
@@ -159,12 +168,5 @@ def _walk_with_revisits(
                 for p in range(start[here], start[here + 1]):
                     if visits[neighbour[p]] == 0:
                         open_[neighbour[p]] = False
-            ahead, nearest = -1, np.inf
-            for p in range(start[here], start[here + 1]):
-                v = neighbour[p]
-                if open_[v]:
-                    distance = _mahalanobis(here, v, mean, covariance)
-                    if distance < nearest:
-                        ahead, nearest = v, distance
-            here = ahead
+            here = _most_alike(here, open_, mean, covariance, start, neighbour)
     return path
