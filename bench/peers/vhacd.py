@@ -56,7 +56,7 @@ class VHacd:
     def warm_up(self) -> None:
         """Load the packages."""
         import trimesh.decomposition  # noqa: F401
-        import vhacdx  # type: ignore[import-untyped]  # noqa: F401
+        import vhacdx  # noqa: F401
 
     def __call__(self, mesh: Mesh, segments: int) -> Outcome:
         import trimesh
