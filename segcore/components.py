@@ -16,15 +16,18 @@ def follow_hosts(component: IntArray, areas: FloatArray, centroids: FloatArray, 
     """Let the smallest of very many components follow larger ones.
 
     Up to ``most`` components all stand for themselves. Of more, the largest ``most`` that have at least 0.2 % of the
-    total area do (the largest one always); a face of any other follows the nearest face of those.
+    total area do (the largest one always); every other one follows, as a whole, the face of those that is nearest to
+    any of its own.
 
     Parameters
     ----------
     component : (F,) the component of every face.
     areas, centroids : (F,) and (F, 3) of the faces.
 
-    Returns ------- The faces that stand for themselves, ascending, and (F,) for every face the position among them of
-    the one it follows.
+    Returns
+    -------
+    The faces that stand for themselves, ascending, and (F,) for every face the position among them of the one it
+    follows.
     """
     area = group_sums(component, areas)
     if len(area) <= min(most, _MOST_HOSTS):
@@ -35,7 +38,11 @@ def follow_hosts(component: IntArray, areas: FloatArray, centroids: FloatArray, 
     is_host = np.isin(component, hosts)
     host_faces = np.flatnonzero(is_host).astype(np.int32)
     followed = (np.cumsum(is_host) - 1).astype(np.int32)
-    followed[~is_host] = KDTree(centroids[host_faces]).query(centroids[~is_host])[1]
+    followers = component[~is_host]
+    distance, nearest = map(np.asarray, KDTree(centroids[host_faces]).query(centroids[~is_host]))
+    order = np.lexsort((distance, followers))
+    different, first = np.unique(followers[order], return_index=True)
+    followed[~is_host] = nearest[order][first][np.searchsorted(different, followers)]
     return host_faces, followed
 
 

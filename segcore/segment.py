@@ -41,7 +41,7 @@ def segment(
     on_progress("affinity", 0.25)
     nodes = mesh_graph(surface, chosen)
     on_progress("coarsen", 0.45)
-    clusters = cluster_nodes(nodes, chosen.clusters, max(1, chosen.max_segments // 2), rng)
+    clusters = cluster_nodes(nodes, chosen.clusters, chosen.max_segments, rng)
     on_progress("cut", 0.6)
     tree = bisect(clusters.graph, clusters.points, chosen, rng, lambda done: on_progress("cut", 0.6 + 0.35 * done))
     on_progress("label", 0.95)

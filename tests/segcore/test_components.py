@@ -40,6 +40,14 @@ def test_of_many_components_the_negligible_follow_the_nearest_large_one():
     np.testing.assert_array_equal(followed, [0, 1, 1, 0, 1])
 
 
+def test_a_component_follows_as_a_whole():
+    component = np.array([0, 1, 2, 2, 2])
+    centroids = np.array([[0.0, 0, 0], [10, 0, 0], [3, 0, 0], [5, 0, 0], [8, 0, 0]])
+    hosts, followed = follow_hosts(component, np.array([1.0, 1, 1e-6, 1e-6, 1e-6]), centroids, 2)
+    np.testing.assert_array_equal(hosts, [0, 1])
+    np.testing.assert_array_equal(followed, [0, 1, 1, 1, 1])
+
+
 def test_a_dust_of_equal_components_keeps_the_number_asked_for():
     component = np.arange(5000)
     hosts, followed = follow_hosts(component, np.ones(5000), np.random.default_rng(2).random((5000, 3)), 32)

@@ -138,6 +138,12 @@ def test_the_hierarchy_ends_where_it_is_told_to(most):
     assert set(hierarchy.labels(most)) == set(range(most))
 
 
+def test_as_many_components_as_segments_are_all_parted():
+    boxes = shapes.joined(*[shapes.box(centre=(2.0 * (x % 8), 2.0 * (x // 8), 0)) for x in range(64)])
+    labels = segment(boxes.mesh).labels(64)
+    np.testing.assert_array_equal(labels.reshape(64, 12).min(axis=1), labels.reshape(64, 12).max(axis=1))
+
+
 def test_components_beyond_the_number_of_segments_share_them():
     boxes = shapes.joined(*[shapes.box(centre=(2.0 * x, 0, 0)) for x in range(5)]).mesh
     for most in (1, 2, 3):
