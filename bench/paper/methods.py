@@ -16,7 +16,6 @@ if TYPE_CHECKING:
     from segcore.mesh import Mesh
 
 PRESET = "chahhou2014"
-_MOST_TRIED = 3  # cuts for every segment that is asked for
 
 
 @dataclass(frozen=True, slots=True)
@@ -53,24 +52,9 @@ class CleaveMethod:
         return Outcome(hierarchy.labels(min(segments, hierarchy.max_segments)), cpu_s)
 
     def hierarchy(self, mesh: Mesh, segments: int) -> Hierarchy:
-        """The tree of cuts, down to a number of segments where the mesh has as many.
-
-        A part of the vertex graph may be so thin that no face follows it: then there are fewer segments than cuts, and
-        the mesh is cut again with as many cuts more.
-
-        Raises
-        ------
-        BenchmarkError
-            Where the mesh cannot be segmented.
-        """
-        if not self.only_given:
-            return CleaveSegmenter(self.parameters)(mesh, seed=0)
-        cuts = segments
-        while True:
-            hierarchy = CleaveSegmenter({**self.parameters, "max_segments": cuts})(mesh, seed=0)
-            if hierarchy.max_segments >= segments or cuts >= _MOST_TRIED * segments:
-                return hierarchy
-            cuts += segments - hierarchy.max_segments
+        """The tree of cuts, at least down to a number of segments; BenchmarkError where there is none."""
+        stop: dict[str, object] = {"max_segments": segments} if self.only_given else {}
+        return CleaveSegmenter({**self.parameters, **stop})(mesh, seed=0)
 
 
 def inverse_power() -> CleaveMethod:

@@ -14,7 +14,6 @@ from bench.errors import BenchmarkError
 from bench.evaluation import evaluate_model
 from bench.paper.evaluation import MethodResults, evaluate_methods
 from bench.paper.label_cache import LabelCache
-from bench.paper.methods import CleaveMethod
 from bench.paper.pictures import broad_view, matched, side_by_side
 from bench.paper.processes import one_thread
 from bench.paper.tables import PAPER_SECONDS, difference_table, metric_table, rank_table, ranks, time_table
@@ -91,31 +90,6 @@ def test_results_can_be_compared_by_the_compare_command(results: dict[str, Metho
     for key, one in results.items():
         save_results(tmp_path / f"{key}.json", one.models, "given", {"settings": one.method.settings})
         assert load_results(tmp_path / f"{key}.json").scores.keys() == set(SHAPES)
-
-
-@dataclass(frozen=True)
-class ThinCuts:
-    """A segmenter of which one cut in four is too thin for any face to follow."""
-
-    parameters: dict[str, int]
-
-    def __call__(self, *_: Mesh, **__: int) -> "ThinCuts":
-        return self
-
-    @property
-    def max_segments(self) -> int:
-        return self.parameters["max_segments"] * 3 // 4
-
-
-def test_cuts_that_no_face_follows_are_made_up_for(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr("bench.paper.methods.CleaveSegmenter", ThinCuts)
-    assert [CleaveMethod("x", "X", {}).hierarchy(box(), n).max_segments for n in (2, 9, 12)] == [2, 9, 12]
-
-
-def test_a_mesh_with_too_few_parts_is_not_cut_for_ever(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(ThinCuts, "max_segments", 2)
-    monkeypatch.setattr("bench.paper.methods.CleaveSegmenter", ThinCuts)
-    assert CleaveMethod("x", "X", {}).hierarchy(box(), 9).max_segments == 2
 
 
 @dataclass(frozen=True)
