@@ -44,7 +44,7 @@ def project(tree: Tree, corners: IntArray, faces: SurfaceGraph) -> Tree:
             parts[one if side.all() else other] = part
             continue
         if tree.cut_value[split] > 0:
-            side = with_connected_sides(part.graph, cut_of(part.graph, side)).side
+            side = _connected(part.graph, side)
         split_node.append(part.node)
         cut_value.append(float(tree.cut_value[split]))
         larger, smaller = 2 * len(split_node) - 1, 2 * len(split_node)
@@ -70,6 +70,13 @@ class _Part:
     def half(self, side: BoolArray, node: int) -> "_Part":
         local = np.flatnonzero(side).astype(np.int32)
         return _Part(self.faces[local], self.graph.subgraph(local), node)
+
+
+def _connected(graph: SurfaceGraph, side: BoolArray) -> BoolArray:
+    """Both sides made connected; True stays the side that has most in common with it."""
+    connected = with_connected_sides(graph, cut_of(graph, side)).side
+    kept = graph.volume[connected == side].sum()
+    return connected if 2 * kept >= graph.total_volume else ~connected
 
 
 def _intervals(tree: Tree) -> tuple[IntArray, IntArray, IntArray]:

@@ -4,7 +4,7 @@ from hypothesis import strategies as st
 
 from segcore import shapes
 from segcore.graph import connected_components
-from segcore.projection import project
+from segcore.projection import _connected, project
 from segcore.recursion import Tree
 from segcore.surface import build_surface
 
@@ -48,6 +48,16 @@ def test_a_clean_cut_of_the_vertices_is_kept():
     assert len(set(projected.leaf[votes])) == len(set(projected.leaf[~votes])) == 1
     np.testing.assert_array_equal(projected.split_node, [0])
     np.testing.assert_array_equal(projected.cut_value, [1])
+
+
+@settings(max_examples=60)
+@given(st.integers(0, 10**6))
+def test_each_side_of_a_cut_keeps_most_of_its_faces_when_it_is_made_connected(seed):
+    side = np.random.default_rng(seed).random(len(SURFACE.faces)) < 0.5
+    connected = _connected(FACES, side)
+    assert 2 * FACES.volume[connected == side].sum() >= FACES.total_volume
+    for part in (connected, ~connected):
+        assert connected_components(FACES.subgraph(np.flatnonzero(part).astype(np.int32))).max() == 0
 
 
 def test_a_split_that_no_face_follows_is_left_out():
