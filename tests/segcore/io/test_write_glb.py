@@ -25,9 +25,9 @@ VALIDATOR = Path(__file__).parent / "gltf_validator"
 Segmented = tuple[Mesh, Hierarchy, int]
 
 
-def glb(mesh: Mesh, hierarchy: Hierarchy, segments: int | None = None) -> bytes:
+def glb(mesh: Mesh, hierarchy: Hierarchy, segments: int | None = None, all_levels: bool = False) -> bytes:
     target = io.BytesIO()
-    write_glb(target, mesh, hierarchy, segments)
+    write_glb(target, mesh, hierarchy, segments, all_levels=all_levels)
     return target.getvalue()
 
 
@@ -130,6 +130,56 @@ def test_the_same_input_gives_the_same_bytes_and_no_segments_means_the_automatic
     assert glb(mesh, hierarchy) == glb(mesh, hierarchy, hierarchy.automatic_segments)
 
 
+@given(segmentations())
+def test_every_variant_colours_every_face_as_its_segment_at_that_level(segmented: Segmented) -> None:
+    mesh, hierarchy, segments = segmented
+    data = glb(mesh, hierarchy, segments, all_levels=True)
+    parsed, order = document(data), input_faces(data)
+    names = [variant["name"] for variant in parsed["extensions"]["KHR_materials_variants"]["variants"]]
+    assert names == ["1 segment", *(f"{k} segments" for k in range(2, hierarchy.max_segments + 1))]
+    shown, variants = np.full(len(order), -1), np.full((len(names), len(order)), -1)
+    for node in parsed["nodes"]:
+        if "mesh" in node:
+            faces = order[node["extras"]["first_face"] :][: node["extras"]["faces"]]
+            (primitive,) = parsed["meshes"][node["mesh"]]["primitives"]
+            shown[faces] = primitive["material"]
+            for mapping in primitive["extensions"]["KHR_materials_variants"]["mappings"]:
+                variants[np.ix_(mapping["variants"], faces)] = mapping["material"]
+    assert shown.tolist() == hierarchy.labels(segments).tolist()
+    assert variants.tolist() == [hierarchy.labels(k + 1).tolist() for k in range(len(names))]
+
+
+@given(segmentations())
+def test_with_all_levels_the_nodes_are_the_whole_hierarchy(segmented: Segmented) -> None:
+    mesh, hierarchy, segments = segmented
+    parsed = document(glb(mesh, hierarchy, segments, all_levels=True))
+    cut_values = dict(zip(hierarchy.split_node.tolist(), hierarchy.cut_value.tolist(), strict=True))
+    assert len(parsed["nodes"]) == hierarchy.node_count
+    for i, node in enumerate(parsed["nodes"]):
+        extras = node["extras"]
+        assert (extras["level"], extras["label"]) == (hierarchy.level[i], hierarchy.label[i])
+        assert (extras["faces"], extras["area"]) == (hierarchy.face_count[i], hierarchy.area[i])
+        assert ("mesh" in node) == (i not in cut_values) == ("children" not in node)
+        assert extras["cut_value"] == (cut_values[i] if np.isfinite(cut_values.get(i, np.inf)) else None)
+        if "children" in node:
+            assert node["children"] == hierarchy.children[i].tolist()
+    scene = parsed["scenes"][0]["extras"]
+    assert (scene["segments"], scene["max_segments"]) == (segments, hierarchy.max_segments)
+    assert scene["automatic_segments"] == hierarchy.automatic_segments
+
+
+@given(segmentations())
+def test_all_levels_hold_every_input_face_once(segmented: Segmented) -> None:
+    mesh, hierarchy, _ = segmented
+    data = glb(mesh, hierarchy, all_levels=True)
+    corners = np.empty_like(mesh.corners)
+    leaves = segments_in_scene_order(document(data))
+    order = [face for leaf in leaves for face in input_faces(data)[leaf["first_face"] :][: leaf["faces"]]]
+    assert sorted(order) == list(range(len(mesh.faces)))
+    corners[order] = read(data).corners
+    np.testing.assert_allclose(corners, mesh.corners, rtol=1e-6, atol=1e-6)
+
+
 def test_a_segment_keeps_its_colour_at_every_level() -> None:
     mesh, hierarchy = two_strips()
     colors = [
@@ -204,9 +254,10 @@ def test_the_khronos_validator_finds_no_errors_and_no_warnings(validator: Path, 
         cases.append(segmented)
 
     add_case()
-    paths = [tmp_path / f"{i}.glb" for i in range(len(cases))]
-    for path, segmented in zip(paths, cases, strict=True):
-        path.write_bytes(glb(*segmented))
+    files = [glb(*segmented, all_levels=all_levels) for segmented in cases for all_levels in (False, True)]
+    paths = [tmp_path / f"{i}.glb" for i in range(len(files))]
+    for path, data in zip(paths, files, strict=True):
+        path.write_bytes(data)
     command = ["node", str(validator), *map(str, paths)]
     run = subprocess.run(command, capture_output=True, text=True, timeout=120, check=True)
     for issues in json.loads(run.stdout):

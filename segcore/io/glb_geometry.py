@@ -1,0 +1,53 @@
+"""The arrays of a GLB file: positions that float32 can hold, and faces in slices, one for each part."""
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from segcore.arrays import IntArray
+from segcore.mesh import Mesh
+
+_FAR_OUT = 16.0  # distance from the origin, in extents of the mesh, at which float32 coordinates lose four bits
+_PLAIN_EXTENT = (1e-15, 1e15)  # extents whose squares and cubes float32 still holds
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Placement:
+    """vertices[i] = translation + scale * positions[i] for every vertex that a face uses."""
+
+    positions: NDArray[np.float32]  # (V, 3)
+    translation: list[float]
+    scale: float
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Slices:
+    """The faces grouped by part, in input order within each."""
+
+    faces: IntArray  # (F,) input face ids
+    start: IntArray  # (K + 1,) part k owns faces[start[k]:start[k + 1]]
+
+
+def place(mesh: Mesh) -> Placement:
+    """Positions that lose nothing visible: moved to the centre and scaled only where float32 needs it."""
+    used = np.zeros(len(mesh.vertices), dtype=bool)
+    used[mesh.faces] = True
+    low, high = mesh.vertices[used].min(axis=0), mesh.vertices[used].max(axis=0)
+    extent = float((high - low).max())
+    centre = 0.5 * low + 0.5 * high
+    scale = 1.0 if extent == 0 or _PLAIN_EXTENT[0] <= extent <= _PLAIN_EXTENT[1] else extent
+    if scale == 1.0 and np.abs([low, high]).max() <= _FAR_OUT * extent:
+        positions, translation = mesh.vertices, np.zeros(3)
+    else:
+        positions, translation = (np.clip(mesh.vertices, low, high) - centre) / scale, centre
+    inside = np.where(used[:, None], positions, (centre - translation) / scale)
+    return Placement(inside.astype("<f4"), translation.tolist(), scale)
+
+
+def group(part_of_face: IntArray, count: int) -> Slices:
+    """The faces of each of ``count`` parts."""
+    keys = part_of_face.astype(np.uint16) if count <= 2**16 else part_of_face  # 16-bit keys are sorted by radix
+    order = np.argsort(keys, kind="stable").astype(np.int32)
+    start = np.concatenate([[0], np.cumsum(np.bincount(part_of_face, minlength=count))]).astype(np.int32)
+    return Slices(order, start)
