@@ -1,8 +1,9 @@
 """What a caller may choose about a segmentation, and the only home of the defaults."""
 
 from collections.abc import Mapping
-from dataclasses import dataclass, fields, replace
-from typing import Literal, TypeAlias, get_args
+from dataclasses import dataclass, field, fields, replace
+from functools import cache
+from typing import Any, Literal, TypeAlias, get_args, get_origin, get_type_hints
 
 from segcore.errors import InvalidParameters
 
@@ -11,6 +12,11 @@ Affinity: TypeAlias = Literal["concavity", "minima_rule", "adjacency"]
 Thinning: TypeAlias = Literal["walk", "revisit", "none"]
 Solver: TypeAlias = Literal["flow", "fiedler", "inverse_power", "split_bregman", "p_laplacian"]
 Order: TypeAlias = Literal["ncut", "ncc", "volume"]
+
+
+def _about(description: str, *, exception: int | None = None, **limits: float) -> dict[str, Any]:
+    """What is said of a field, and its limits as keywords of JSON Schema; ``exception`` is allowed outside them."""
+    return {"description": description, "exception": exception, "limits": limits}
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -23,37 +29,53 @@ class SegmentationParameters:
         Where a value is outside its range; the message has the range and the value.
     """
 
-    graph: Graph = "faces"  # the nodes of the graph that is cut
-    affinity: Affinity = "concavity"  # the weights of its edges
-    thinning: Thinning = "none"  # of the concave regions of affinity "minima_rule"
-    solver: Solver = "flow"  # how a segment is cut
-    p: float = 1.2  # between 1 and 2: of solver "p_laplacian"
-    starts: int = (
-        6  # 1..1000: of solvers inverse_power and split_bregman; one is the second eigenvector, the rest random
+    graph: Graph = field(default="faces", metadata=_about("The nodes of the graph that is cut."))
+    affinity: Affinity = field(
+        default="concavity", metadata=_about("The weights of its edges; concavity needs the graph of the faces.")
     )
-    iterations: int | None = None  # 1..1000000: limit of their inner problems; None: the solver's own
-    order: Order = "ncut"  # the segment with the least value, or the largest volume, is split next
-    max_segments: int = 64  # 1..10000: where the hierarchy ends
-    clusters: int = 2500  # 100..100000: nodes of the coarse graph that is cut in place of the mesh; 0: the mesh itself
-    seed: int = 0  # 0..2**32 - 1: of the random order in which the coarsening visits faces
+    thinning: Thinning = field(
+        default="none", metadata=_about("How concave regions are thinned, for affinity minima_rule.")
+    )
+    solver: Solver = field(default="flow", metadata=_about("How a segment is cut."))
+    p: float = field(
+        default=1.2, metadata=_about("The exponent of solver p_laplacian.", exclusiveMinimum=1, exclusiveMaximum=2)
+    )
+    starts: int = field(
+        default=6,
+        metadata=_about(
+            "Of solvers inverse_power and split_bregman: the second eigenvector is one, the others are random.",
+            minimum=1,
+            maximum=1000,
+        ),
+    )
+    iterations: int | None = field(
+        default=None,
+        metadata=_about(
+            "Limit of the inner problems of these two; null is the solver's own.", minimum=1, maximum=1_000_000
+        ),
+    )
+    order: Order = field(
+        default="ncut", metadata=_about("The segment with the least value, or the largest volume, is split next.")
+    )
+    max_segments: int = field(
+        default=64, metadata=_about("The number of segments at which the hierarchy ends.", minimum=1, maximum=10_000)
+    )
+    clusters: int = field(
+        default=2500,
+        metadata=_about(
+            "Nodes of the coarse graph that is cut in place of the mesh; 0 is the mesh itself.",
+            exception=0,
+            minimum=100,
+            maximum=100_000,
+        ),
+    )
+    seed: int = field(default=0, metadata=_about("Of everything that is random.", minimum=0, maximum=2**32 - 1))
 
     def __post_init__(self) -> None:
-        _check_choice("graph", self.graph, get_args(Graph))
-        _check_choice("affinity", self.affinity, get_args(Affinity))
+        for name, schema in _schemas().items():
+            _check(name, getattr(self, name), schema)
         if self.graph == "vertices" and self.affinity == "concavity":
             raise InvalidParameters("affinity 'concavity' needs the graph of the faces: choose graph 'faces'.")
-        _check_choice("thinning", self.thinning, get_args(Thinning))
-        _check_choice("solver", self.solver, get_args(Solver))
-        if isinstance(self.p, bool) or not isinstance(self.p, (int, float)) or not 1 < self.p < 2:
-            raise InvalidParameters(f"p must be a number between 1 and 2, not {self.p!r}.")
-        _check_integer("starts", self.starts, 1, 1000)
-        if self.iterations is not None:
-            _check_integer("iterations", self.iterations, 1, 1_000_000)
-        _check_choice("order", self.order, get_args(Order))
-        _check_integer("max_segments", self.max_segments, 1, 10_000)
-        if self.clusters != 0:
-            _check_integer("clusters", self.clusters, 100, 100_000, "0 or ")
-        _check_integer("seed", self.seed, 0, 2**32 - 1)
 
     @classmethod
     def preset(cls, name: str) -> "SegmentationParameters":
@@ -95,11 +117,54 @@ _PRESETS: dict[str, dict[str, object]] = {
 }
 
 
-def _check_integer(name: str, value: object, least: int, most: int, instead: str = "") -> None:
-    if isinstance(value, bool) or not isinstance(value, int) or not least <= value <= most:
+def parameters_schema() -> dict[str, Any]:
+    """The JSON Schema (2020-12) of what ``from_mapping`` takes, with ranges, defaults and descriptions."""
+    preset = {"type": "string", "enum": sorted(_PRESETS), "description": "Parameters that the others then change."}
+    return {"type": "object", "properties": {"preset": preset, **_schemas()}, "additionalProperties": False}
+
+
+@cache
+def _schemas() -> dict[str, dict[str, Any]]:
+    types = get_type_hints(SegmentationParameters)
+    return {
+        parameter.name: {
+            **_value_schema(types[parameter.name], parameter.metadata["limits"], parameter.metadata["exception"]),
+            "default": parameter.default,
+            "description": parameter.metadata["description"],
+        }
+        for parameter in fields(SegmentationParameters)
+    }
+
+
+def _value_schema(annotation: Any, limits: dict[str, float], exception: int | None) -> dict[str, Any]:
+    if get_origin(annotation) is Literal:
+        return {"type": "string", "enum": list(get_args(annotation))}
+    number = {"type": "number" if annotation is float else "integer", **limits}
+    if type(None) in get_args(annotation):
+        return {"anyOf": [number, {"type": "null"}]}
+    return number if exception is None else {"anyOf": [number, {"const": exception}]}
+
+
+def _check(name: str, value: Any, schema: Mapping[str, Any]) -> None:
+    if "enum" in schema:
+        if value not in schema["enum"]:
+            raise InvalidParameters(f"{name} must be one of {', '.join(schema['enum'])}, not {value!r}.")
+        return
+    number, *others = schema.get("anyOf", [schema])
+    if any(
+        value is None if "type" in other else _is_number(value, int) and value == other["const"] for other in others
+    ):
+        return
+    if number["type"] == "number":
+        low, high = number["exclusiveMinimum"], number["exclusiveMaximum"]
+        if not _is_number(value, (int, float)) or not low < value < high:
+            raise InvalidParameters(f"{name} must be a number between {low} and {high}, not {value!r}.")
+        return
+    least, most = number["minimum"], number["maximum"]
+    if not _is_number(value, int) or not least <= value <= most:
+        instead = "".join(f"{other['const']} or " for other in others if "const" in other)
         raise InvalidParameters(f"{name} must be {instead}an integer from {least} to {most}, not {value!r}.")
 
 
-def _check_choice(name: str, value: object, choices: tuple[str, ...]) -> None:
-    if value not in choices:
-        raise InvalidParameters(f"{name} must be one of {', '.join(choices)}, not {value!r}.")
+def _is_number(value: Any, kind: type | tuple[type, ...]) -> bool:
+    return isinstance(value, kind) and not isinstance(value, bool)

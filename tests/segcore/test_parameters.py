@@ -1,9 +1,9 @@
-from dataclasses import replace
+from dataclasses import asdict, replace
 
 import pytest
 
 from segcore.errors import InvalidParameters
-from segcore.parameters import SegmentationParameters
+from segcore.parameters import SegmentationParameters, parameters_schema
 
 
 @pytest.mark.parametrize(
@@ -36,3 +36,22 @@ def test_an_unknown_preset_is_refused_with_the_known_ones():
 def test_an_unknown_name_is_refused_with_the_known_ones():
     with pytest.raises(InvalidParameters, match=r"'segments'.*affinity, .*max_segments, "):
         SegmentationParameters.from_mapping({"segments": 9})
+
+
+def test_the_schema_has_a_description_and_the_default_of_every_parameter():
+    properties = parameters_schema()["properties"]
+    for name, value in asdict(SegmentationParameters()).items():
+        assert properties[name]["default"] == value
+        assert properties[name]["description"].endswith(".")
+    assert set(properties) == {"preset", *asdict(SegmentationParameters())}
+
+
+@pytest.mark.parametrize("name", ["starts", "iterations", "max_segments", "clusters", "seed"])
+def test_what_the_schema_allows_is_what_is_taken(name):
+    schema = parameters_schema()["properties"][name]
+    limits = schema.get("anyOf", [schema])[0]
+    for value in (limits["minimum"], limits["maximum"]):
+        SegmentationParameters(**{name: value})
+    for value in (limits["minimum"] - 1, limits["maximum"] + 1):
+        with pytest.raises(InvalidParameters):
+            SegmentationParameters(**{name: value})
