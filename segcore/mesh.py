@@ -6,6 +6,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike
 
+from segcore.appearance import Appearance
 from segcore.arrays import FloatArray, IntArray
 from segcore.errors import InvalidMesh
 
@@ -23,6 +24,7 @@ class Mesh:
         non-manifold edges and several components are all allowed.
     source_polygon : (F,) the polygon of the file that each face is a part of, counted from 0; None where every
         polygon is one face.
+    appearance : what the file says beside the shape, kept for the outputs; None where nobody asked for it.
 
     Raises
     ------
@@ -33,11 +35,21 @@ class Mesh:
     vertices: FloatArray  # (V, 3)
     faces: IntArray  # (F, 3)
     source_polygon: IntArray | None = None  # (F,)
+    appearance: Appearance | None = None
 
-    def __init__(self, vertices: ArrayLike, faces: ArrayLike, source_polygon: ArrayLike | None = None) -> None:
+    def __init__(
+        self,
+        vertices: ArrayLike,
+        faces: ArrayLike,
+        source_polygon: ArrayLike | None = None,
+        appearance: Appearance | None = None,
+    ) -> None:
         object.__setattr__(self, "vertices", _checked_vertices(vertices))
         object.__setattr__(self, "faces", _checked_faces(faces, len(self.vertices)))
         object.__setattr__(self, "source_polygon", _checked_polygons(source_polygon, len(self.faces)))
+        object.__setattr__(self, "appearance", appearance)
+        if appearance is not None and not appearance.fits(len(self.vertices), len(self.faces)):
+            raise InvalidMesh("The appearance is of another mesh: its arrays have other lengths.")
 
     @property
     def corners(self) -> FloatArray:

@@ -1,7 +1,10 @@
 """Labels and the tree of cuts as text and as JSON values."""
 
+import json
 import math
 from typing import Any, BinaryIO
+
+import numpy as np
 
 from segcore.arrays import IntArray
 from segcore.hierarchy import Hierarchy
@@ -10,6 +13,11 @@ from segcore.hierarchy import Hierarchy
 def write_seg(target: BinaryIO, labels: IntArray) -> None:
     """Write (F,) labels one per line in input face order, the ``.seg`` form of the Princeton segmentation benchmark."""
     target.write("".join(f"{label}\n" for label in labels.tolist()).encode("ascii"))
+
+
+def write_npy(target: BinaryIO, labels: IntArray) -> None:
+    """Write (F,) labels in input face order as little-endian int32 in NumPy's ``.npy`` format 1.0."""
+    np.lib.format.write_array(target, labels.astype("<i4"), version=(1, 0), allow_pickle=False)
 
 
 def labels_document(hierarchy: Hierarchy, segments: int | None = None) -> dict[str, Any]:
@@ -22,6 +30,33 @@ def labels_document(hierarchy: Hierarchy, segments: int | None = None) -> dict[s
     """
     labels = hierarchy.labels(segments)
     return {"segments": hierarchy.automatic_segments if segments is None else segments, "labels": labels.tolist()}
+
+
+def runs_document(hierarchy: Hierarchy, segments: int | None = None) -> dict[str, Any]:
+    """``{"segments": K, "faces": F, "values": [...], "lengths": [...]}``: labels in run-length form.
+
+    The first ``lengths[0]`` faces of the input have the label ``values[0]``, the next ``lengths[1]`` the label
+    ``values[1]``, and so on; the lengths add up to F.
+
+    Raises
+    ------
+    InvalidParameters
+        Where ``segments`` is not in 1..max_segments.
+    """
+    labels = hierarchy.labels(segments)
+    first = np.concatenate([[0], np.flatnonzero(np.diff(labels)) + 1])
+    return {
+        "segments": len(hierarchy.segment_nodes(segments)),
+        "faces": len(labels),
+        "values": labels[first].tolist(),
+        "lengths": np.diff(first, append=len(labels)).tolist(),
+    }
+
+
+def write_json(target: BinaryIO, hierarchy: Hierarchy, segments: int | None = None) -> None:
+    """Write :func:`runs_document`, with the tree of cuts as its ``hierarchy`` (:func:`hierarchy_document`)."""
+    document = runs_document(hierarchy, segments) | {"hierarchy": hierarchy_document(hierarchy)}
+    target.write(json.dumps(document, allow_nan=False, separators=(",", ":")).encode("ascii"))
 
 
 def hierarchy_document(hierarchy: Hierarchy) -> dict[str, Any]:

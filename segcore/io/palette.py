@@ -3,6 +3,7 @@
 from functools import cache
 
 import numpy as np
+from numpy.typing import NDArray
 
 from segcore.arrays import FloatArray
 
@@ -47,6 +48,11 @@ def segment_colors(n: int) -> FloatArray:
     OKLab from all before it, in the eyes of the kind of colour vision that tells them apart worst; then they repeat.
     """
     return _sequence()[np.arange(n) % _DISTINCT]
+
+
+def color_bytes(n: int) -> NDArray[np.uint8]:
+    """(n, 3): the same in 0..255."""
+    return np.round(255 * segment_colors(n)).astype(np.uint8)
 
 
 def linear_rgb(srgb: FloatArray) -> FloatArray:

@@ -27,10 +27,10 @@ from numpy.typing import NDArray
 
 from segcore.errors import InvalidMesh, InvalidParameters
 from segcore.hierarchy import Hierarchy
+from segcore.io.archive import member, write_array
 from segcore.mesh import Mesh
 
 _FORMAT, _VERSION = "cleave-result", 1
-_DATE = (1980, 1, 1, 0, 0, 0)
 _HEADER = "header.json"
 _LARGEST_HEADER = 4096  # bytes
 _NPY_HEADER = re.compile(
@@ -70,11 +70,12 @@ def write_result(target: BinaryIO, mesh: Mesh, hierarchy: Hierarchy) -> None:
         )
     header = {"format": _FORMAT, "version": _VERSION, "automatic_segments": hierarchy.automatic_segments}
     with zipfile.ZipFile(target, "w", zipfile.ZIP_STORED) as archive:
-        archive.writestr(_member(_HEADER), json.dumps(header))
+        archive.writestr(member(_HEADER), json.dumps(header))
         for name, dtype in _MESH_ARRAYS.items():
-            _write_array(archive, name, getattr(mesh, name), dtype)
+            if (array := getattr(mesh, name)) is not None:
+                write_array(archive, name, array, dtype)
         for name, dtype in _TREE_ARRAYS.items():
-            _write_array(archive, name, getattr(hierarchy, name), dtype)
+            write_array(archive, name, getattr(hierarchy, name), dtype)
 
 
 def read_result(source: str | os.PathLike[str] | BinaryIO) -> Segmentation:
@@ -97,20 +98,6 @@ def read_result(source: str | os.PathLike[str] | BinaryIO) -> Segmentation:
     return _read(source)
 
 
-def _member(name: str) -> zipfile.ZipInfo:
-    member = zipfile.ZipInfo(name, _DATE)
-    member.create_system = 3  # the same bytes on every system
-    member.external_attr = 0o644 << 16
-    return member
-
-
-def _write_array(archive: zipfile.ZipFile, name: str, array: NDArray[Any] | None, dtype: str) -> None:
-    if array is None:
-        return
-    with archive.open(_member(f"{name}.npy"), "w", force_zip64=True) as member:
-        np.lib.format.write_array(member, np.ascontiguousarray(array, dtype=dtype), version=(1, 0), allow_pickle=False)
-
-
 def _read(file: BinaryIO) -> Segmentation:
     try:
         with zipfile.ZipFile(file) as archive:
@@ -121,10 +108,10 @@ def _read(file: BinaryIO) -> Segmentation:
 
 
 def _check_sizes(archive: zipfile.ZipFile, file_size: int) -> None:
-    for member in archive.infolist():
-        if member.compress_type != zipfile.ZIP_STORED or member.file_size > file_size:
+    for entry in archive.infolist():
+        if entry.compress_type != zipfile.ZIP_STORED or entry.file_size > file_size:
             raise InvalidMesh(
-                f"Member {member.filename!r} of the .cleave file is compressed or cut short: make it again."
+                f"Member {entry.filename!r} of the .cleave file is compressed or cut short: make it again."
             )
 
 
@@ -137,7 +124,7 @@ def _unpack(archive: zipfile.ZipFile) -> Segmentation:
         if name != _OPTIONAL or f"{name}.npy" in present
     }
     tree_arrays = {name: _read_array(archive, name, dtype) for name, dtype in _TREE_ARRAYS.items()}
-    mesh = Mesh(**mesh_arrays)
+    mesh = Mesh(mesh_arrays["vertices"], mesh_arrays["faces"], mesh_arrays.get(_OPTIONAL))
     hierarchy = Hierarchy(**tree_arrays, automatic_segments=header["automatic_segments"])
     _check_tree(hierarchy, len(mesh.faces))
     return Segmentation(mesh, hierarchy)

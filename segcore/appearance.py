@@ -1,0 +1,72 @@
+"""What a mesh file says beside the shape: normals, texture coordinates, colours, and the names of its groups."""
+
+from dataclasses import dataclass, field
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from segcore.arrays import IntArray
+from segcore.errors import InvalidMesh
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Appearance:
+    """Kept for the outputs; the segmentation does not look at it.
+
+    The arrays have a row for each of the V vertices of the mesh, then, where a vertex looks different in different
+    faces (at the seam of a texture, at a hard edge), more rows: row V + i is of vertex ``extra_vertex[i]``.
+
+    Raises
+    ------
+    InvalidMesh
+        Where the shapes do not fit each other.
+    """
+
+    normals: NDArray[np.float32] | None = None  # (A, 3) unit vectors
+    uvs: NDArray[np.float32] | None = None  # (A, 2) texture coordinates, (0, 0) being the upper left of the image
+    colors: NDArray[np.uint8] | None = None  # (A, 4) sRGB and opacity
+    extra_vertex: IntArray = field(default_factory=lambda: np.zeros(0, dtype=np.int32))  # (A - V,)
+    corners: IntArray | None = None  # (F, 3) the row of every corner; None where A = V and it is the vertex
+    face_group: IntArray | None = None  # (F,) entry of ``group_names``
+    group_names: tuple[str, ...] = ()
+
+    def __post_init__(self) -> None:
+        rows = {len(values) for values in (self.normals, self.uvs, self.colors) if values is not None}
+        widths = {"normals": 3, "uvs": 2, "colors": 4, "corners": 3}
+        for name, width in widths.items():
+            values = getattr(self, name)
+            if values is not None and (values.ndim != 2 or values.shape[1] != width):
+                raise InvalidMesh(f"The {name} of an appearance must have {width} columns, not shape {values.shape}.")
+        if len(rows) > 1 or (len(self.extra_vertex) and self.corners is None):
+            raise InvalidMesh("The arrays of an appearance do not have the same number of rows.")
+        if self.face_group is not None and not _are_entries(self.face_group, len(self.group_names)):
+            raise InvalidMesh("The groups of an appearance must be entries of its list of names.")
+
+    @property
+    def row_arrays(self) -> dict[str, NDArray[Any]]:
+        """The arrays with a row for each vertex that are there, by name."""
+        arrays = {"normals": self.normals, "uvs": self.uvs, "colors": self.colors}
+        return {name: values for name, values in arrays.items() if values is not None}
+
+    def fits(self, vertex_count: int, face_count: int) -> bool:
+        """Whether this can be the appearance of a mesh of that size."""
+        rows = vertex_count + len(self.extra_vertex)
+        return (
+            all(len(values) == rows for values in self.row_arrays.values())
+            and _are_entries(self.extra_vertex, vertex_count)
+            and (self.corners is None or (len(self.corners) == face_count and _are_entries(self.corners, rows)))
+            and (self.face_group is None or self.face_group.shape == (face_count,))
+        )
+
+
+def unit_normals(values: NDArray[Any]) -> NDArray[np.float32] | None:
+    """(A, 3) normals made unit vectors; None where one of them has no direction."""
+    lengths = np.linalg.norm(values.astype(np.float64), axis=1)
+    if not (np.isfinite(lengths) & (lengths > np.finfo(np.float32).tiny)).all():
+        return None
+    return (values / lengths[:, None]).astype(np.float32)
+
+
+def _are_entries(values: IntArray, count: int) -> bool:
+    return values.size == 0 or bool(values.min() >= 0 and values.max() < count)
