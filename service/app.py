@@ -5,7 +5,7 @@ from typing import Any
 
 from fastapi import FastAPI
 
-from service import health, home, result_routes, routes
+from service import about_routes, health, home, result_routes, routes
 from service.context import Context, QueueView
 from service.problems import MEDIA_TYPE, handle_problems
 from service.results import ResultCache
@@ -28,9 +28,13 @@ def create_app(settings: Settings) -> FastAPI:
     store = LocalStore(settings.data_dir)
     queue = JobQueue(connect_impatiently(settings.redis_url))
     app.state.context = Context(
-        settings, store, queue, QueueView(queue), ResultCache(store, settings.result_cache_bytes)
+        settings,
+        store,
+        queue,
+        QueueView(queue),
+        ResultCache(store, settings.result_cache_bytes, settings.rendered_cache_bytes),
     )
-    for router in (home.router, health.router, routes.router, result_routes.router):
+    for router in (home.router, health.router, routes.router, result_routes.router, about_routes.router):
         app.include_router(router)
     handle_problems(app)
     app.openapi = lambda: _with_problems_only(FastAPI.openapi(app))  # type: ignore[method-assign]

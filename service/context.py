@@ -24,15 +24,15 @@ class QueueView:
     queue: JobQueue
     _asleep_until: float = field(default=0.0, init=False)
 
-    def activity(self, job_id: str) -> Activity | None:
-        """What the queue knows about a job; None where it does not answer."""
-        if time.monotonic() < self._asleep_until:
-            return None
+    def activities(self, job_ids: list[str]) -> dict[str, Activity]:
+        """What the queue knows about some jobs; nothing where it does not answer."""
+        if not job_ids or time.monotonic() < self._asleep_until:
+            return {}
         try:
-            return self.queue.activity(job_id)
+            return self.queue.activities(job_ids)
         except QueueError:
             self._asleep_until = time.monotonic() + _PAUSE_S
-            return None
+            return {}
 
 
 @dataclass(frozen=True, slots=True)

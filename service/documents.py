@@ -12,35 +12,54 @@ from worker.queue import Activity
 Status = Literal["queued", "running", "succeeded", "failed", "canceled"]
 
 
+class InputDocument(BaseModel):
+    """The file that was sent."""
+
+    file_name: str | None = Field(description="What the client calls it.", examples=["hand.off"])
+    format: str | None = Field(description="What its name or type says; null: told from its content.", examples=["off"])
+    size_bytes: int = Field(examples=[274_139])
+    sha256: str = Field(description="Of its bytes, in hexadecimal.")
+
+
 class MeshSummary(BaseModel):
-    faces: int
-    vertices: int
+    faces: int = Field(examples=[12_000])
+    vertices: int = Field(examples=[6_002])
 
 
 class JobLinks(BaseModel):
     """Paths on this server; those of the results answer once the job has succeeded."""
 
     self: str
+    events: str
+    cancel: str
     labels: str
     hierarchy: str
-    model: str
-    cancel: str
+    model: str = Field(description="A coloured GLB; ?segments=k for another level, ?levels=all for all in one file.")
+    preview: str = Field(description="A picture.")
 
 
 class JobDocument(BaseModel):
-    id: str
+    id: str = Field(examples=["5f1c5d1d2c0f4e0fa8f0b4b2f1a9d6c3"])
     status: Status
-    stage: str | None = Field(description="What a running job is doing.")
+    stage: str | None = Field(description="What a running job is doing.", examples=["cut"])
     progress: float = Field(ge=0, le=1, description="The part of the work that is done.")
+    queue_position: int | None = Field(description="Of a job that waits: 1 is next. Null where it is not known.")
     created_at: datetime
     started_at: datetime | None = Field(description="When the latest attempt began.")
     finished_at: datetime | None
+    attempts: int = Field(description="How often the job was begun.")
+    input: InputDocument
     parameters: dict[str, Any] = Field(description="Every parameter of the segmentation, defaults included.")
     mesh: MeshSummary | None = Field(description="Known when the job has succeeded.")
     max_segments: int | None = Field(description="The largest number of segments that can be asked for.")
     automatic_segments: int | None = Field(description="The number of segments where none is asked for.")
     error: JobError | None = Field(description="Why the job failed.")
     links: JobLinks
+
+
+class JobPageDocument(BaseModel):
+    jobs: list[JobDocument] = Field(description="Newest first; may be fewer than asked for while there are more.")
+    next_cursor: str | None = Field(description="To be sent as cursor for the jobs that follow; null at the end.")
 
 
 class LabelsDocument(BaseModel):
@@ -61,11 +80,38 @@ class HierarchyNode(BaseModel):
     cut_value: float | None = Field(description="Of the cut that splits the node; null for a leaf.")
 
 
+class CurvePoint(BaseModel):
+    """What one segment more costs."""
+
+    segments: int = Field(description="The number of segments that the cut leads to, 2 or more.")
+    cut_value: float | None = Field(
+        description="Normalized cut times the square root of the surface area: low where a part ends, 0 where "
+        "components part, high where the cut is arbitrary."
+    )
+    node: int = Field(description="The node that is cut.")
+
+
 class HierarchyDocument(BaseModel):
     max_segments: int
     automatic_segments: int
     cut_values: list[float | None] = Field(description="Entry i is of the cut from i + 1 to i + 2 segments.")
+    curve: list[CurvePoint] = Field(description="The same, by number of segments: where it jumps, cuts get arbitrary.")
     nodes: list[HierarchyNode]
+
+
+class FormatDocument(BaseModel):
+    name: str = Field(description="As in ?format=.", examples=["stl"])
+    title: str = Field(examples=["STL"])
+    extensions: list[str]
+    media_types: list[str] = Field(description="Those that a Content-Type may say; the usual one first.")
+
+
+class FormatsDocument(BaseModel):
+    meshes: list[FormatDocument] = Field(description="What can be sent, also compressed with gzip.")
+    labels: list[FormatDocument] = Field(description="What labels can be fetched as.")
+    models: list[FormatDocument] = Field(description="What the segmented mesh can be fetched as.")
+    max_upload_bytes: int
+    max_faces: int
 
 
 class Health(BaseModel):
@@ -89,9 +135,14 @@ def job_document(job: Job, outcome: Outcome | None, attempts: list[Attempt], act
         status=outcome.status if outcome else "running" if is_running else "queued",
         stage=progress.stage if progress else None,
         progress=1.0 if isinstance(outcome, Succeeded) else progress.fraction if progress else 0.0,
+        queue_position=None if outcome or activity is None else activity.position,
         created_at=job.created_at,
         started_at=attempts[-1].started_at if attempts else None,
         finished_at=outcome.finished_at if outcome else None,
+        attempts=len(attempts),
+        input=InputDocument(
+            file_name=job.file_name, format=job.mesh_format, size_bytes=job.size_bytes, sha256=job.sha256
+        ),
         parameters=job.parameters,
         links=_links(job.id),
         **_result_fields(outcome),
@@ -120,8 +171,10 @@ def _links(job_id: str) -> JobLinks:
     path = f"/v1/jobs/{job_id}"
     return JobLinks(
         self=path,
+        events=f"{path}/events",
+        cancel=f"{path}/cancel",
         labels=f"{path}/labels",
         hierarchy=f"{path}/hierarchy",
         model=f"{path}/model.glb",
-        cancel=f"{path}/cancel",
+        preview=f"{path}/preview.png",
     )

@@ -31,8 +31,10 @@ STATUS = {
     "already_finished": 409,
     "job_failed": 409,
     "job_canceled": 409,
+    "job_deleted": 410,
     "too_large": 413,
     "unsupported_media_type": 415,
+    "range_not_satisfiable": 416,
     "invalid_mesh": 422,
     "invalid_parameters": 422,
     "invalid_request": 422,
@@ -146,7 +148,9 @@ def documented(*codes: str) -> dict[int | str, dict[str, Any]]:
 
 def _phrase(status: int) -> str:
     """The phrase of RFC 9110; Python's own differ from version to version."""
-    return {413: "Content Too Large", 422: "Unprocessable Content"}.get(status) or HTTPStatus(status).phrase
+    return {413: "Content Too Large", 416: "Range Not Satisfiable", 422: "Unprocessable Content"}.get(
+        status
+    ) or HTTPStatus(status).phrase
 
 
 def _invalid_request(exception: RequestValidationError) -> Problem:

@@ -1,22 +1,21 @@
-"""Results that were opened lately: they never change, so a few stay in memory."""
+"""Results that were opened or drawn lately: they never change, so a few stay in memory."""
 
-from collections import OrderedDict
+from collections.abc import Callable
 from dataclasses import fields
-from threading import Lock
 from typing import Any
 
 from segcore.io.result import Segmentation, read_result
+from service.lru import LruCache
 from worker.store import LocalStore
 
 
 class ResultCache:
-    """The results of the store, the least recently used dropped first when they outgrow their memory."""
+    """The opened results of the store, and the bytes that were made of them."""
 
-    def __init__(self, store: LocalStore, max_bytes: int) -> None:
+    def __init__(self, store: LocalStore, max_opened_bytes: int, max_rendered_bytes: int) -> None:
         self._store = store
-        self._max_bytes = max_bytes
-        self._opened: OrderedDict[str, Segmentation] = OrderedDict()
-        self._lock = Lock()
+        self._opened: LruCache[str, Segmentation] = LruCache(max_opened_bytes, _size_bytes)
+        self._rendered: LruCache[tuple[str, str], bytes] = LruCache(max_rendered_bytes, len)
 
     def get(self, job_id: str) -> Segmentation:
         """The result of a job that succeeded.
@@ -26,26 +25,19 @@ class ResultCache:
         UnknownJob
             Where the job was deleted.
         """
-        with self._lock:
-            if job_id in self._opened:
-                self._opened.move_to_end(job_id)
-                return self._opened[job_id]
-        with self._store.open_result(job_id) as file:
-            segmentation = read_result(file)
-        with self._lock:
-            self._opened[job_id] = segmentation
-            self._shrink()
-        return segmentation
+        return self._opened.get(job_id, lambda: self._read(job_id))
+
+    def rendered(self, job_id: str, name: str, render: Callable[[], bytes]) -> bytes:
+        """What is made of the result of a job under a name that says everything about how."""
+        return self._rendered.get((job_id, name), render)
 
     def drop(self, job_id: str) -> None:
-        with self._lock:
-            self._opened.pop(job_id, None)
+        self._opened.drop(lambda key: key == job_id)
+        self._rendered.drop(lambda key: key[0] == job_id)
 
-    def _shrink(self) -> None:
-        size = sum(_size_bytes(opened) for opened in self._opened.values())
-        while size > self._max_bytes:
-            _, dropped = self._opened.popitem(last=False)
-            size -= _size_bytes(dropped)
+    def _read(self, job_id: str) -> Segmentation:
+        with self._store.open_result(job_id) as file:
+            return read_result(file)
 
 
 def _size_bytes(segmentation: Segmentation) -> int:

@@ -18,6 +18,7 @@ from worker.upload import MeshUpload
 
 MAX_PARAMETERS_BYTES = 16 * 1024
 _MAX_ENVELOPE_BYTES = 64 * 1024  # boundaries and headers
+_LONGEST_LABEL = 255  # characters
 _PIECE_BYTES = 1024 * 1024  # parsed, hashed and written at a time, off the event loop
 
 
@@ -55,6 +56,12 @@ async def receive_form(request: Request, upload: MeshUpload, max_upload_bytes: i
 def mesh_format(file_name: str | None) -> str | None:
     """The format that the client's name for its file stands for, None where it stands for none. The name is no path."""
     return declared_format(PurePath(file_name), None) if file_name else None
+
+
+def file_label(file_name: str | None) -> str | None:
+    """The client's name for its file, fit to be shown: the last part of what looks like a path, printable, not long."""
+    last = (file_name or "").replace("\\", "/").rpartition("/")[2]
+    return "".join(character for character in last if character.isprintable())[-_LONGEST_LABEL:].strip() or None
 
 
 def parse_parameters(text: bytes | bytearray) -> SegmentationParameters:

@@ -18,6 +18,7 @@ log = logging.getLogger("cleave.janitor")
 MISSING_S = 5.0
 _LEADER_INTERVALS = 3  # that a leader may be late before another takes over
 _UPLOAD_UNTOUCHED_S = 3600.0
+_DELETED_S = 30 * 24 * 3600.0  # for so long clients are told that a job was there
 
 
 class Janitor:
@@ -42,6 +43,7 @@ class Janitor:
             self._recover(job_id)
         self._queue.forget_dead_workers()
         self._store.remove_abandoned_uploads(_UPLOAD_UNTOUCHED_S)
+        self._store.forget_deleted(_DELETED_S)
 
     def forget_sightings(self) -> None:
         """After a time without knowledge of the queue nothing is known to be missing."""

@@ -23,6 +23,9 @@ class Job:
     mesh_format: str | None  # what the client's file name says, a hint; None: told from the bytes alone
     parameters: dict[str, Any]  # every field of SegmentationParameters
     created_at: datetime  # UTC
+    file_name: str | None = None  # what the client calls the file: a label for people, never a path
+    owner: str | None = None  # the name of the API key that it was submitted with; None: without one
+    webhook_url: str | None = None  # who is told that it has ended
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

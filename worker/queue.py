@@ -8,7 +8,7 @@ import json
 from collections.abc import Iterable
 from contextlib import suppress
 from dataclasses import dataclass
-from typing import Any, cast
+from typing import Any
 
 from redis import Redis
 from redis.backoff import ExponentialBackoff, NoBackoff
@@ -43,6 +43,7 @@ class Activity:
 
     running: bool
     progress: Progress | None
+    position: int | None = None  # 1 is next; None where it does not wait in the queue
 
 
 def connect_impatiently(url: str, timeout_s: float = 0.9) -> Redis:
@@ -120,9 +121,21 @@ class JobQueue:
         document = json.dumps({"stage": progress.stage, "fraction": progress.fraction})
         self.connection.set(_progress_key(job_id), document, ex=_PROGRESS_TTL_S)
 
+    def activities(self, job_ids: Iterable[str]) -> dict[str, Activity]:
+        """What the queue knows about some unfinished jobs."""
+        asked = list(job_ids)
+        with self.connection.pipeline(transaction=False) as pipeline:
+            for job_id in asked:
+                pipeline.mget(_lease_key(job_id), _progress_key(job_id))
+                pipeline.lpos(self.entries.key, job_id)
+            answers = pipeline.execute()
+        return {
+            job_id: _activity(lease, document, index)
+            for job_id, (lease, document), index in zip(asked, answers[::2], answers[1::2], strict=True)
+        }
+
     def activity(self, job_id: str) -> Activity:
-        lease, document = cast("list[bytes | None]", self.connection.mget(_lease_key(job_id), _progress_key(job_id)))
-        return Activity(running=lease is not None, progress=_progress(document) if lease and document else None)
+        return self.activities([job_id])[job_id]
 
     def worker_count(self) -> int:
         """The workers that gave a sign of life within the last lease time or two."""
@@ -153,6 +166,12 @@ def _progress_key(job_id: str) -> str:
 
 def _milliseconds(seconds: float) -> int:
     return max(1, round(1000 * seconds))
+
+
+def _activity(lease: bytes | None, document: bytes | None, index: int | None) -> Activity:
+    progress = _progress(document) if lease and document else None
+    position = None if lease or index is None else index + 1
+    return Activity(running=lease is not None, progress=progress, position=position)
 
 
 def _progress(document: bytes) -> Progress:

@@ -47,6 +47,9 @@ class Settings(BaseSettings):
     result_cache_bytes: int = Field(
         default=64 * 2**20, ge=0, description="Memory in which the service keeps results that it has opened."
     )
+    rendered_cache_bytes: int = Field(
+        default=64 * 2**20, ge=0, description="Memory in which it keeps pictures and models that it has made of them."
+    )
     log_level: str = Field(default="info", pattern=r"^(debug|info|warning|error)$", description="Least level logged.")
 
 

@@ -1,7 +1,9 @@
 """Where jobs live: one folder for each, the truth about every one of them.
 
     <data>/incoming/<random>/      a mesh that is being uploaded
-    <data>/pending/<id>            empty: the job has no outcome yet (an index of jobs/, made before and removed after)
+    <data>/pending/<id>[.<owner>]  empty: the job has no outcome yet (an index of jobs/, made before and removed after)
+    <data>/index/<owner>/          which jobs there are, by time
+    <data>/gone/<id>               the job was deleted; in it, whose it was
     <data>/jobs/<id>/job.json      the job is accepted
                     /mesh          the bytes that the client sent
                     /attempt-<n>.json
@@ -11,17 +13,19 @@
 The folder of a job appears by a rename when all of it is durable, so a job is accepted whole or not at all.
 """
 
+import errno
 import os
 import shutil
 import time
 from collections.abc import Callable
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import BinaryIO, TypeVar
 
 from pydantic import TypeAdapter
 
 from worker.durable import TEMPORARY_SUFFIX, create_file, replace_file, sync_folder
+from worker.index import JobIndex, entry_name, is_entry_name, job_id_of
 from worker.jobs import Attempt, Cause, Job, Outcome, is_job_id, new_job_id, now
 from worker.upload import MeshUpload
 
@@ -29,12 +33,25 @@ _JOB = TypeAdapter(Job)
 _ATTEMPT = TypeAdapter(Attempt)
 _OUTCOME: TypeAdapter[Outcome] = TypeAdapter(Outcome)
 _MARKER_GRACE_S = 3600.0
+_ID_LENGTH = 32
 
 Document = TypeVar("Document")
 
 
 class UnknownJob(LookupError):  # noqa: N818
     """The store has no such job (any more)."""
+
+
+class JobExists(Exception):  # noqa: N818
+    """There is a job of this id already."""
+
+
+@dataclass(frozen=True, slots=True)
+class JobPage:
+    """Some jobs of an owner, newest first."""
+
+    jobs: list[Job]
+    next_cursor: str | None  # of the jobs that are older; None: there are none
 
 
 class LocalStore:
@@ -44,26 +61,53 @@ class LocalStore:
         self._jobs = data_dir / "jobs"
         self._pending = data_dir / "pending"
         self._incoming = data_dir / "incoming"
-        for folder in (self._jobs, self._pending, self._incoming):
+        self._gone = data_dir / "gone"
+        self._index = JobIndex(data_dir / "index")
+        for folder in (self._jobs, self._pending, self._incoming, self._gone):
             folder.mkdir(mode=0o700, parents=True, exist_ok=True)
 
     def begin_upload(self) -> MeshUpload:
         return MeshUpload(self._incoming / new_job_id())
 
     def accept(self, job: Job, upload: MeshUpload) -> None:
-        """Take a job in: when this returns, it will be finished, whatever happens to the queue or the power."""
+        """Take a job in: when this returns, it will be finished, whatever happens to the queue or the power.
+
+        Raises
+        ------
+        JobExists
+            Where there is a job of this id already; it stays as it is.
+        """
         upload.make_durable()
         create_file(upload.folder / "job.json", _JOB.dump_json(job))
-        (self._pending / job.id).touch()
+        self._index.add(job)
+        self._marker(job).touch()
         sync_folder(self._pending)
-        os.rename(upload.folder, self._folder(job.id))
+        try:
+            os.rename(upload.folder, self._folder(job.id))
+        except OSError as error:
+            if error.errno not in (errno.ENOTEMPTY, errno.EEXIST):
+                raise
+            self._index.remove(job)
+            raise JobExists(job.id) from error
         sync_folder(self._jobs)
+
+    def page(self, owner: str | None, cursor: str | None, limit: int) -> JobPage:
+        """The jobs of an owner, newest first, from a cursor on."""
+        entries = self._index.page(owner, cursor, limit + 1)
+        found = ((entry, self.job(job_id_of(entry))) for entry in entries[:limit] if is_entry_name(entry))
+        jobs = [job for entry, job in found if job is not None and entry_name(job) == entry]
+        return JobPage(jobs, entries[limit - 1] if len(entries) > limit else None)
 
     def job(self, job_id: str) -> Job | None:
         return _read(self._folder(job_id) / "job.json", _JOB) if is_job_id(job_id) else None
 
     def outcome(self, job_id: str) -> Outcome | None:
         return _read(self._folder(job_id) / "manifest.json", _OUTCOME)
+
+    def has_ended(self, job_id: str) -> bool:
+        """Whether a job has an outcome, or is no longer there: cheap enough to be asked often."""
+        folder = self._folder(job_id)
+        return (folder / "manifest.json").exists() or not (folder / "job.json").exists()
 
     def finish(self, job_id: str, outcome: Outcome) -> Outcome:
         """Give a job its outcome, unless it has one; the outcome that stands.
@@ -78,13 +122,21 @@ class LocalStore:
             create_file(folder / "manifest.json", _OUTCOME.dump_json(outcome))
         except FileNotFoundError as error:
             raise UnknownJob(job_id) from error
-        (self._pending / job_id).unlink(missing_ok=True)
+        job = self.job(job_id)
+        if job is not None:
+            self._marker(job).unlink(missing_ok=True)
         return self.outcome(job_id) or outcome
 
     def unfinished(self) -> list[str]:
         """The accepted jobs without an outcome, oldest first."""
         markers = sorted(os.scandir(self._pending), key=_modified_at)
-        return [marker.name for marker in markers if self._is_unfinished(marker)]
+        return [_job_id(marker) for marker in markers if self._is_unfinished(marker)]
+
+    def unfinished_of(self, owner: str | None) -> list[str]:
+        """Those of one owner, oldest first."""
+        suffix = f".{owner}" if owner else ""
+        markers = [marker for marker in os.scandir(self._pending) if marker.name[_ID_LENGTH:] == suffix]
+        return [_job_id(marker) for marker in sorted(markers, key=_modified_at) if self._is_unfinished(marker)]
 
     def begin_attempt(self, job_id: str, worker: str) -> Attempt:
         """Count one more run of a job, before it starts.
@@ -149,14 +201,38 @@ class LocalStore:
             raise UnknownJob(job_id) from error
 
     def delete(self, job_id: str) -> None:
-        """Remove a job and all its files; for others it disappears at once."""
-        doomed = self._incoming / new_job_id()
+        """Remove a job and all its files; for others it disappears at once. What stays is that it was there.
+
+        Raises
+        ------
+        UnknownJob
+            Where there is none.
+        """
+        job, doomed = self.job(job_id), self._incoming / new_job_id()
+        if job is None:
+            raise UnknownJob(job_id)
+        replace_file(self._gone / job_id, lambda target: target.write((job.owner or "").encode()))
         try:
             os.rename(self._folder(job_id), doomed)
         except FileNotFoundError as error:
             raise UnknownJob(job_id) from error
-        (self._pending / job_id).unlink(missing_ok=True)
+        self._index.remove(job)
+        self._marker(job).unlink(missing_ok=True)
         shutil.rmtree(doomed, ignore_errors=True)
+
+    def was_deleted(self, job_id: str, owner: str | None) -> bool:
+        """Whether this owner had a job of this id; it is known for some weeks."""
+        try:
+            return is_job_id(job_id) and (self._gone / job_id).read_text() == (owner or "")
+        except FileNotFoundError:
+            return False
+
+    def forget_deleted(self, deleted_s: float) -> None:
+        """Forget the jobs that were deleted longer ago than this."""
+        oldest = time.time() - deleted_s
+        for trace in os.scandir(self._gone):
+            if _modified_at(trace) < oldest:
+                Path(trace).unlink(missing_ok=True)
 
     def remove_abandoned_uploads(self, untouched_s: float) -> None:
         """Remove what uploads left behind whose process died in the middle."""
@@ -175,16 +251,24 @@ class LocalStore:
             raise ValueError(f"Not the id of a job: {job_id!r}.")
         return self._jobs / job_id
 
+    def _marker(self, job: Job) -> Path:
+        return self._pending / (f"{job.id}.{job.owner}" if job.owner else job.id)
+
     def _is_unfinished(self, marker: os.DirEntry[str]) -> bool:
         """Whether a marker tells the truth; one that does not, because of a crash between two writes, is removed."""
-        if not is_job_id(marker.name):
+        if not is_job_id(_job_id(marker)):
             return False
-        accepted = (self._folder(marker.name) / "job.json").exists()
-        if accepted and not (self._folder(marker.name) / "manifest.json").exists():
+        folder = self._folder(_job_id(marker))
+        accepted = (folder / "job.json").exists()
+        if accepted and not (folder / "manifest.json").exists():
             return True
         if accepted or _modified_at(marker) < time.time() - _MARKER_GRACE_S:
             (self._pending / marker.name).unlink(missing_ok=True)
         return False
+
+
+def _job_id(marker: os.DirEntry[str]) -> str:
+    return marker.name[:_ID_LENGTH]
 
 
 def _attempt_file(folder: Path, attempt: Attempt) -> Path:

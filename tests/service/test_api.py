@@ -5,31 +5,13 @@ from collections.abc import Callable
 
 import httpx
 import pytest
+from asking import FACES, UNKNOWN, problem, submit
 
 from segcore.io.result import read_result
 from support import sphere
 from worker.queue import JobQueue, Progress
 from worker.settings import Settings
 from worker.store import LocalStore
-
-FACES = 4 * 12 * 11  # of sphere(12)
-UNKNOWN = "/v1/jobs/" + "0" * 32
-
-
-def submit(client: httpx.Client, mesh: bytes | None = None, **fields: str) -> str:
-    answer = client.post("/v1/jobs", files={"mesh": ("mesh.off", mesh or sphere(12))}, data=fields)
-    assert answer.status_code == 202, answer.text
-    return str(answer.headers["Location"])
-
-
-def problem(answer: httpx.Response, status: int, code: str) -> dict[str, object]:
-    """The body of an answer, which must be a problem of this status and code."""
-    assert answer.status_code == status, answer.text
-    assert answer.headers["Content-Type"] == "application/problem+json"
-    body: dict[str, object] = answer.json()
-    assert (body["status"], body["code"]) == (status, code)
-    assert str(body["detail"]).endswith(".")
-    return body
 
 
 def test_a_submitted_mesh_is_a_queued_job_at_its_location(
@@ -163,8 +145,8 @@ def test_a_deleted_job_is_gone_with_its_files(
         client.get(f"{path}/labels")
         assert client.delete(path).status_code == 204
         for gone in (client.get(path), client.get(f"{path}/labels"), client.delete(path)):
-            problem(gone, 404, "job_not_found")
-    assert [file for file in settings.data_dir.rglob("*") if file.is_file()] == []
+            problem(gone, 410, "job_deleted")
+    assert {file.parent.name for file in settings.data_dir.rglob("*") if file.is_file()} == {"gone"}
     assert queue.entries.get_job_ids() == []
 
 
@@ -269,12 +251,17 @@ def test_the_openapi_document_names_every_status_that_can_be_met(client: httpx.C
     document = client.get("/openapi.json").json()
     expected = {
         ("/v1/jobs", "post"): {"202", "400", "413", "415", "422", "503", "507"},
-        ("/v1/jobs/{job_id}", "get"): {"200", "404"},
-        ("/v1/jobs/{job_id}", "delete"): {"204", "404", "507"},
-        ("/v1/jobs/{job_id}/cancel", "post"): {"200", "404", "409", "507"},
-        ("/v1/jobs/{job_id}/labels", "get"): {"200", "404", "409", "422"},
-        ("/v1/jobs/{job_id}/hierarchy", "get"): {"200", "404", "409"},
-        ("/v1/jobs/{job_id}/model.glb", "get"): {"200", "404", "409", "422"},
+        ("/v1/jobs", "get"): {"200", "304", "422"},
+        ("/v1/jobs/{job_id}", "get"): {"200", "304", "404", "410", "422"},
+        ("/v1/jobs/{job_id}", "delete"): {"204", "404", "410", "507"},
+        ("/v1/jobs/{job_id}/cancel", "post"): {"200", "404", "409", "410", "507"},
+        ("/v1/jobs/{job_id}/events", "get"): {"200", "204", "404", "410", "422"},
+        ("/v1/jobs/{job_id}/labels", "get"): {"200", "206", "304", "404", "409", "410", "416", "422"},
+        ("/v1/jobs/{job_id}/hierarchy", "get"): {"200", "206", "304", "404", "409", "410", "416"},
+        ("/v1/jobs/{job_id}/model.glb", "get"): {"200", "206", "304", "404", "409", "410", "416", "422"},
+        ("/v1/jobs/{job_id}/preview.png", "get"): {"200", "206", "304", "404", "409", "410", "416", "422"},
+        ("/v1/formats", "get"): {"200"},
+        ("/v1/methods", "get"): {"200"},
         ("/healthz", "get"): {"200"},
         ("/readyz", "get"): {"200", "503"},
     }

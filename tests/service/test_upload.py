@@ -14,7 +14,7 @@ from starlette.requests import ClientDisconnect, Request
 
 from segcore.errors import InvalidParameters
 from service.problems import Problem
-from service.upload import FormReader, mesh_format, parse_parameters, receive_form
+from service.upload import FormReader, file_label, mesh_format, parse_parameters, receive_form
 from worker.settings import Settings
 from worker.store import LocalStore
 
@@ -181,8 +181,28 @@ def test_a_file_name_is_a_hint_at_the_format_and_nothing_else(name: str | None, 
 def test_a_file_name_never_becomes_a_path(client: httpx.Client, settings: Settings, tmp_path: Path) -> None:
     for name in ("../../../escape.off", str(tmp_path / "escape.off"), "a\x00b.off"):
         assert client.post("/v1/jobs", files={"mesh": (name, io.BytesIO(b"abc"))}).status_code == 202
-    names = {file.name for file in tmp_path.rglob("*") if file.is_file()} - {"serve.lock"}
-    assert names <= {"mesh", "job.json"} | {path.name for path in (settings.data_dir / "pending").iterdir()}
+    files = {file for file in tmp_path.rglob("*") if file.is_file() and file.parent.parent.name != "index"}
+    ids = {path.name for path in (settings.data_dir / "pending").iterdir()}
+    assert {file.name for file in files} <= {"mesh", "job.json", *ids}
+
+
+@pytest.mark.parametrize(
+    ("name", "label"),
+    [
+        ("hand.off", "hand.off"),
+        ("../../etc/passwd", "passwd"),
+        ("C:\\meshes\\hand.off", "hand.off"),
+        ("a\0b\n\x1b[31m.off", "ab[31m.off"),
+        ("\ud800hand", "hand"),
+        ("x" * 300, "x" * 255),
+        ("..", ".."),
+        ("/", None),
+        ("", None),
+        (None, None),
+    ],
+)
+def test_a_file_name_is_shown_without_what_could_do_harm(name: str | None, label: str | None) -> None:
+    assert file_label(name) == label
 
 
 @pytest.mark.parametrize(

@@ -3,14 +3,15 @@
 import hashlib
 import os
 import threading
+from dataclasses import replace
 from pathlib import Path
 
 import pytest
 
 from support import accepted
 from worker.durable import create_file, replace_file
-from worker.jobs import Canceled, Failed, Succeeded, new_job_id, now
-from worker.store import LocalStore, UnknownJob
+from worker.jobs import Canceled, Failed, Job, Succeeded, new_job_id, now
+from worker.store import JobExists, LocalStore, UnknownJob
 
 
 def files_below(folder: Path) -> list[str]:
@@ -105,7 +106,7 @@ def test_a_deleted_job_is_gone_and_cannot_be_finished(store: LocalStore, tmp_pat
     attempt = store.begin_attempt(job.id, "worker")
     store.delete(job.id)
     assert store.job(job.id) is None
-    assert files_below(tmp_path) == []
+    assert files_below(tmp_path) == [f"data/gone/{job.id}"]
     for forbidden in (
         lambda: store.finish(job.id, succeeded()),
         lambda: store.begin_attempt(job.id, "worker"),
@@ -167,3 +168,64 @@ def test_a_file_is_created_once(tmp_path: Path) -> None:
     assert not create_file(tmp_path / "file", b"second")
     assert (tmp_path / "file").read_bytes() == b"first"
     assert files_below(tmp_path) == ["file"]
+
+
+def test_jobs_are_paged_newest_first_without_a_gap_or_a_repetition(store: LocalStore) -> None:
+    jobs = [accepted(store, b"mesh") for _ in range(7)]
+    found: list[str] = []
+    cursor = None
+    while True:
+        page = store.page(None, cursor, 3)
+        found += [job.id for job in page.jobs]
+        cursor = page.next_cursor
+        if cursor is None:
+            break
+    assert found == [job.id for job in reversed(jobs)]
+
+
+def test_owners_see_their_own_jobs_alone(store: LocalStore) -> None:
+    mine, theirs, nobodys = (owned(store, owner) for owner in ("me", "them", None))
+    for job in (mine, theirs, nobodys):
+        assert store.page(job.owner, None, 10).jobs == [job]
+        assert store.unfinished_of(job.owner) == [job.id]
+    assert sorted(store.unfinished()) == sorted([mine.id, theirs.id, nobodys.id])
+    store.finish(mine.id, Canceled(finished_at=now()))
+    assert store.unfinished_of("me") == []
+    assert store.page("me", None, 10).jobs == [mine]
+
+
+def test_a_second_job_of_the_same_id_leaves_the_first_as_it_is(store: LocalStore) -> None:
+    first = accepted(store, b"mesh")
+    second = replace(first, created_at=now(), size_bytes=12)
+    with store.begin_upload() as upload, pytest.raises(JobExists):
+        store.accept(second, upload)
+    assert store.job(first.id) == first
+    assert store.page(None, None, 10).jobs == [first]
+    with store.open_mesh(first.id) as mesh:
+        assert mesh.read() == b"mesh"
+
+
+def test_a_deletion_is_known_to_its_owner_until_it_is_forgotten(store: LocalStore) -> None:
+    job = owned(store, "me")
+    store.delete(job.id)
+    assert store.was_deleted(job.id, "me")
+    assert not store.was_deleted(job.id, None)
+    store.forget_deleted(3600.0)
+    assert store.was_deleted(job.id, "me")
+    store.forget_deleted(-1.0)
+    assert not store.was_deleted(job.id, "me")
+
+
+def owned(store: LocalStore, owner: str | None) -> Job:
+    with store.begin_upload() as upload:
+        job = Job(
+            id=new_job_id(),
+            sha256=upload.sha256,
+            size_bytes=0,
+            mesh_format=None,
+            parameters={},
+            created_at=now(),
+            owner=owner,
+        )
+        store.accept(job, upload)
+    return job

@@ -1,0 +1,80 @@
+"""Answers that a client may have already, or wants a part of: RFC 9110, sections 13 (conditions) and 14 (ranges)."""
+
+import hashlib
+import re
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass
+
+from fastapi import Request
+from starlette.responses import Response
+
+from service.problems import Problem
+
+# Results never change, but who may read them does.
+_FOR_EVER = "private, max-age=31536000, immutable"
+_ONE_RANGE = re.compile(r"bytes=(\d{0,18})-(\d{0,18})", re.ASCII)
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Rendition:
+    """One form of a result."""
+
+    identity: str  # equal for equal bytes only
+    media_type: str
+    render: Callable[[], bytes]
+    file_name: str | None = None  # where it is to be saved rather than shown
+    vary: str | None = None  # the request header that chose it
+
+
+def answer_rendition(request: Request, rendition: Rendition) -> Response:
+    """The bytes of a result, a range of them, or that the client has them."""
+    tag = entity_tag(rendition.identity.encode())
+    headers = {"ETag": tag, "Cache-Control": _FOR_EVER, "Accept-Ranges": "bytes"}
+    if rendition.vary:
+        headers["Vary"] = rendition.vary
+    if is_current(request, tag):
+        return Response(status_code=304, headers=headers)
+    if rendition.file_name:
+        headers["Content-Disposition"] = f'attachment; filename="{rendition.file_name}"'
+    body = rendition.render()
+    if request.headers.get("if-range", tag) == tag:
+        part = _range(request.headers.get("range"), len(body))
+        if part is not None:
+            headers["Content-Range"] = f"bytes {part.start}-{part.stop - 1}/{len(body)}"
+            return Response(body[part.start : part.stop], 206, headers, rendition.media_type)
+    return Response(body, 200, headers, rendition.media_type)
+
+
+def answer_json(request: Request, body: bytes, status: int = 200, headers: Mapping[str, str] | None = None) -> Response:
+    """What may have changed since the client asked last."""
+    tag = entity_tag(body)
+    all_headers = {"ETag": tag, "Cache-Control": "private, no-cache", **(headers or {})}
+    if request.method == "GET" and is_current(request, tag):
+        return Response(status_code=304, headers=all_headers)
+    return Response(body, status, all_headers, "application/json")
+
+
+def entity_tag(identity: bytes) -> str:
+    return f'"{hashlib.sha256(identity).hexdigest()[:32]}"'
+
+
+def is_current(request: Request, tag: str) -> bool:
+    known = [candidate.strip().removeprefix("W/") for candidate in request.headers.get("if-none-match", "").split(",")]
+    return tag in known or known == ["*"]
+
+
+def _range(header: str | None, length: int) -> range | None:
+    """The bytes that are asked for; None where that is everything, or several ranges, which nobody has to serve."""
+    match = _ONE_RANGE.fullmatch(header.strip()) if header else None
+    if match is None or match.groups() == ("", ""):
+        return None
+    first, last = match.groups()
+    if not first:
+        part = range(max(length - int(last), 0), length)
+    else:
+        part = range(int(first), min(int(last) + 1, length) if last else length)
+    if last and first and int(last) < int(first):
+        return None
+    if not part:
+        raise Problem("range_not_satisfiable", f"The range lies outside the {length} bytes of this result.")
+    return part

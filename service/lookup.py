@@ -1,0 +1,52 @@
+"""Jobs as a caller sees them: found by id, described with what the store and the queue know at the moment."""
+
+from collections.abc import Sequence
+
+from segcore.io.result import Segmentation
+from service.context import Context
+from service.documents import JobDocument, job_document
+from service.problems import JobError, Problem
+from worker.jobs import Canceled, Failed, Job, Outcome, Succeeded
+from worker.store import UnknownJob
+
+
+def known_job(context: Context, job_id: str) -> Job:
+    """The record of a job.
+
+    Raises
+    ------
+    UnknownJob
+        Where there is none.
+    Problem
+        Where there was one.
+    """
+    job = context.store.job(job_id)
+    if job is not None:
+        return job
+    if context.store.was_deleted(job_id, None):
+        raise Problem("job_deleted", "This job was deleted with its files: submit the mesh again.")
+    raise UnknownJob(job_id)
+
+
+def describe(context: Context, job: Job) -> JobDocument:
+    return describe_all(context, [job])[0]
+
+
+def describe_all(context: Context, jobs: Sequence[Job]) -> list[JobDocument]:
+    """How some jobs are, with one question to the queue."""
+    outcomes: dict[str, Outcome | None] = {job.id: context.store.outcome(job.id) for job in jobs}
+    activities = context.view.activities([job.id for job in jobs if outcomes[job.id] is None])
+    return [job_document(job, outcomes[job.id], context.store.attempts(job.id), activities.get(job.id)) for job in jobs]
+
+
+def result_of(context: Context, job: Job) -> Segmentation:
+    """The mesh and the hierarchy of a job that succeeded; where there is none, the Problem says why."""
+    match context.store.outcome(job.id):
+        case Succeeded():
+            return context.results.get(job.id)
+        case Failed(code=code, message=message):
+            raise Problem("job_failed", f"The job failed: {message}", JobError(code=code, message=message))
+        case Canceled():
+            raise Problem("job_canceled", "The job was canceled and has no result: submit the mesh again.")
+        case None:
+            raise Problem("not_finished", "The job has not finished: poll it until its status is succeeded.")

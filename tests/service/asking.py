@@ -1,0 +1,24 @@
+"""What the tests of the API ask again and again."""
+
+import httpx
+
+from support import sphere
+
+FACES = 4 * 12 * 11  # of sphere(12)
+UNKNOWN = "/v1/jobs/" + "0" * 32
+
+
+def submit(client: httpx.Client, mesh: bytes | None = None, **fields: str) -> str:
+    answer = client.post("/v1/jobs", files={"mesh": ("mesh.off", mesh or sphere(12))}, data=fields)
+    assert answer.status_code == 202, answer.text
+    return str(answer.headers["Location"])
+
+
+def problem(answer: httpx.Response, status: int, code: str) -> dict[str, object]:
+    """The body of an answer, which must be a problem of this status and code."""
+    assert answer.status_code == status, answer.text
+    assert answer.headers["Content-Type"] == "application/problem+json"
+    body: dict[str, object] = answer.json()
+    assert (body["status"], body["code"]) == (status, code)
+    assert str(body["detail"]).endswith(".")
+    return body

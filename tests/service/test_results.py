@@ -1,0 +1,79 @@
+"""Results as a client fetches them: any level, once, in parts, as a picture."""
+
+import io
+import json
+import struct
+from collections.abc import Callable
+
+import httpx
+import matplotlib.image
+import pytest
+from asking import FACES, problem
+
+PATHS = ["labels", "hierarchy", "model.glb", "model.glb?levels=all", "preview.png", "labels?segments=2"]
+
+
+@pytest.mark.parametrize("result", PATHS)
+def test_a_result_is_sent_once_and_in_any_part(
+    client: httpx.Client, finished_job: Callable[..., str], result: str
+) -> None:
+    url = f"{finished_job()}/{result}"
+    whole = client.get(url)
+    assert whole.headers["Accept-Ranges"] == "bytes"
+    assert "immutable" in whole.headers["Cache-Control"]
+    tag = whole.headers["ETag"]
+    for known in (tag, f'W/{tag}, "other"', "*"):
+        assert client.get(url, headers={"If-None-Match": known}).status_code == 304
+    assert client.get(url, headers={"If-None-Match": '"other"'}).content == whole.content
+    size = len(whole.content)
+    for asked, first, last in (
+        ("0-0", 0, 0),
+        ("5-20", 5, 20),
+        (f"{size - 3}-", size - 3, size - 1),
+        ("-4", size - 4, size - 1),
+    ):
+        part = client.get(url, headers={"Range": f"bytes={asked}", "If-Range": tag})
+        assert part.status_code == 206
+        assert part.headers["Content-Range"] == f"bytes {first}-{last}/{size}"
+        assert part.content == whole.content[first : last + 1]
+    problem(client.get(url, headers={"Range": f"bytes={size}-"}), 416, "range_not_satisfiable")
+    for ignored in ({"Range": "bytes=0-1", "If-Range": '"other"'}, {"Range": "bytes=0-1,3-4"}, {"Range": "lines=1-2"}):
+        assert client.get(url, headers=ignored).status_code == 200
+
+
+def test_different_results_have_different_tags(client: httpx.Client, finished_job: Callable[..., str]) -> None:
+    paths = [finished_job(), finished_job()]
+    tags = [client.get(f"{path}/{result}").headers["ETag"] for path in paths for result in PATHS]
+    assert len(set(tags)) == len(tags)
+
+
+def test_the_curve_has_a_point_for_every_cut(client: httpx.Client, finished_job: Callable[..., str]) -> None:
+    document = client.get(f"{finished_job()}/hierarchy").json()
+    assert [point["segments"] for point in document["curve"]] == list(range(2, document["max_segments"] + 1))
+    assert [point["cut_value"] for point in document["curve"]] == document["cut_values"]
+    for point in document["curve"]:
+        assert document["nodes"][point["node"]]["cut_value"] == point["cut_value"]
+
+
+def test_one_model_can_hold_every_level(client: httpx.Client, finished_job: Callable[..., str]) -> None:
+    path = finished_job()
+    data = client.get(f"{path}/model.glb", params={"levels": "all"}).content
+    (length,) = struct.unpack_from("<I", data, 12)
+    model = json.loads(data[20 : 20 + length])
+    most = client.get(path).json()["max_segments"]
+    assert len(model["nodes"]) == 2 * most - 1
+    assert len(model["extensions"]["KHR_materials_variants"]["variants"]) == most
+    problem(client.get(f"{path}/model.glb?levels=some"), 422, "invalid_request")
+
+
+def test_the_preview_shows_the_segments(client: httpx.Client, finished_job: Callable[..., str]) -> None:
+    path = finished_job()
+    answer = client.get(f"{path}/preview.png", params={"size": 64})
+    assert answer.headers["Content-Type"] == "image/png"
+    picture = matplotlib.image.imread(io.BytesIO(answer.content))
+    assert picture.shape == (64, 64, 4)
+    assert picture[32, 32, 3] == 1
+    assert picture[0, 0, 3] == 0
+    assert client.get(f"{path}/preview.png", params={"segments": 5, "size": 64}).content != answer.content
+    problem(client.get(f"{path}/preview.png", params={"size": 100_000}), 422, "invalid_request")
+    problem(client.get(f"{path}/preview.png", params={"segments": FACES}), 422, "invalid_parameters")
