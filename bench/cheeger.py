@@ -86,7 +86,7 @@ def first_cut_graphs(model: Model) -> dict[str, SurfaceGraph]:
     parameters = SegmentationParameters()
     fine = mesh_graph(build_surface(model.read_mesh()), parameters)
     rng = np.random.default_rng(parameters.seed)
-    coarse = cluster_nodes(fine, parameters.clusters, parameters.max_segments // 2, rng)
+    coarse = cluster_nodes(fine, parameters.clusters, rng)
     return {"coarse": _largest_component(coarse.graph), "fine": _largest_component(fine.graph)}
 
 

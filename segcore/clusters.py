@@ -6,9 +6,11 @@ import numpy as np
 
 from segcore.arrays import FloatArray, IntArray, group_sums
 from segcore.coarsen import coarsen
-from segcore.components import follow_hosts
+from segcore.components import largest, nearest_hosts
 from segcore.graph import SurfaceGraph, connected_components
 from segcore.mesh_graph import MeshGraph
+
+MOST_COMPONENTS = 1024  # that have clusters of their own
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -20,19 +22,35 @@ class Clusters:
     points: FloatArray  # (N, 3) their centres
 
 
-def cluster_nodes(mesh_graph: MeshGraph, target: int, most_components: int, rng: np.random.Generator) -> Clusters:
+def cluster_nodes(mesh_graph: MeshGraph, target: int, rng: np.random.Generator) -> Clusters:
     """Coarsen a mesh graph to about ``target`` clusters, or not at all where ``target`` is 0.
 
-    Of more than ``most_components`` components the negligible ones join the clusters nearest to them.
+    A cluster lies in one component. Of more than 1024 components all but the largest join, as a whole, the cluster that
+    is nearest to them.
     """
     graph, points = mesh_graph.graph, mesh_graph.points
-    hosts, followed = follow_hosts(connected_components(graph), graph.volume, points, most_components)
-    is_host = np.zeros(graph.node_count, dtype=bool)
-    is_host[hosts] = True
-    kept = is_host[graph.edges[:, 0]]  # an edge has both ends in one component
-    host_graph = SurfaceGraph(followed[graph.edges[kept]], graph.weight[kept], graph.volume[hosts])
-    coarse, of_host = coarsen(host_graph, mesh_graph.affinity[kept], target or graph.node_count, rng)
-    of_node = of_host[followed]
+    component = connected_components(graph)
+    is_host = largest(component, graph.volume, MOST_COMPONENTS)
+    if is_host.all():
+        coarse, of_node = coarsen(graph, mesh_graph.affinity, target or graph.node_count, rng)
+    else:
+        host_nodes = np.flatnonzero(is_host[component]).astype(np.int32)
+        kept = is_host[component[graph.edges[:, 0]]]  # an edge has both ends in one component
+        coarse, of_host = coarsen(
+            graph.subgraph(host_nodes), mesh_graph.affinity[kept], target or graph.node_count, rng
+        )
+        of_node = _with_followers(of_host, host_nodes, component, nearest_hosts(component, is_host, points))
     volume = group_sums(of_node, graph.volume)
     centres = np.stack([group_sums(of_node, graph.volume * points[:, axis]) / volume for axis in range(3)], axis=1)
     return Clusters(SurfaceGraph(coarse.edges, coarse.weight, volume), of_node, centres)
+
+
+def _with_followers(of_host: IntArray, host_nodes: IntArray, component: IntArray, pairs: IntArray) -> IntArray:
+    """(N,): the cluster of every node, that of the hosts and of the components that follow one of them."""
+    of_node = np.empty(len(component), dtype=np.int32)
+    of_node[host_nodes] = of_host
+    of_component = np.full(int(component.max()) + 1, -1, dtype=np.int32)
+    of_component[component[pairs[:, 0]]] = of_node[pairs[:, 1]]
+    follows = of_component[component] >= 0
+    of_node[follows] = of_component[component[follows]]
+    return of_node

@@ -1,49 +1,47 @@
-"""Meshes of several components: which ones stand for themselves, and how near they are to each other."""
+"""Meshes of several components: the largest ones, the nearest to each other, and groups of near ones."""
 
 import numpy as np
 from scipy.cluster.hierarchy import linkage
 from scipy.spatial import KDTree
 from scipy.spatial.distance import cdist, squareform
 
-from segcore.arrays import FloatArray, IntArray, group_sums
+from segcore.arrays import BoolArray, FloatArray, IntArray, group_sums
 
-_MOST_HOSTS = 1024  # components that can be told apart
-_SMALLEST_HOST = 0.002  # share of the total area below which a component among many follows its neighbour
 _SAMPLES = 2048  # points that represent all components when their distances are measured
 
 
-def follow_hosts(component: IntArray, areas: FloatArray, centroids: FloatArray, most: int) -> tuple[IntArray, IntArray]:
-    """Let the smallest of very many components follow larger ones.
-
-    Up to ``most`` components all stand for themselves. Of more, the largest ``most`` that have at least 0.2 % of the
-    total area do (the largest one always); every other one follows, as a whole, the face of those that is nearest to
-    any of its own.
+def largest(component: IntArray, areas: FloatArray, most: int, negligible: float = 0.0) -> BoolArray:
+    """(C,): True for the ``most`` largest components, without those that are negligible.
 
     Parameters
     ----------
-    component : (F,) the component of every face.
-    areas, centroids : (F,) and (F, 3) of the faces.
-
-    Returns
-    -------
-    The faces that stand for themselves, ascending, and (F,) for every face the position among them of the one it
-    follows.
+    component : (P,) the component 0..C - 1 of every point, face or node.
+    areas : (P,)
+    negligible : share of the total area; a component with a tenth of the largest one's area is never negligible.
     """
     area = group_sums(component, areas)
-    if len(area) <= min(most, _MOST_HOSTS):
-        everyone = np.arange(len(component), dtype=np.int32)
-        return everyone, everyone
-    largest = np.argsort(-area, kind="stable")[: min(most, _MOST_HOSTS)]
-    hosts = largest[area[largest] >= min(_SMALLEST_HOST * area.sum(), area.max())]
-    is_host = np.isin(component, hosts)
-    host_faces = np.flatnonzero(is_host).astype(np.int32)
-    followed = (np.cumsum(is_host) - 1).astype(np.int32)
-    followers = component[~is_host]
-    distance, nearest = map(np.asarray, KDTree(centroids[host_faces]).query(centroids[~is_host]))
-    order = np.lexsort((distance, followers))
-    different, first = np.unique(followers[order], return_index=True)
-    followed[~is_host] = nearest[order][first][np.searchsorted(different, followers)]
-    return host_faces, followed
+    chosen = np.zeros(len(area), dtype=bool)
+    chosen[np.argsort(-area, kind="stable")[:most]] = True
+    return chosen & (area >= min(negligible * area.sum(), 0.1 * area.max()))
+
+
+def nearest_hosts(component: IntArray, is_host: BoolArray, points: FloatArray) -> IntArray:
+    """(N, 2): for every component that is not a host the point of it that is nearest to any host, and that one's point.
+
+    Parameters
+    ----------
+    component : (P,) the component of every point.
+    is_host : (C,), True somewhere.
+    points : (P, 3)
+    """
+    follows = ~is_host[component]
+    own, hosts = np.flatnonzero(follows), np.flatnonzero(~follows)
+    if len(own) == 0:
+        return np.empty((0, 2), dtype=np.int32)
+    distance, nearest = map(np.asarray, KDTree(points[hosts]).query(points[own]))
+    order = np.lexsort((distance, component[own]))
+    first = np.unique(component[own][order], return_index=True)[1]
+    return np.stack([own[order[first]], hosts[nearest[order[first]]]], axis=1).astype(np.int32)
 
 
 def group_by_nearness(points: FloatArray, component: IntArray) -> IntArray:

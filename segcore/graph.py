@@ -65,6 +65,17 @@ class SurfaceGraph:
         edges, kept = _induced_edges(self.edges, nodes, self.node_count)
         return SurfaceGraph(edges, self.weight[kept], self.volume[nodes])
 
+    def with_edges(self, pairs: IntArray, weight: FloatArray) -> "SurfaceGraph":
+        """More edges (M, 2) with their weights (M,), between nodes that no edge joins yet; parallel ones are summed."""
+        key = pairs.min(axis=1).astype(np.int64) * self.node_count + pairs.max(axis=1)
+        different, which = np.unique(key, return_inverse=True)
+        added = np.stack([different // self.node_count, different % self.node_count], axis=1).astype(np.int32)
+        return SurfaceGraph(
+            np.concatenate([self.edges, added]),
+            np.concatenate([self.weight, group_sums(which, weight, len(different))]),
+            self.volume,
+        )
+
 
 def rows_of(edges: IntArray, node_count: int) -> Rows:
     """The adjacency of an edge list (E, 2); parallel edges are allowed. O(N + E)."""

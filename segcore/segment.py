@@ -5,6 +5,7 @@ from collections.abc import Callable
 import numpy as np
 
 from segcore.arrays import group_sums
+from segcore.assembly import assemble
 from segcore.clusters import cluster_nodes
 from segcore.hierarchy import Hierarchy
 from segcore.mesh import Mesh
@@ -41,11 +42,12 @@ def segment(
     on_progress("affinity", 0.25)
     nodes = mesh_graph(surface, chosen)
     on_progress("coarsen", 0.45)
-    clusters = cluster_nodes(nodes, chosen.clusters, chosen.max_segments, rng)
+    clusters = cluster_nodes(nodes, chosen.clusters, rng)
+    clusters, links = assemble(surface, nodes, clusters, chosen.max_segments)
     on_progress("cut", 0.6)
     tree = bisect(clusters.graph, clusters.points, chosen, rng, lambda done: on_progress("cut", 0.6 + 0.35 * done))
     on_progress("label", 0.95)
-    tree = project(tree, clusters.of_node[nodes.corners], surface.face_graph())
+    tree = project(tree, clusters.of_node[nodes.corners], surface.face_graph().with_edges(links.faces, links.length))
     hierarchy = _of_input(surface, tree)
     on_progress("label", 1.0)
     return hierarchy

@@ -6,6 +6,7 @@ from scipy.sparse.csgraph import connected_components
 
 from segcore.arrays import FloatArray, IntArray
 from segcore.mesh import Mesh
+from segcore.shapes import subdivide
 
 
 def pieces_of_labels(mesh: Mesh, labels: IntArray) -> int:
@@ -46,3 +47,15 @@ def rotation(rng: np.random.Generator) -> FloatArray:
 def exploded(mesh: Mesh) -> Mesh:
     """The same faces, each with corners of its own, as an STL file has them."""
     return Mesh(mesh.corners.reshape(-1, 3), np.arange(3 * len(mesh.faces)).reshape(-1, 3))
+
+
+def moved(mesh: Mesh, by: tuple[float, float, float]) -> Mesh:
+    return Mesh(mesh.vertices + np.array(by), mesh.faces)
+
+
+def refined(mesh: Mesh, times: int) -> Mesh:
+    """Every face cut in four, again and again, where it lies."""
+    vertices, faces = mesh.vertices, mesh.faces
+    for _ in range(times):
+        vertices, faces = subdivide(vertices, faces)
+    return Mesh(vertices, faces)

@@ -1,6 +1,6 @@
 import numpy as np
 
-from segcore.components import follow_hosts, group_by_nearness
+from segcore.components import group_by_nearness, largest, nearest_hosts
 
 
 def blob(at, count, rng):
@@ -25,31 +25,24 @@ def test_more_components_than_samples_are_grouped_all():
     assert sorted(merges.ravel()) == list(range(1998))
 
 
-def test_few_components_all_stand_for_themselves():
-    hosts, followed = follow_hosts(np.array([0, 1, 1, 2]), np.array([1.0, 1, 1, 1e-9]), np.zeros((4, 3)), 3)
-    np.testing.assert_array_equal(hosts, [0, 1, 2, 3])
-    np.testing.assert_array_equal(followed, [0, 1, 2, 3])
+def test_the_largest_components_are_chosen_and_negligible_ones_are_not():
+    component, areas = np.array([0, 1, 1, 2, 3]), np.array([1.0, 1, 1, 5, 0.001])
+    np.testing.assert_array_equal(largest(component, areas, 9), [True, True, True, True])
+    np.testing.assert_array_equal(largest(component, areas, 2), [False, True, True, False])
+    np.testing.assert_array_equal(largest(component, areas, 9, 0.002), [True, True, True, False])
 
 
-def test_of_many_components_the_negligible_follow_the_nearest_large_one():
-    component = np.array([0, 1, 2, 3, 4])
-    areas = np.array([1.0, 1e-6, 2.0, 1e-6, 1e-6])
-    centroids = np.array([[0.0, 0, 0], [4, 0, 0], [5, 0, 0], [1, 0, 0], [9, 0, 0]])
-    hosts, followed = follow_hosts(component, areas, centroids, 3)
-    np.testing.assert_array_equal(hosts, [0, 2])
-    np.testing.assert_array_equal(followed, [0, 1, 1, 0, 1])
+def test_in_a_dust_of_nearly_equal_components_none_is_negligible():
+    areas = np.random.default_rng(0).uniform(0.9, 1, 5000)
+    assert largest(np.arange(5000), areas, 32, 0.002).sum() == 32
 
 
-def test_a_component_follows_as_a_whole():
-    component = np.array([0, 1, 2, 2, 2])
-    centroids = np.array([[0.0, 0, 0], [10, 0, 0], [3, 0, 0], [5, 0, 0], [8, 0, 0]])
-    hosts, followed = follow_hosts(component, np.array([1.0, 1, 1e-6, 1e-6, 1e-6]), centroids, 2)
-    np.testing.assert_array_equal(hosts, [0, 1])
-    np.testing.assert_array_equal(followed, [0, 1, 1, 1, 1])
+def test_every_component_that_is_no_host_gets_the_nearest_pair_of_points():
+    component = np.array([0, 1, 2, 2, 2, 3])
+    points = np.array([[0.0, 0, 0], [10, 0, 0], [3, 0, 0], [5, 0, 0], [8, 0, 0], [1, 0, 0]])
+    pairs = nearest_hosts(component, np.array([True, True, False, False]), points)
+    np.testing.assert_array_equal(pairs, [[4, 1], [5, 0]])
 
 
-def test_a_dust_of_equal_components_keeps_the_number_asked_for():
-    component = np.arange(5000)
-    hosts, followed = follow_hosts(component, np.ones(5000), np.random.default_rng(2).random((5000, 3)), 32)
-    assert len(hosts) == 1 or len(hosts) == 32
-    assert followed.max() == len(hosts) - 1
+def test_hosts_alone_have_nobody_to_follow():
+    assert nearest_hosts(np.array([0, 1]), np.array([True, True]), np.eye(3)[:2]).shape == (0, 2)
