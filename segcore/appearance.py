@@ -1,5 +1,6 @@
 """What a mesh file says beside the shape: normals, texture coordinates, colours, and the names of its groups."""
 
+from collections.abc import Sequence
 from dataclasses import dataclass, field
 from typing import Any
 
@@ -58,6 +59,15 @@ class Appearance:
             and (self.corners is None or (len(self.corners) == face_count and _are_entries(self.corners, rows)))
             and (self.face_group is None or self.face_group.shape == (face_count,))
         )
+
+
+def group_appearance(names: Sequence[str], sizes: Sequence[int]) -> Appearance | None:
+    """Groups of which the i-th run of ``sizes[i]`` faces is called ``names[i]``; None where no run has a name."""
+    if not any(names):
+        return None
+    entry = {name: i for i, name in enumerate(dict.fromkeys(names))}
+    groups = np.repeat(np.array([entry[name] for name in names], dtype=np.int32), sizes)
+    return Appearance(face_group=groups, group_names=tuple(entry))
 
 
 def unit_normals(values: NDArray[Any]) -> NDArray[np.float32] | None:

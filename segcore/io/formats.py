@@ -27,6 +27,7 @@ FORMATS: dict[str, Format] = {
     "obj": Format("OBJ", (".obj",), ("model/obj", "application/x-tgif")),
     "glb": Format("GLB", (".glb",), ("model/gltf-binary",)),
     "gltf": Format("glTF", (".gltf",), ("model/gltf+json",)),
+    "3mf": Format("3MF", (".3mf",), ("model/3mf", "application/vnd.ms-package.3dmanufacturing-3dmodel+xml")),
 }
 
 _BOM = b"\xef\xbb\xbf"
@@ -36,8 +37,9 @@ _SOLID = re.compile(rb"\s*+solid\b", re.IGNORECASE)
 _OBJ = re.compile(rb"(?:\s++|#[^\r\n]*+[\r\n])*+(?:v|vt|vn|vp|f|l|p|g|o|s|mg|usemtl|mtllib)(?=[ \t])")
 _OBJ_VERTEX = re.compile(rb"(?:^|[\r\n])[ \t]*+v[ \t]")
 _GLTF = re.compile(rb"\s*+\{")
+_ZIP, _ZIP_NAME = b"PK\x03\x04", 30  # how an archive begins, and where the name of its first member stands
 _FOREIGN = {
-    b"PK\x03\x04": "a ZIP archive (3MF or other)",
+    _ZIP: "a ZIP archive, but no 3MF",
     b"Kaydara FBX Binary": "FBX",
     b"<?xml": "XML (COLLADA, X3D or other)",
     b"ISO-10303-21": "STEP",
@@ -80,7 +82,7 @@ def detect_format(data: bytes, declared: str | None) -> str:
     found = _found(data)
     if found is not None and declared in (None, found):
         return found
-    foreign = FORMATS[found].title if found else next((n for m, n in _FOREIGN.items() if data.startswith(m)), None)
+    foreign = FORMATS[found].title if found else _foreign(data)
     if declared is not None and foreign is not None:
         raise UnsupportedFormat(
             f"The file is declared or named as {FORMATS[declared].title}, but its content is {foreign}: "
@@ -113,9 +115,18 @@ def _titles() -> str:
     return f"{', '.join(first)} or {last}"
 
 
+def _foreign(data: bytes) -> str | None:
+    """What a file is that no reader is for, where that is known."""
+    if data.startswith(_ZIP) and data.startswith(b"header.json", _ZIP_NAME):
+        return "a .cleave file, which cleave convert opens"
+    return next((title for magic, title in _FOREIGN.items() if data.startswith(magic)), None)
+
+
 def _found(data: bytes) -> str | None:
     if data.startswith(b"glTF"):
         return "glb"
+    if data.startswith(_ZIP) and b".model" in data:
+        return "3mf"
     if data.startswith((b"ply\n", b"ply\r")):
         return "ply"
     if _fills_stl(data):

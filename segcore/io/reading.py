@@ -14,6 +14,7 @@ from segcore.io.off import read_off
 from segcore.io.ply import read_ply
 from segcore.io.source import read_source
 from segcore.io.stl import read_stl
+from segcore.io.threemf import read_3mf
 from segcore.mesh import Mesh
 
 _READERS: dict[str, Callable[[bytes, ReadLimits], Mesh]] = {
@@ -23,6 +24,7 @@ _READERS: dict[str, Callable[[bytes, ReadLimits], Mesh]] = {
     "obj": read_obj,
     "glb": read_gltf,
     "gltf": read_gltf,
+    "3mf": read_3mf,
 }
 
 

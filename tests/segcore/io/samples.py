@@ -5,6 +5,7 @@ import struct
 from gltf_files import FLOAT, Asset
 from ply_files import ENCODINGS, Properties, Rows, ply
 from soups import Point, Soup
+from threemf_files import Model3MF
 
 SQUARE = Soup([(0.0, 0.0, 0.0), (1.0, 0.0, 0.0), (1.0, 1.0, 0.0), (0.0, 1.0, 0.5)], [[0, 1, 2], [0, 2, 3]])
 
@@ -50,6 +51,14 @@ def gltf_square() -> Asset:
     return asset
 
 
+def threemf_square() -> bytes:
+    model = Model3MF()
+    model.item(model.mesh(SQUARE))
+    return model.package()
+
+
+THREEMF_SQUARE = threemf_square()
+
 SAMPLES = {
     "off": [OFF, b"\n# made by hand\n" + OFF, b"\xef\xbb\xbf" + OFF],
     "stl": [ASCII_STL, BINARY_STL, BINARY_STL + b"tail", b"solid" + BINARY_STL[5:]],
@@ -57,4 +66,5 @@ SAMPLES = {
     "obj": [OBJ, b"# OFF\n\n" + OBJ, b"mtllib x.mtl\ng a\n" + OBJ],
     "glb": [gltf_square().glb()],
     "gltf": [gltf_square().gltf(), b"\n " + gltf_square().gltf()],
+    "3mf": [THREEMF_SQUARE],
 }

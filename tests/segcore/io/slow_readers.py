@@ -4,11 +4,14 @@ Each returns the vertices and the triangles of a file, or raises anything at all
 """
 
 import base64
+import io
 import json
 import math
 import re
 import struct
+import zipfile
 from collections.abc import Callable
+from xml.etree import ElementTree
 
 from soups import Point, Triangle
 
@@ -368,3 +371,43 @@ def _view(document: dict, buffers: list[bytes], item: dict, form: str, count: in
     stride = view.get("byteStride", struct.calcsize(form))
     data = buffers[view["buffer"]][view.get("byteOffset", 0) :][: view["byteLength"]]
     return [struct.unpack_from(form, data, item.get("byteOffset", 0) + stride * i) for i in range(count)]
+
+
+_CORE = "{http://schemas.microsoft.com/3dmanufacturing/core/2015/02}"
+_UNITS = {"micron": 0.001, "millimeter": 1, "centimeter": 10, "inch": 25.4, "foot": 304.8, "meter": 1000}
+
+
+def slow_3mf(data: bytes) -> list[tuple[Point, Point, Point]]:
+    """The corners of every triangle that is built."""
+    with zipfile.ZipFile(io.BytesIO(data)) as archive:
+        model = ElementTree.fromstring(archive.read("3D/3dmodel.model"))
+    objects = {entry.get("id"): entry for entry in model.iter(f"{_CORE}object")}
+    unit = _UNITS[model.get("unit", "millimeter")]
+    corners: list[tuple[Point, Point, Point]] = []
+    for item in model.iter(f"{_CORE}item"):
+        _build(objects, item, [], corners)
+    return [tuple((x * unit, y * unit, z * unit) for x, y, z in triangle) for triangle in corners]
+
+
+def _build(objects: dict, place: ElementTree.Element, outer: list[list[float]], corners: list) -> None:
+    transforms = [[float(word) for word in place.get("transform", "1 0 0 0 1 0 0 0 1 0 0 0").split()], *outer]
+    entry = objects[place.get("objectid")]
+    points = [_through(transforms, [float(v.get(axis)) for axis in "xyz"]) for v in entry.iter(f"{_CORE}vertex")]
+    mirrored = sum(_turns_over(m) for m in transforms) % 2
+    for triangle in entry.iter(f"{_CORE}triangle"):
+        a, b, c = (points[int(triangle.get(key))] for key in ("v1", "v2", "v3"))
+        corners.append((a, c, b) if mirrored else (a, b, c))
+    for component in entry.iter(f"{_CORE}component"):
+        _build(objects, component, transforms, corners)
+
+
+def _through(transforms: list[list[float]], point: list[float]) -> Point:
+    for m in transforms:
+        x, y, z = point
+        point = [x * m[i] + y * m[i + 3] + z * m[i + 6] + m[i + 9] for i in range(3)]
+    return tuple(point)
+
+
+def _turns_over(m: list[float]) -> bool:
+    a, b, c, d, e, f, g, h, i = m[:9]
+    return a * (e * i - f * h) - b * (d * i - f * g) + c * (d * h - e * g) < 0

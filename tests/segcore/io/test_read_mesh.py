@@ -71,8 +71,8 @@ def test_a_format_goes_by_its_name_extensions_and_media_types(name: str) -> None
 
 
 def test_an_unknown_declaration_is_refused_with_the_formats_that_are_read() -> None:
-    with pytest.raises(UnsupportedFormat, match=r"'3mf'.*OFF, STL, PLY, OBJ, GLB or glTF"):
-        read(OFF, "3mf")
+    with pytest.raises(UnsupportedFormat, match=r"'dae'.*OFF, STL, PLY, OBJ, GLB, glTF or 3MF"):
+        read(OFF, "dae")
 
 
 @pytest.mark.parametrize(

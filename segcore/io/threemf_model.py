@@ -1,0 +1,179 @@
+"""The XML of a 3MF model: its objects and what it builds of them."""
+
+from array import array
+from collections.abc import Iterable
+from dataclasses import dataclass, field
+from typing import TypeAlias
+from xml.parsers import expat
+
+import numpy as np
+
+from segcore.arrays import FloatArray
+from segcore.errors import InvalidMesh, UnsupportedFormat
+from segcore.io.limits import ReadLimits
+
+ObjectKey: TypeAlias = tuple[str, str]  # the part, empty for the root model, and the id in it
+Attributes: TypeAlias = dict[str, str]
+
+_CORE = "http://schemas.microsoft.com/3dmanufacturing/core/2015/02"
+_PRODUCTION = "http://schemas.microsoft.com/3dmanufacturing/production/2015/06"
+# Required extensions that change neither the faces nor their places, or that are followed here.
+_UNDERSTOOD = (
+    _PRODUCTION,
+    "http://schemas.microsoft.com/3dmanufacturing/material/2015/02",
+    "http://schemas.microsoft.com/3dmanufacturing/trianglesets/2021/07",
+)
+_MILLIMETRES = {
+    "micron": 1e-3, "millimeter": 1.0, "centimeter": 10.0, "inch": 25.4, "foot": 304.8, "meter": 1000.0,
+}  # fmt: skip
+_PATH = f"{_PRODUCTION} path"
+_IDENTITY = np.eye(4)
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Placed:
+    """An object at a place: a component of another one, or an item of the build."""
+
+    object: ObjectKey
+    transform: FloatArray  # (4, 4) for column vectors
+
+
+@dataclass(slots=True, eq=False)
+class ModelObject:
+    """A mesh, or a list of components, or nothing."""
+
+    name: str
+    vertices: "array[float]" = field(default_factory=lambda: array("d"))  # x, y, z of each
+    triangles: "array[int]" = field(default_factory=lambda: array("i"))  # three vertices of each
+    components: list[Placed] = field(default_factory=list)
+
+
+@dataclass(slots=True, eq=False)
+class Model:
+    """One model part."""
+
+    unit: float = 1.0  # millimetres
+    objects: dict[str, ModelObject] = field(default_factory=dict)
+    items: list[Placed] = field(default_factory=list)
+
+
+def parse_model(chunks: Iterable[bytes], part: str, limits: ReadLimits) -> Model:
+    """Parse a model part; no entity is expanded, and nothing outside of it is looked at.
+
+    Parameters
+    ----------
+    part : the name of the part, empty for the root model.
+
+    Raises
+    ------
+    InvalidMesh, UnsupportedFormat, LimitExceeded
+        With the line.
+    """
+    return _ModelParser(part, limits).parse(chunks)
+
+
+class _ModelParser:
+    def __init__(self, part: str, limits: ReadLimits) -> None:
+        self._part = part
+        self._limits = limits
+        self._model = Model()
+        self._object = ModelObject("")
+        self._namespaces: dict[str, str] = {}
+        self._parser = expat.ParserCreate(namespace_separator=" ")
+        self._parser.buffer_text = True
+        self._parser.StartElementHandler = self._start
+        self._parser.StartDoctypeDeclHandler = self._refuse_doctype
+        self._parser.StartNamespaceDeclHandler = self._declare
+        self._handlers = {
+            f"{_CORE} vertex": self._vertex,
+            f"{_CORE} triangle": self._triangle,
+            f"{_CORE} object": self._begin_object,
+            f"{_CORE} component": self._component,
+            f"{_CORE} item": self._item,
+            f"{_CORE} model": self._begin_model,
+        }
+        self._has_model = False
+
+    def parse(self, chunks: Iterable[bytes]) -> Model:
+        try:
+            for chunk in chunks:
+                self._parser.Parse(chunk, False)
+            self._parser.Parse(b"", True)
+        except expat.ExpatError as error:
+            raise InvalidMesh(
+                f"Line {error.lineno}: the XML of the 3MF model is damaged ({expat.ErrorString(error.code)})."
+            ) from error
+        except (KeyError, ValueError, OverflowError) as error:
+            raise InvalidMesh(
+                f"Line {self._parser.CurrentLineNumber}: an attribute in the 3MF model is missing or no number."
+            ) from error
+        if not self._has_model:
+            raise InvalidMesh("The 3MF model is XML, but has no element 'model' of the 3MF core specification.")
+        return self._model
+
+    def _start(self, name: str, attributes: Attributes) -> None:
+        handler = self._handlers.get(name)
+        if handler is not None:
+            handler(attributes)
+
+    def _vertex(self, attributes: Attributes) -> None:
+        x, y, z = attributes["x"], attributes["y"], attributes["z"]
+        if "_" in x or "_" in y or "_" in z:
+            raise ValueError("Python's own form of numbers")
+        self._object.vertices.extend((float(x), float(y), float(z)))
+        if len(self._object.vertices) > 3 * self._limits.max_vertices:
+            self._limits.check_vertices(len(self._object.vertices) // 3)
+
+    def _triangle(self, attributes: Attributes) -> None:
+        a, b, c = attributes["v1"], attributes["v2"], attributes["v3"]
+        if "_" in a or "_" in b or "_" in c:
+            raise ValueError("Python's own form of numbers")
+        self._object.triangles.extend((int(a), int(b), int(c)))
+        if len(self._object.triangles) > 3 * self._limits.max_faces:
+            self._limits.check_faces(len(self._object.triangles) // 3)
+
+    def _begin_model(self, attributes: Attributes) -> None:
+        unit = attributes.get("unit", "millimeter")
+        if unit not in _MILLIMETRES:
+            raise InvalidMesh(f"The 3MF model is in {unit[:40]!r}, which is no unit of 3MF: correct it.")
+        self._model.unit = _MILLIMETRES[unit]
+        self._has_model = True
+        for prefix in attributes.get("requiredextensions", "").split():
+            namespace = self._namespaces.get(prefix, prefix)
+            if namespace not in _UNDERSTOOD:
+                raise UnsupportedFormat(
+                    f"The 3MF model requires the extension {namespace[:100]!r}: save it without that extension."
+                )
+
+    def _begin_object(self, attributes: Attributes) -> None:
+        number = attributes["id"]
+        if number in self._model.objects:
+            raise InvalidMesh(f"Line {self._parser.CurrentLineNumber}: the 3MF model has two objects {number[:40]!r}.")
+        self._object = self._model.objects[number] = ModelObject(attributes.get("name", ""))
+
+    def _component(self, attributes: Attributes) -> None:
+        self._object.components.append(self._placed(attributes))
+
+    def _item(self, attributes: Attributes) -> None:
+        self._model.items.append(self._placed(attributes))
+
+    def _placed(self, attributes: Attributes) -> Placed:
+        transform = attributes.get("transform")
+        matrix = _IDENTITY if transform is None else _matrix(transform)
+        return Placed((attributes.get(_PATH, self._part), attributes["objectid"]), matrix)
+
+    def _declare(self, prefix: str | None, uri: str) -> None:
+        self._namespaces[prefix or ""] = uri
+
+    def _refuse_doctype(self, *_: object) -> None:
+        raise InvalidMesh("The 3MF model has a document type declaration, which 3MF does not allow: save it anew.")
+
+
+def _matrix(text: str) -> FloatArray:
+    """(4, 4) for column vectors, of the 4 rows of 3 numbers that the file has for row vectors."""
+    values = [float(word) for word in text.split()]
+    if len(values) != 12 or "_" in text or not np.isfinite(values).all():
+        raise ValueError("a transform has 12 finite numbers")
+    matrix = np.eye(4)
+    matrix[:3] = np.array(values).reshape(4, 3).T
+    return matrix

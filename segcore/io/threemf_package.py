@@ -1,0 +1,91 @@
+"""The parts of a 3MF package, a ZIP archive, each within the limits before it is unpacked."""
+
+import io
+import posixpath
+import re
+import zipfile
+import zlib
+from collections.abc import Iterator
+from contextlib import contextmanager
+from typing import IO
+
+from segcore.errors import InvalidMesh, UnsupportedFormat
+from segcore.io.limits import ReadLimits
+
+_MOST_PARTS = 10_000
+_CENTRAL_RECORD = b"PK\x01\x02"
+_ROOT_RELATIONSHIPS = "_rels/.rels"
+_LARGEST_RELATIONSHIPS = 2**20  # bytes
+_MODEL_TYPE = b"http://schemas.microsoft.com/3dmanufacturing/2013/01/3dmodel"
+_RELATIONSHIP = re.compile(rb"<(?:\w+:)?Relationship\b[^>]*>")
+_TARGET = re.compile(rb"""\bTarget\s*=\s*(?:"([^"]*)"|'([^']*)')""")
+_USUAL_MODEL = "3D/3dmodel.model"
+_CHUNK = 2**18
+_READ_HERE = (zipfile.ZIP_STORED, zipfile.ZIP_DEFLATED)
+_ENCRYPTED = 0x1
+
+
+class Package:
+    """A package in memory; what all parts unpack to together stays below ``limits.max_uncompressed_bytes``."""
+
+    def __init__(self, data: bytes, limits: ReadLimits) -> None:
+        if data.count(_CENTRAL_RECORD) > _MOST_PARTS:
+            raise InvalidMesh(f"The 3MF file has more than {_MOST_PARTS} parts: it is damaged or no model.")
+        try:
+            self._archive = zipfile.ZipFile(io.BytesIO(data))
+        except (zipfile.BadZipFile, NotImplementedError, UnicodeDecodeError, ValueError, OverflowError) as error:
+            raise InvalidMesh("The ZIP archive of the 3MF file is damaged or cut short: send it again.") from error
+        self._parts = {_key(entry.filename): entry for entry in self._archive.infolist()}
+        self._limits = limits
+        self._unpacked = 0
+
+    def root_model(self) -> str:
+        """The name of the part that holds the model, as the relationships of the package say, else the usual one."""
+        if _key(_ROOT_RELATIONSHIPS) in self._parts:
+            with self._open(_ROOT_RELATIONSHIPS) as part:
+                text = part.read(_LARGEST_RELATIONSHIPS)
+            for relationship in _RELATIONSHIP.findall(text):
+                target = _TARGET.search(relationship)
+                if _MODEL_TYPE in relationship and target:
+                    return (target[1] or target[2]).decode("utf-8", "replace")
+        if _key(_USUAL_MODEL) not in self._parts:
+            raise UnsupportedFormat("The ZIP archive has no 3D model in it: it is no 3MF file; send the mesh itself.")
+        return _USUAL_MODEL
+
+    def chunks(self, name: str) -> Iterator[bytes]:
+        """The bytes of a part, piece by piece.
+
+        Raises
+        ------
+        InvalidMesh
+            Where the part is missing, damaged or cut short.
+        UnsupportedFormat
+            Where it is encrypted or compressed in another way than deflate.
+        LimitExceeded
+        """
+        with self._open(name) as part:
+            while chunk := part.read(_CHUNK):
+                yield chunk
+
+    @contextmanager
+    def _open(self, name: str) -> Iterator[IO[bytes]]:
+        entry = self._parts.get(_key(name))
+        if entry is None:
+            raise InvalidMesh(f"The 3MF file has no part {name[:80]!r}, which it refers to: it is damaged.")
+        if entry.compress_type not in _READ_HERE or entry.flag_bits & _ENCRYPTED:
+            raise UnsupportedFormat(
+                f"Part {name[:80]!r} of the 3MF file is encrypted, or compressed in another way than deflate: "
+                "save it in the usual form."
+            )
+        self._unpacked += entry.file_size
+        self._limits.check("max_uncompressed_bytes", self._unpacked, "bytes")
+        try:
+            with self._archive.open(entry) as part:
+                yield part
+        except (zipfile.BadZipFile, zlib.error, EOFError, NotImplementedError) as error:
+            raise InvalidMesh(f"Part {name[:80]!r} of the 3MF file is damaged or cut short: send it again.") from error
+
+
+def _key(name: str) -> str:
+    """Names of parts are absolute or relative to the package, and equal without regard to case."""
+    return posixpath.normpath(name.replace("\\", "/")).strip("/").lower()
