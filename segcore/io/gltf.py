@@ -8,6 +8,7 @@ from segcore.arrays import FloatArray, LongArray
 from segcore.errors import InvalidMesh
 from segcore.io.gltf_accessors import Accessors
 from segcore.io.gltf_document import Document, Item, integer, member, read_document
+from segcore.io.gltf_draco import DRACO, decode_draco
 from segcore.io.gltf_scene import Instance, mesh_instances
 from segcore.io.limits import ReadLimits
 from segcore.io.polygons import strip_faces
@@ -55,8 +56,23 @@ def _primitives(document: Document, accessors: Accessors, mesh: int) -> list[_Pr
     entries = document.item("meshes", mesh).get("primitives")
     if not isinstance(entries, list) or not all(isinstance(entry, dict) for entry in entries):
         raise InvalidMesh(f"meshes[{mesh}].primitives of the glTF file must be a list of objects.")
+    for i, entry in enumerate(entries):
+        _decompress(document, accessors, entry, f"meshes[{mesh}].primitives[{i}]")
     described = (_primitive(entry, accessors, f"meshes[{mesh}].primitives[{i}]") for i, entry in enumerate(entries))
     return [primitive for primitive in described if primitive.mode in (_TRIANGLES, _STRIP, _FAN)]
+
+
+def _decompress(document: Document, accessors: Accessors, entry: Item, where: str) -> None:
+    """Give the accessors of a primitive that Draco compressed their values."""
+    extensions = entry.get("extensions")
+    if not isinstance(extensions, dict) or DRACO not in extensions:
+        return
+    decoded = decode_draco(document, member(extensions, DRACO, where), where)
+    attributes = member(entry, "attributes", where)
+    for name, values in decoded.attributes.items():
+        if name in attributes:
+            accessors.supply(integer(attributes, name, where), values, where)
+    accessors.supply(integer(entry, "indices", where), decoded.corners, where)
 
 
 def _primitive(entry: Item, accessors: Accessors, where: str) -> _Primitive:

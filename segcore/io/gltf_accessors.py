@@ -14,11 +14,23 @@ _SMALL = 65536  # elements that an accessor without data may have in any case
 
 
 class Accessors:
-    """Reads accessors; every buffer is decoded once."""
+    """Reads accessors."""
 
     def __init__(self, document: Document) -> None:
         self._document = document
-        self._buffers: dict[int, memoryview] = {}
+        self._supplied: dict[int, NDArray[Any]] = {}
+
+    def supply(self, index: int, values: NDArray[Any], where: str) -> None:
+        """Give an accessor whose data is compressed elsewhere, at ``where``, its (count, width) values."""
+        count = self.count(index)
+        if len(values) != count:
+            raise InvalidMesh(
+                f"{where} of the glTF file holds {len(values)} values for accessors[{index}], "
+                f"which should have {count}: it is damaged."
+            )
+        if index in self._supplied and not np.array_equal(self._supplied[index], values):
+            raise InvalidMesh(f"accessors[{index}] of the glTF file has data at two places that contradict each other.")
+        self._supplied[index] = values
 
     def count(self, index: int) -> int:
         """The number of elements of an accessor."""
@@ -40,7 +52,11 @@ class Accessors:
         if entry.get("type") != kind:
             raise InvalidMesh(f"{where} of the glTF file must be of type {kind}.")
         dtype, count = _component(entry, where), self.count(index)
-        if "bufferView" in entry:
+        if index in self._supplied:
+            values = self._supplied[index]
+            if values.shape[1:] != (_WIDTHS[kind],):
+                raise InvalidMesh(f"{where} of the glTF file has compressed data of another type than {kind}.")
+        elif "bufferView" in entry:
             values = self._view(entry, where, dtype, count, _WIDTHS[kind])
         elif count <= max(_SMALL, self._document.size):
             values = np.zeros((count, _WIDTHS[kind]), dtype)
@@ -48,14 +64,14 @@ class Accessors:
             raise InvalidMesh(f"{where} of the glTF file has {count} elements without data: it is damaged.")
         if "sparse" in entry:
             values = self._with_sparse(values, member(entry, "sparse", where), f"{where}.sparse")
-        return _normalized(values) if entry.get("normalized") is True and dtype.kind in "iu" else values
+        return _normalized(values) if entry.get("normalized") is True and values.dtype.kind in "iu" else values
 
     def _view(self, item: Item, where: str, dtype: np.dtype[Any], count: int, width: int) -> NDArray[Any]:
         """(count, width) elements of the buffer view that ``item`` names; nothing is copied."""
         view = integer(item, "bufferView", where)
         entry, name = self._document.item("bufferViews", view), f"bufferViews[{view}]"
         begin, length = integer(entry, "byteOffset", name, 0), integer(entry, "byteLength", name)
-        buffer = self._buffer(integer(entry, "buffer", name))
+        buffer = self._document.buffer(integer(entry, "buffer", name))
         size = width * dtype.itemsize
         stride = integer(entry, "byteStride", name, size)
         offset = integer(item, "byteOffset", where, 0)
@@ -75,11 +91,6 @@ class Accessors:
         source = member(sparse, "values", where)
         result[replaced] = self._view(source, f"{where}.values", values.dtype, count, values.shape[1])
         return result
-
-    def _buffer(self, index: int) -> memoryview:
-        if index not in self._buffers:
-            self._buffers[index] = self._document.buffer(index)
-        return self._buffers[index]
 
 
 def _component(item: Item, where: str) -> np.dtype[Any]:

@@ -5,7 +5,7 @@ import binascii
 import json
 import math
 import struct
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from typing import Any, NoReturn
 
 from segcore.errors import InvalidMesh, UnsupportedFormat
@@ -18,7 +18,7 @@ _HARMLESS = (
     "EXT_instance_features", "EXT_lights_", "EXT_mesh_features", "EXT_structural_metadata", "EXT_texture_",
     "KHR_animation_pointer", "KHR_lights_", "KHR_materials_", "KHR_texture_", "KHR_xmp", "MSFT_texture_dds",
 )  # fmt: skip
-_UNDERSTOOD = ("KHR_mesh_quantization",)
+_UNDERSTOOD = ("KHR_mesh_quantization", "KHR_draco_mesh_compression")
 
 Item = dict[str, Any]
 
@@ -30,6 +30,7 @@ class Document:
     root: Item
     binary: memoryview | None  # the BIN chunk of a GLB file
     size: int  # of the whole file in bytes
+    _buffers: dict[int, memoryview] = field(default_factory=dict)  # decoded once
 
     def item(self, name: str, index: int) -> Item:
         """Entry ``index`` of an array of the top level."""
@@ -53,6 +54,11 @@ class Document:
         InvalidMesh
             Where it is damaged or shorter than it should be.
         """
+        if index not in self._buffers:
+            self._buffers[index] = self._read_buffer(index)
+        return self._buffers[index]
+
+    def _read_buffer(self, index: int) -> memoryview:
         entry, where = self.item("buffers", index), f"buffers[{index}]"
         length = integer(entry, "byteLength", where)
         uri = entry.get("uri")
@@ -89,6 +95,16 @@ def read_document(data: bytes) -> Document:
         raise UnsupportedFormat(f"glTF version {version[:20]!r} is not read: save it as glTF 2.0.")
     _check_extensions(root.get("extensionsRequired", []))
     return Document(root, binary, len(data))
+
+
+def view_bytes(document: Document, index: int) -> memoryview:
+    """The bytes of a buffer view."""
+    entry, where = document.item("bufferViews", index), f"bufferViews[{index}]"
+    begin, length = integer(entry, "byteOffset", where, 0), integer(entry, "byteLength", where)
+    buffer = document.buffer(integer(entry, "buffer", where))
+    if begin + length > len(buffer):
+        raise InvalidMesh(f"{where} of the glTF file reaches beyond its buffer of {len(buffer)} bytes.")
+    return buffer[begin : begin + length]
 
 
 def integer(item: Item, key: str, where: str, default: int | None = None) -> int:

@@ -73,7 +73,7 @@ def test_the_model_is_the_one_that_the_package_names() -> None:
         assert len(read(model.package(name)).faces) == 2
     assert len(read(package({"3D/3dmodel.model": model.xml()})).faces) == 2
     relationships = RELATIONSHIPS.format(target="/3D/none.model")
-    with pytest.raises(InvalidMesh, match="no part '/3D/none.model'"):
+    with pytest.raises(InvalidMesh, match=r"no part '/3D/none\.model'"):
         read(package({"[Content_Types].xml": TYPES, "_rels/.rels": relationships, "3D/other.model": model.xml()}))
     with pytest.raises(UnsupportedFormat, match="no 3D model"):
         read(package({"word/document.xml": "<x/>", "x.models": ""}))
