@@ -1,26 +1,65 @@
-"""The page at /: a form and the way to the documentation."""
+"""The viewer at /: a page of static files, and meshes to try it with. Its sources are in viewer/."""
 
-from fastapi import APIRouter
-from starlette.responses import HTMLResponse
+from functools import cache
+from hashlib import sha256
+from importlib.resources import files
+
+from fastapi import APIRouter, Request
+from starlette.exceptions import HTTPException
+from starlette.responses import Response
+
+from service.samples import SAMPLES, sample_ply
 
 router = APIRouter(include_in_schema=False)
 
-_PAGE = """<!doctype html>
-<html lang="en">
-<meta charset="utf-8">
-<title>Cleave</title>
-<h1>Cleave</h1>
-<p>Cuts a 3D mesh into the parts that a person would name.</p>
-<form action="/v1/jobs" method="post" enctype="multipart/form-data">
-  <p><label>Mesh <input type="file" name="mesh" required></label> <button>Segment</button></p>
-</form>
-<p>The answer has the path of the job; when that says <code>succeeded</code>, its <code>links</code> lead to the labels,
-the hierarchy and the coloured model. <a href="/docs">All about the API</a>, <a href="/readyz">readiness</a>.</p>
-</html>
-"""
-_POLICY = "default-src 'none'; form-action 'self'; base-uri 'none'; frame-ancestors 'none'"
+# Nothing from elsewhere, nothing inline: what the page shows of a job can only come from this server.
+_POLICY = (
+    "default-src 'none'; script-src 'self'; style-src 'self'; connect-src 'self'; img-src 'self' blob:; "
+    "form-action 'self'; base-uri 'none'; frame-ancestors 'none'"
+)
+_PAGE_HEADERS = {
+    "Content-Security-Policy": _POLICY,
+    "Referrer-Policy": "no-referrer",
+    "X-Content-Type-Options": "nosniff",
+    "Cache-Control": "no-cache",
+}
+_FILE_HEADERS = {"X-Content-Type-Options": "nosniff", "Cache-Control": "no-cache"}
+_PAGE = "index.html"
+_MEDIA_TYPES = {".js": "text/javascript", ".css": "text/css", ".svg": "image/svg+xml", ".png": "image/png"}
 
 
 @router.get("/")
-async def get_home() -> HTMLResponse:
-    return HTMLResponse(_PAGE, headers={"Content-Security-Policy": _POLICY})
+def get_home(request: Request) -> Response:
+    return _answer(request, _PAGE, "text/html", _PAGE_HEADERS)
+
+
+@router.get("/viewer/{name}")
+def get_viewer_file(name: str, request: Request) -> Response:
+    """The page's own files; <cleave-viewer> may be loaded by pages of other origins."""
+    suffix = name[name.rfind(".") :]
+    if name not in _files() or suffix not in _MEDIA_TYPES:
+        raise HTTPException(404)
+    return _answer(request, name, _MEDIA_TYPES[suffix], {**_FILE_HEADERS, "Access-Control-Allow-Origin": "*"})
+
+
+@router.get("/samples/{name}.ply")
+def get_sample(name: str) -> Response:
+    if name not in SAMPLES:
+        raise HTTPException(404)
+    headers = {"Cache-Control": "max-age=86400", "X-Content-Type-Options": "nosniff"}
+    return Response(sample_ply(name), headers=headers, media_type="model/ply")
+
+
+def _answer(request: Request, name: str, media_type: str, headers: dict[str, str]) -> Response:
+    content, tag = _files()[name]
+    headers = {**headers, "ETag": tag}
+    if request.headers.get("If-None-Match") == tag:
+        return Response(status_code=304, headers=headers)
+    return Response(content, headers=headers, media_type=media_type)
+
+
+@cache
+def _files() -> dict[str, tuple[bytes, str]]:
+    """The built files and their tags, by name; they are part of the installed package and do not change."""
+    contents = {entry.name: entry.read_bytes() for entry in files("service").joinpath("viewer").iterdir()}
+    return {name: (content, f'"{sha256(content).hexdigest()[:32]}"') for name, content in contents.items()}

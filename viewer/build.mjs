@@ -1,0 +1,44 @@
+/** Bundles the page and the web component into the folder that the Python package ships; with --check, compares them. */
+import { build } from "esbuild";
+import { mkdir, readdir, readFile, rm, writeFile } from "node:fs/promises";
+import { join } from "node:path";
+
+const target = "../service/viewer";
+const common = { bundle: true, minify: true, write: false, logLevel: "warning", outdir: target };
+
+/** The files of the viewer: contents by name. */
+async function built() {
+  const scripts = await build({
+    ...common,
+    // The page imports the component's own file, so that a browser loads three.js once.
+    entryPoints: { "cleave-viewer": "src/component/element.ts", page: "src/page/main.ts" },
+    splitting: true,
+    chunkNames: "viewer",
+    format: "esm",
+    target: "es2022",
+    legalComments: "none",
+    banner: { js: "/* Cleave, MIT. Contains three.js, copyright three.js authors, MIT. */" },
+  });
+  const styles = await build({ ...common, entryPoints: ["src/page/page.css"] });
+  const files = new Map();
+  for (const { path, contents } of [...scripts.outputFiles, ...styles.outputFiles])
+    files.set(path.split("/").at(-1), Buffer.from(contents));
+  for (const name of await readdir("static")) files.set(name, await readFile(join("static", name)));
+  return files;
+}
+
+const files = await built();
+if (process.argv.includes("--check")) {
+  const present = await readdir(target);
+  const stale = [...new Set([...present, ...files.keys()])].filter((name) => !present.includes(name) || !files.has(name));
+  for (const [name, contents] of files)
+    if (!stale.includes(name) && !contents.equals(await readFile(join(target, name)))) stale.push(name);
+  if (stale.length > 0) {
+    console.error(`service/viewer is not what the sources make (${stale.join(", ")}): run npm run build in viewer/.`);
+    process.exit(1);
+  }
+} else {
+  await rm(target, { recursive: true, force: true });
+  await mkdir(target);
+  for (const [name, contents] of files) await writeFile(join(target, name), contents);
+}

@@ -1,0 +1,113 @@
+/** What every leaf looks like: three texels each, written whenever the cut or the selection changes. */
+
+import { DataTexture, FloatType, NearestFilter, RGBAFormat } from "three";
+import type { Model } from "./glb";
+import type { Surface } from "./surface";
+import type { Cut } from "./tree";
+
+export interface Look {
+  readonly cut: Cut;
+  readonly hidden: ReadonlySet<number>;
+  readonly selected: readonly number[];
+  readonly hovered: number;
+  /** 0..1 */
+  readonly explode: number;
+}
+
+const COLUMNS = 1024;
+const ROWS = 3;
+const FARTHEST = 0.85; // of the distance between the centres of a node and of its child
+const FIRST_SPLIT_ENDS = 0.45; // of the way, where the coarsest cut has opened; the finest opens last
+
+export class Appearance {
+  readonly texture: DataTexture;
+  readonly columns: number;
+  /** (L) the part of every leaf. */
+  readonly partOfLeaf: Int32Array;
+  readonly #values: Float32Array;
+  readonly #model: Model;
+  readonly #centres: readonly (readonly [number, number, number])[];
+
+  constructor(model: Model, surface: Surface) {
+    const leaves = model.leafNodes.length;
+    this.#model = model;
+    this.columns = Math.min(leaves, COLUMNS);
+    const rows = ROWS * Math.ceil(leaves / this.columns);
+    this.#values = new Float32Array(4 * this.columns * rows);
+    this.texture = new DataTexture(this.#values, this.columns, rows, RGBAFormat, FloatType);
+    this.texture.minFilter = this.texture.magFilter = NearestFilter;
+    this.partOfLeaf = new Int32Array(leaves);
+    this.#centres = nodeCentres(model, surface);
+  }
+
+  show(look: Look): void {
+    const { tree, leafNodes, palette } = this.#model;
+    const selected = new Set(look.selected);
+    const offsets = this.#offsets(look);
+    const parts = new Map<number, number>();
+    leafNodes.forEach((node, leaf) => {
+      let part = parts.get(node);
+      if (part === undefined) parts.set(node, (part = tree.partOf(look.cut, node)));
+      this.partOfLeaf[leaf] = part;
+      const color = palette[tree.node(part).label % palette.length] ?? [0.6, 0.6, 0.6];
+      const emphasis = part === look.hovered ? 1 : selected.size > 0 && !selected.has(part) ? -1 : 0;
+      this.#write(leaf, 0, [...color, look.hidden.has(part) ? 0 : 1]);
+      this.#write(leaf, 1, [...(offsets.get(part) ?? [0, 0, 0]), emphasis]);
+      this.#write(leaf, 2, [part, selected.has(part) ? 1 : 0, 0, 0]);
+    });
+    this.texture.needsUpdate = true;
+  }
+
+  dispose(): void {
+    this.texture.dispose();
+  }
+
+  #write(leaf: number, row: number, values: readonly number[]): void {
+    const line = ROWS * Math.floor(leaf / this.columns) + row;
+    this.#values.set(values, 4 * (line * this.columns + (leaf % this.columns)));
+  }
+
+  /** Every split that is open moves its two sides apart, away from what they were one with; coarse splits first. */
+  #offsets(look: Look): Map<number, number[]> {
+    const { tree } = this.#model;
+    const offsets = new Map<number, number[]>([[0, [0, 0, 0]]]);
+    if (look.explode === 0) return offsets;
+    const order = new Map(tree.splitsOf(look.cut).map((split, rank) => [tree.splitNode(split), rank]));
+    tree.walk(look.cut, (id, isPart) => {
+      if (isPart) return;
+      const begins = ((order.get(id) ?? 0) / Math.max(order.size, 1)) * (1 - FIRST_SPLIT_ENDS);
+      const open = smooth((look.explode - begins) / FIRST_SPLIT_ENDS);
+      for (const child of tree.node(id).children) {
+        const own = offsets.get(id)!;
+        offsets.set(
+          child,
+          own.map((value, k) => value + FARTHEST * open * (this.#centres[child]![k]! - this.#centres[id]![k]!)),
+        );
+      }
+    });
+    return offsets;
+  }
+}
+
+function smooth(t: number): number {
+  const x = Math.min(Math.max(t, 0), 1);
+  return x * x * (3 - 2 * x);
+}
+
+/** The centre of area of every node of the tree. */
+function nodeCentres(model: Model, surface: Surface): [number, number, number][] {
+  const { tree, leafNodes } = model;
+  const sums = tree.nodes.map(() => [0, 0, 0, 0] as [number, number, number, number]);
+  leafNodes.forEach((node, leaf) => {
+    const weight = surface.leafArea[leaf]! + Number.MIN_VALUE;
+    const [x, y, z] = surface.leafCentre.subarray(3 * leaf, 3 * leaf + 3) as unknown as [number, number, number];
+    for (let id = node; id >= 0; id = tree.node(id).parent) {
+      const sum = sums[id]!;
+      sum[0] += weight * x;
+      sum[1] += weight * y;
+      sum[2] += weight * z;
+      sum[3] += weight;
+    }
+  });
+  return sums.map(([x, y, z, w]) => (w > 0 ? [x / w, y / w, z / w] : [0, 0, 0]));
+}

@@ -1,0 +1,241 @@
+/** The objects that are drawn for one model: its surface, wires and lines, over one buffer of vertices. */
+
+import {
+  BufferAttribute,
+  BufferGeometry,
+  CustomBlending,
+  DoubleSide,
+  GLSL3,
+  Group,
+  InstancedBufferAttribute,
+  InstancedBufferGeometry,
+  Mesh,
+  OneFactor,
+  OneMinusSrcAlphaFactor,
+  RawShaderMaterial,
+  Sphere,
+  Vector2,
+  Vector3,
+  Vector4,
+} from "three";
+import { Appearance } from "./appearance";
+import { borderLines, concaveLines, type SurfaceLines } from "./edges";
+import type { Model } from "./glb";
+import {
+  LINE_FRAGMENT,
+  LINE_VERTEX,
+  PICK_FRAGMENT,
+  PICK_VERTEX,
+  PLAIN_FRAGMENT,
+  SURFACE_FRAGMENT,
+  SURFACE_VERTEX,
+  WIRE_VERTEX,
+} from "./shaders";
+import type { Surface } from "./surface";
+
+/** Colours of what is not a part, for a light or a dark background; sRGB and opacity in 0..1. */
+export interface Inks {
+  readonly line: readonly [number, number, number, number];
+  readonly selected: readonly [number, number, number, number];
+  readonly concave: readonly [number, number, number, number];
+  readonly wire: readonly [number, number, number, number];
+  readonly sky: readonly [number, number, number];
+}
+
+const HALF_LINE = 0.75; // pixels of the page
+const GROWTH = 0.6; // of a model whose parts are as far apart as can be
+
+export class Drawing {
+  readonly group = new Group();
+  readonly appearance: Appearance;
+  readonly #model: Model;
+  readonly #surface: Surface;
+  readonly #geometry: BufferGeometry;
+  readonly #materials: RawShaderMaterial[] = [];
+  readonly #surfaceMaterial: RawShaderMaterial;
+  readonly #pickMaterial: RawShaderMaterial;
+  readonly #surfaceMesh: Mesh;
+  #wires: Mesh | null = null;
+  #borders: Mesh | null = null;
+  #concave: Mesh | null = null;
+  #inks: Inks;
+  #size = { width: 1, height: 1, ratio: 1 };
+
+  constructor(model: Model, surface: Surface, inks: Inks) {
+    this.#model = model;
+    this.#surface = surface;
+    this.#inks = inks;
+    this.appearance = new Appearance(model, surface);
+    this.#geometry = surfaceGeometry(surface);
+    this.#surfaceMaterial = this.#material(SURFACE_VERTEX, SURFACE_FRAGMENT, {
+      unfold: { value: 1 },
+      sky: { value: new Vector3() },
+    });
+    this.#pickMaterial = this.#material(PICK_VERTEX, PICK_FRAGMENT, {});
+    this.#surfaceMesh = new Mesh(this.#geometry, this.#surfaceMaterial);
+    this.#surfaceMesh.frustumCulled = false;
+    this.group.add(this.#surfaceMesh);
+    this.explode = 0;
+    this.applyInks(inks);
+  }
+
+  /** Set how far the colours have come up, 0..1. */
+  set unfold(value: number) {
+    this.#surfaceMaterial.uniforms["unfold"]!.value = value;
+  }
+
+  /** Seen from outside every model is a ball of radius 1 around the origin; one that is moved apart shrinks to stay so. */
+  set explode(explode: number) {
+    const { centre, radius } = this.#surface;
+    const scale = 1 / (radius * (1 + GROWTH * explode));
+    this.group.scale.setScalar(scale);
+    this.group.position.set(...centre).multiplyScalar(-scale);
+  }
+
+  applyInks(inks: Inks): void {
+    this.#inks = inks;
+    (this.#surfaceMaterial.uniforms["sky"]!.value as Vector3).fromArray([...inks.sky]);
+    setInk(this.#wires, "ink", inks.wire);
+    setInk(this.#borders, "ink", inks.line);
+    setInk(this.#borders, "selectedInk", inks.selected);
+    setInk(this.#concave, "ink", inks.concave);
+  }
+
+  /** The size of the picture in device pixels, and how many of them make one of the page. */
+  resize(width: number, height: number, ratio: number): void {
+    this.#size = { width, height, ratio };
+    for (const { uniforms } of this.#materials) {
+      (uniforms["pixels"]?.value as Vector2 | undefined)?.set(width / 2, height / 2);
+      if (uniforms["width"] !== undefined) uniforms["width"].value = HALF_LINE * Math.max(ratio, 1);
+    }
+  }
+
+  set wireframe(isShown: boolean) {
+    if (isShown && this.#wires === null) {
+      const material = this.#material(WIRE_VERTEX, PLAIN_FRAGMENT, { ink: { value: new Vector4() } }, true);
+      material.wireframe = true;
+      this.#wires = new Mesh(this.#geometry, material);
+      this.#add(this.#wires, 1);
+    }
+    if (this.#wires !== null) this.#wires.visible = isShown;
+  }
+
+  set borders(isShown: boolean) {
+    if (isShown && this.#borders === null) {
+      this.#borders = this.#lineMesh(borderLines(this.#model, this.#surface));
+      this.#add(this.#borders, 3);
+    }
+    if (this.#borders !== null) this.#borders.visible = isShown;
+  }
+
+  set concavity(isShown: boolean) {
+    if (isShown && this.#concave === null) {
+      this.#concave = this.#lineMesh(concaveLines(this.#model, this.#surface));
+      this.#add(this.#concave, 2);
+    }
+    if (this.#concave !== null) this.#concave.visible = isShown;
+  }
+
+  /** Draw the numbers of the leaves in place of their looks, while something is done. */
+  asNumbers(draw: () => void): void {
+    const others = [this.#wires, this.#borders, this.#concave].filter((mesh) => mesh?.visible === true) as Mesh[];
+    for (const mesh of others) mesh.visible = false;
+    this.#surfaceMesh.material = this.#pickMaterial;
+    draw();
+    this.#surfaceMesh.material = this.#surfaceMaterial;
+    for (const mesh of others) mesh.visible = true;
+  }
+
+  dispose(): void {
+    this.appearance.dispose();
+    this.#geometry.dispose();
+    for (const mesh of [this.#borders, this.#concave]) mesh?.geometry.dispose();
+    for (const material of this.#materials) material.dispose();
+    this.group.removeFromParent();
+  }
+
+  #lineMesh(lines: SurfaceLines): Mesh {
+    const material = this.#material(
+      LINE_VERTEX,
+      LINE_FRAGMENT,
+      {
+        ink: { value: new Vector4() },
+        selectedInk: { value: new Vector4() },
+        pixels: { value: new Vector2(1, 1) },
+        width: { value: 1 },
+      },
+      true,
+    );
+    return new Mesh(lineGeometry(lines), material);
+  }
+
+  #add(mesh: Mesh, order: number): void {
+    mesh.frustumCulled = false;
+    mesh.renderOrder = order;
+    this.group.add(mesh);
+    this.applyInks(this.#inks);
+    this.resize(this.#size.width, this.#size.height, this.#size.ratio);
+  }
+
+  #material(
+    vertexShader: string,
+    fragmentShader: string,
+    uniforms: Record<string, { value: unknown }>,
+    isInk = false,
+  ): RawShaderMaterial {
+    const material = new RawShaderMaterial({
+      glslVersion: GLSL3,
+      vertexShader,
+      fragmentShader,
+      uniforms: {
+        leaves: { value: this.appearance.texture },
+        columns: { value: this.appearance.columns },
+        ...uniforms,
+      },
+      side: DoubleSide, // the input may be open or turned inside out
+      depthWrite: !isInk,
+      transparent: isInk,
+    });
+    if (isInk) {
+      material.blending = CustomBlending;
+      material.blendSrc = OneFactor;
+      material.blendDst = OneMinusSrcAlphaFactor;
+    }
+    this.#materials.push(material);
+    return material;
+  }
+}
+
+function surfaceGeometry(surface: Surface): BufferGeometry {
+  const geometry = new BufferGeometry();
+  geometry.setAttribute("position", new BufferAttribute(surface.position, 3));
+  geometry.setAttribute("normalAndLeaf", new BufferAttribute(surface.normalAndLeaf, 4));
+  geometry.setIndex(new BufferAttribute(surface.index, 1));
+  geometry.boundingSphere = new Sphere(new Vector3(...surface.centre), surface.radius);
+  return geometry;
+}
+
+function lineGeometry(lines: SurfaceLines): InstancedBufferGeometry {
+  const geometry = new InstancedBufferGeometry();
+  const corners = new Float32Array([0, -1, 0, 1, -1, 0, 1, 1, 0, 0, 1, 0]);
+  geometry.setAttribute("position", new BufferAttribute(corners, 3));
+  geometry.setIndex([0, 1, 2, 0, 2, 3]);
+  geometry.setAttribute("from", new InstancedBufferAttribute(every(lines.ends, 6, 0), 3));
+  geometry.setAttribute("to", new InstancedBufferAttribute(every(lines.ends, 6, 3), 3));
+  geometry.setAttribute("sides", new InstancedBufferAttribute(lines.leaves, 2));
+  geometry.setAttribute("strength", new InstancedBufferAttribute(lines.strength, 1));
+  geometry.instanceCount = lines.strength.length;
+  return geometry;
+}
+
+/** Three values out of every ``stride``. */
+function every(values: Float32Array, stride: number, start: number): Float32Array {
+  const result = new Float32Array((values.length / stride) * 3);
+  for (let i = 0, j = start; j < values.length; i += 3, j += stride) result.set(values.subarray(j, j + 3), i);
+  return result;
+}
+
+function setInk(mesh: Mesh | null, name: string, ink: readonly number[]): void {
+  const uniform = (mesh?.material as RawShaderMaterial | undefined)?.uniforms[name];
+  (uniform?.value as Vector4 | undefined)?.fromArray([...ink]);
+}

@@ -1,0 +1,442 @@
+/** ``<cleave-viewer>``: shows the GLB file of a job, its parts at any level. docs/viewer.md is its manual. */
+
+import { Drawing, type Inks } from "./drawing";
+import { InvalidModel, parseModel, type Model } from "./glb";
+import { FIRST_VIEW, Stage, type View } from "./stage";
+import { buildSurface } from "./surface";
+import type { Cut, PartTree } from "./tree";
+
+export type { Model, View };
+export { type Cut, type PartTree, type TreeNode } from "./tree";
+
+export interface LoadDetail {
+  readonly maxSegments: number;
+  readonly automaticSegments: number;
+  readonly faces: number;
+}
+
+const LIGHT: Inks = {
+  line: [0.09, 0.1, 0.13, 0.62],
+  selected: [0.27, 0.25, 0.72, 1],
+  concave: [0.78, 0.09, 0.16, 0.95],
+  wire: [0.05, 0.06, 0.09, 0.2],
+  sky: [0.93, 0.93, 0.95],
+};
+const DARK: Inks = {
+  line: [0.04, 0.04, 0.06, 0.75],
+  selected: [1, 1, 1, 1],
+  concave: [1, 0.36, 0.36, 1],
+  wire: [0.02, 0.02, 0.03, 0.32],
+  sky: [0.16, 0.17, 0.2],
+};
+const STYLE = `
+:host { display: block; position: relative; min-width: 1px; min-height: 1px; contain: strict; }
+:host([hidden]) { display: none; }
+canvas { display: block; width: 100%; height: 100%; touch-action: none; outline: none; cursor: grab; border-radius: inherit; }
+canvas:active { cursor: grabbing; }
+canvas.over { cursor: pointer; }
+canvas:focus-visible { box-shadow: inset 0 0 0 3px var(--cleave-focus, #5b5bd6); }
+`;
+const CLICK_PIXELS = 5; // a pointer that moved farther has dragged
+const PAUSE_MS = 12; // of work on a model before the page may breathe
+
+export class CleaveViewer extends HTMLElement {
+  static readonly observedAttributes = [
+    "src",
+    "segments",
+    "selected",
+    "explode",
+    "wireframe",
+    "concavity",
+    "no-lines",
+    "up",
+    "theme",
+    "label",
+  ];
+
+  /** Sent with the request for ``src``. */
+  requestHeaders: Record<string, string> = {};
+
+  readonly #canvas = document.createElement("canvas");
+  #stage: Stage | null = null;
+  #resizing: ResizeObserver | null = null;
+  #model: Model | null = null;
+  #drawing: Drawing | null = null;
+  #loading: AbortController | null = null;
+  #cut: Cut = new Set();
+  #hidden: ReadonlySet<number> = new Set();
+  #selected: readonly number[] = [];
+  #hovered = -1;
+  #names: ReadonlyMap<number, string> = new Map();
+  #firstView: View | null = null;
+  #pressed: { x: number; y: number } | null = null;
+  #hoverFrame = 0;
+  readonly #dark = matchMedia("(prefers-color-scheme: dark)");
+
+  constructor() {
+    super();
+    const root = this.attachShadow({ mode: "open" });
+    const style = new CSSStyleSheet();
+    style.replaceSync(STYLE);
+    root.adoptedStyleSheets = [style];
+    this.#canvas.tabIndex = 0;
+    this.#canvas.setAttribute("role", "application");
+    this.#canvas.setAttribute("aria-roledescription", "3D view");
+    root.append(this.#canvas);
+    this.#listen();
+  }
+
+  connectedCallback(): void {
+    try {
+      this.#stage = new Stage(this.#canvas, () => this.#emit("cleave-view", this.view));
+    } catch {
+      this.#fail("no_webgl", "This browser shows no 3D graphics: switch on WebGL 2, or use another browser.");
+      return;
+    }
+    this.#resizing = new ResizeObserver(() => this.#stage?.resize());
+    this.#resizing.observe(this);
+    this.#dark.addEventListener("change", this.#applyTheme);
+    this.#describe();
+    const source = this.getAttribute("src");
+    if (source !== null && this.#model === null) void this.#fetch(source);
+  }
+
+  disconnectedCallback(): void {
+    this.#loading?.abort();
+    cancelAnimationFrame(this.#hoverFrame);
+    this.#dark.removeEventListener("change", this.#applyTheme);
+    this.#resizing?.disconnect();
+    this.clear();
+    this.#stage?.dispose();
+    this.#stage = null;
+  }
+
+  attributeChangedCallback(name: string, before: string | null, value: string | null): void {
+    if (before === value) return;
+    if (name === "src") {
+      if (this.#stage === null) return;
+      if (value === null) this.clear();
+      else void this.#fetch(value);
+    } else if (name === "segments") {
+      if (this.#model !== null) this.cut = this.#model.tree.cutAt(Number(value));
+    } else if (name === "selected") {
+      this.selected = (value ?? "").split(/[\s,]+/).flatMap((id) => (id === "" ? [] : [Number(id)]));
+    } else if (name === "theme") {
+      this.#applyTheme();
+    } else if (name === "label") {
+      this.#describe();
+    } else {
+      this.#applyModes();
+    }
+  }
+
+  /** The tree of cuts of the model that is shown; null where there is none. */
+  get tree(): PartTree | null {
+    return this.#model?.tree ?? null;
+  }
+
+  get automaticSegments(): number {
+    return this.#model?.automaticSegments ?? 1;
+  }
+
+  /** The nodes that are split; the parts are the nodes below. */
+  get cut(): Cut {
+    return this.#cut;
+  }
+
+  set cut(cut: Cut) {
+    this.#cut = cut;
+    this.#look();
+  }
+
+  get parts(): number[] {
+    return this.#model?.tree.parts(this.#cut) ?? [];
+  }
+
+  get hiddenParts(): ReadonlySet<number> {
+    return this.#hidden;
+  }
+
+  set hiddenParts(parts: ReadonlySet<number>) {
+    this.#hidden = parts;
+    this.#look();
+  }
+
+  get selected(): readonly number[] {
+    return this.#selected;
+  }
+
+  set selected(parts: readonly number[]) {
+    this.#selected = parts;
+    this.#look();
+  }
+
+  /** The part that is highlighted; -1 for none. */
+  get hovered(): number {
+    return this.#hovered;
+  }
+
+  set hovered(part: number) {
+    if (part === this.#hovered) return;
+    this.#hovered = part;
+    this.#look();
+  }
+
+  /** Names that people gave to nodes, for the text alternative. */
+  set names(names: ReadonlyMap<number, string>) {
+    this.#names = names;
+    this.#describe();
+  }
+
+  get view(): View {
+    return this.#stage?.view ?? FIRST_VIEW;
+  }
+
+  /** Where the viewer stands; set before a model is there, it is seen from there without an entrance. */
+  set view(view: View) {
+    if (this.#model === null) this.#firstView = view;
+    if (this.#stage !== null) this.#stage.view = view;
+  }
+
+  /** The whole model again, from the first side. */
+  resetView(): void {
+    this.view = FIRST_VIEW;
+  }
+
+  /** The colour of a node as a CSS colour. */
+  colorOf(node: number): string {
+    const model = this.#model;
+    const color = model?.palette[model.tree.node(node).label % model.palette.length] ?? [0.6, 0.6, 0.6];
+    return `rgb(${color.map((channel) => Math.round(255 * channel)).join(" ")})`;
+  }
+
+  /** The part at a place of the window; -1 where there is none. */
+  partAt(clientX: number, clientY: number): number {
+    const box = this.#canvas.getBoundingClientRect();
+    const leaf = this.#stage?.leafAt(clientX - box.left, clientY - box.top) ?? -1;
+    return leaf < 0 ? -1 : (this.#drawing?.appearance.partOfLeaf[leaf] ?? -1);
+  }
+
+  /** A PNG of what is seen, without a background. */
+  picture(): Promise<Blob> {
+    if (this.#stage === null) return Promise.reject(new Error("Nothing is shown."));
+    return this.#stage.picture();
+  }
+
+  /** What drawing costs. ``frame`` draws one picture and waits for it. */
+  readonly figures = {
+    frame: (): void => this.#stage?.finish(),
+    drawCalls: (): number => this.#stage?.drawCalls ?? 0,
+    memory: () => this.#stage?.memory ?? { geometries: 0, textures: 0 },
+  };
+
+  /** Show the bytes of a GLB file. */
+  async load(data: ArrayBuffer): Promise<void> {
+    this.#loading?.abort();
+    const loading = (this.#loading = new AbortController());
+    await this.#show(data, loading.signal);
+  }
+
+  /** Show nothing, and free what the last model needed. */
+  clear(): void {
+    this.#drawing?.dispose();
+    this.#drawing = null;
+    this.#model = null;
+    this.#hovered = -1;
+    this.#stage?.show(null);
+    this.#describe();
+  }
+
+  async #fetch(source: string): Promise<void> {
+    this.#loading?.abort();
+    const loading = (this.#loading = new AbortController());
+    try {
+      const answer = await fetch(source, { headers: this.requestHeaders, signal: loading.signal });
+      if (!answer.ok) return this.#fail("not_loaded", `The model was not loaded: the server answered ${answer.status}.`);
+      await this.#show(await answer.arrayBuffer(), loading.signal);
+    } catch (error) {
+      if (loading.signal.aborted) return;
+      if (error instanceof InvalidModel) this.#fail("invalid_model", error.message);
+      else this.#fail("not_loaded", "The model was not loaded: the server does not answer.");
+    }
+  }
+
+  async #show(data: ArrayBuffer, signal: AbortSignal): Promise<void> {
+    const model = parseModel(data);
+    const surface = await buildSurface(model, breather());
+    if (signal.aborted || this.#stage === null) return;
+    this.clear();
+    this.#model = model;
+    this.#drawing = new Drawing(model, surface, this.#inks());
+    const segments = Number(this.getAttribute("segments") ?? model.automaticSegments);
+    this.#cut = model.tree.cutAt(segments);
+    this.#hidden = new Set();
+    this.#selected = [];
+    this.#stage.view = this.#firstView ?? FIRST_VIEW;
+    this.#stage.show(this.#drawing);
+    this.#applyModes();
+    const detail = {
+      maxSegments: model.tree.maxSegments,
+      automaticSegments: model.automaticSegments,
+      faces: model.index.length / 3,
+    };
+    this.#emit("cleave-load", detail satisfies LoadDetail);
+    if (this.#firstView === null && !this.hasAttribute("no-entrance")) this.#stage.enter();
+    this.#firstView = null;
+  }
+
+  #applyModes(): void {
+    const drawing = this.#drawing;
+    if (drawing === null || this.#stage === null) return;
+    drawing.borders = !this.hasAttribute("no-lines");
+    drawing.wireframe = this.hasAttribute("wireframe");
+    drawing.concavity = this.hasAttribute("concavity");
+    this.#stage.isZUp = this.getAttribute("up") === "z";
+    this.#look();
+  }
+
+  #look(): void {
+    if (this.#drawing === null || this.#stage === null) return;
+    const explode = Math.min(Math.max(Number(this.getAttribute("explode") ?? 0), 0), 1);
+    const { appearance } = this.#drawing;
+    appearance.show({
+      cut: this.#cut,
+      hidden: this.#hidden,
+      selected: this.#selected,
+      hovered: this.#hovered,
+      explode,
+    });
+    this.#drawing.explode = explode;
+    this.#stage.reach = 1 + explode;
+    this.#stage.changed();
+    this.#describe();
+  }
+
+  readonly #applyTheme = (): void => {
+    this.#drawing?.applyInks(this.#inks());
+    this.#stage?.changed();
+  };
+
+  #inks(): Inks {
+    const theme = this.getAttribute("theme");
+    return theme === "dark" || (theme !== "light" && this.#dark.matches) ? DARK : LIGHT;
+  }
+
+  /** The text alternative. */
+  #describe(): void {
+    const label = this.getAttribute("label");
+    if (this.#model === null) {
+      this.#canvas.setAttribute("aria-label", label ?? "No model");
+      return;
+    }
+    const { tree } = this.#model;
+    const parts = this.parts;
+    const shown = parts.toSorted((a, b) => tree.node(b).area - tree.node(a).area).slice(0, 12);
+    const list = shown.map((id) => `${this.#nameOf(id)} ${percent(tree.node(id).area / tree.totalArea)}`).join(", ");
+    const rest = parts.length > shown.length ? `, and ${parts.length - shown.length} smaller ones` : "";
+    const title = label === null ? "" : `${label}: `;
+    this.#canvas.setAttribute("aria-label", `${title}${parts.length} ${parts.length === 1 ? "part" : "parts"}. ${list}${rest}.`);
+  }
+
+  #nameOf(id: number): string {
+    return this.#names.get(id) ?? `Part ${this.#model!.tree.node(id).label + 1}`;
+  }
+
+  #listen(): void {
+    const canvas = this.#canvas;
+    canvas.addEventListener("pointermove", (event) => this.#hover(event));
+    canvas.addEventListener("pointerleave", () => this.#setHovered(-1));
+    canvas.addEventListener("pointerdown", (event) => (this.#pressed = { x: event.clientX, y: event.clientY }));
+    canvas.addEventListener("pointerup", (event) => this.#click(event));
+    canvas.addEventListener("keydown", (event) => this.#key(event));
+    canvas.addEventListener("webglcontextlost", (event) => event.preventDefault());
+    canvas.addEventListener("webglcontextrestored", () => this.#look());
+  }
+
+  #hover(event: PointerEvent): void {
+    if (event.pointerType === "touch" || event.buttons !== 0 || this.#hoverFrame !== 0) return;
+    this.#hoverFrame = requestAnimationFrame(() => {
+      this.#hoverFrame = 0;
+      this.#setHovered(this.partAt(event.clientX, event.clientY));
+    });
+  }
+
+  #setHovered(part: number): void {
+    if (part === this.#hovered) return;
+    this.hovered = part;
+    this.#canvas.classList.toggle("over", part >= 0);
+    this.#emit("cleave-hover", { part });
+  }
+
+  #click(event: PointerEvent): void {
+    const from = this.#pressed;
+    this.#pressed = null;
+    if (from === null || event.button !== 0) return;
+    if (Math.hypot(event.clientX - from.x, event.clientY - from.y) > CLICK_PIXELS) return;
+    const isMore = event.shiftKey || event.ctrlKey || event.metaKey;
+    this.#pick(this.partAt(event.clientX, event.clientY), isMore);
+  }
+
+  /** Select a part, or add it to the selection or take it out; listeners may refuse with ``preventDefault``. */
+  #pick(part: number, isMore: boolean): void {
+    const chosen = part < 0 ? [] : [part];
+    const rest = this.#selected.filter((other) => other !== part);
+    const selected = !isMore ? chosen : rest.length < this.#selected.length ? rest : [...this.#selected, ...chosen];
+    if (this.#emit("cleave-select", { parts: selected })) this.selected = selected;
+  }
+
+  #key(event: KeyboardEvent): void {
+    if (event.ctrlKey || event.metaKey || event.altKey) return;
+    const stage = this.#stage;
+    const actions: Record<string, () => void> = {
+      ArrowLeft: () => stage?.turn(-1, 0),
+      ArrowRight: () => stage?.turn(1, 0),
+      ArrowUp: () => stage?.turn(0, -1),
+      ArrowDown: () => stage?.turn(0, 1),
+      "+": () => stage?.zoom(0.88),
+      "=": () => stage?.zoom(0.88),
+      "-": () => stage?.zoom(1 / 0.88),
+      0: () => this.resetView(),
+      "]": () => this.#pickNext(1),
+      "[": () => this.#pickNext(-1),
+      Escape: () => this.#pick(-1, false),
+    };
+    const action = actions[event.key];
+    if (action === undefined || this.#model === null) return;
+    event.preventDefault();
+    event.stopPropagation();
+    action();
+  }
+
+  #pickNext(step: number): void {
+    const parts = this.parts.filter((part) => !this.#hidden.has(part));
+    if (parts.length === 0) return;
+    const now = parts.indexOf(this.#selected.at(-1) ?? -1);
+    this.#pick(parts.at(now < 0 && step > 0 ? 0 : (now + step) % parts.length)!, false);
+  }
+
+  #fail(code: string, message: string): void {
+    this.clear();
+    this.#emit("cleave-error", { code, message });
+  }
+
+  #emit(name: string, detail: object): boolean {
+    return this.dispatchEvent(new CustomEvent(name, { detail, cancelable: true, bubbles: true, composed: true }));
+  }
+}
+
+function percent(share: number): string {
+  return new Intl.NumberFormat("en", { style: "percent", maximumSignificantDigits: 2 }).format(share);
+}
+
+/** Lets the page draw and answer when work has gone on for a while. */
+function breather(): () => Promise<void> {
+  let since = performance.now();
+  return async () => {
+    if (performance.now() - since < PAUSE_MS) return;
+    await new Promise((resolve) => setTimeout(resolve));
+    since = performance.now();
+  };
+}
+
+customElements.define("cleave-viewer", CleaveViewer);

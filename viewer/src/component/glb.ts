@@ -1,0 +1,103 @@
+/** Reads the GLB files that the service writes: one POSITION accessor, and a slice of one index buffer for each leaf. */
+
+import { PartTree, type TreeNode } from "./tree";
+
+export interface Model {
+  readonly tree: PartTree;
+  readonly automaticSegments: number;
+  /** (3 V) xyz of every vertex in its own unit; see ``origin`` and ``scale``. */
+  readonly positions: Float32Array;
+  /** (3 F) the vertices of every face, sorted by leaf. */
+  readonly index: Uint32Array;
+  /** (L) the tree node of every leaf. */
+  readonly leafNodes: readonly number[];
+  /** (L + 1) leaf i owns the faces leafStart[i] to leafStart[i + 1]. */
+  readonly leafStart: readonly number[];
+  /** sRGB in 0..1 of every label. */
+  readonly palette: readonly (readonly [number, number, number])[];
+}
+
+/** The bytes are no GLB file of the service; the message says what is wrong. */
+export class InvalidModel extends Error {}
+
+interface GltfDocument {
+  nodes: { mesh?: number; children?: number[]; extras: Record<string, number | null> }[];
+  scenes: { extras: Record<string, unknown> }[];
+  meshes: { primitives: { attributes: { POSITION: number }; indices: number; material: number }[] }[];
+  materials: { pbrMetallicRoughness: { baseColorFactor: number[] } }[];
+  accessors: { bufferView: number; byteOffset?: number; count: number }[];
+  bufferViews: { byteOffset?: number; byteLength: number }[];
+}
+
+const MAGIC = 0x46546c67;
+const JSON_CHUNK = 0x4e4f534a;
+const WORD = 4;
+
+export function parseModel(data: ArrayBuffer): Model {
+  const { document, binary } = chunks(data);
+  try {
+    return modelOf(document, data, binary);
+  } catch (error) {
+    if (error instanceof InvalidModel) throw error;
+    throw new InvalidModel("The GLB file was not written by Cleave: load the model.glb of a job.");
+  }
+}
+
+function chunks(data: ArrayBuffer): { document: GltfDocument; binary: number } {
+  const view = new DataView(data);
+  if (data.byteLength < 28 || view.getUint32(0, true) !== MAGIC || view.getUint32(8, true) !== data.byteLength)
+    throw new InvalidModel("The file is no complete GLB file: load it again.");
+  const length = view.getUint32(12, true);
+  if (view.getUint32(16, true) !== JSON_CHUNK || 28 + length > data.byteLength)
+    throw new InvalidModel("The file is no complete GLB file: load it again.");
+  const text = new TextDecoder().decode(new Uint8Array(data, 20, length));
+  return { document: JSON.parse(text) as GltfDocument, binary: 28 + length };
+}
+
+function modelOf(document: GltfDocument, data: ArrayBuffer, binary: number): Model {
+  const leaves = document.nodes.flatMap((node, id) => (node.mesh === undefined ? [] : [{ id, mesh: node.mesh }]));
+  const primitives = leaves.map(({ mesh }) => at(at(document.meshes, mesh).primitives, 0));
+  const starts = primitives.map(({ indices }) => (at(document.accessors, indices).byteOffset ?? 0) / (3 * WORD));
+  const order = leaves.map((_, i) => i).sort((a, b) => at(starts, a) - at(starts, b));
+  const indexView = at(document.bufferViews, at(document.accessors, at(primitives, 0).indices).bufferView);
+  const positionAccessor = at(document.accessors, at(primitives, 0).attributes.POSITION);
+  const positionView = at(document.bufferViews, positionAccessor.bufferView);
+  const automatic = document.scenes[0]?.extras["automatic_segments"];
+  return {
+    tree: new PartTree(document.nodes.map((_, id) => treeNode(document, id))),
+    automaticSegments: typeof automatic === "number" ? automatic : leaves.length,
+    positions: new Float32Array(data, binary + (positionView.byteOffset ?? 0), 3 * positionAccessor.count),
+    index: new Uint32Array(data, binary + (indexView.byteOffset ?? 0), indexView.byteLength / WORD),
+    leafNodes: order.map((i) => at(leaves, i).id),
+    leafStart: [...order.map((i) => at(starts, i)), indexView.byteLength / (3 * WORD)],
+    palette: document.materials.map((material) => srgb(material.pbrMetallicRoughness.baseColorFactor)),
+  };
+}
+
+function treeNode(document: GltfDocument, id: number): TreeNode {
+  const { extras, children } = at(document.nodes, id);
+  const parent = id === 0 ? -1 : document.nodes.findIndex((node) => node.children?.includes(id));
+  if (id > 0 && parent < 0) throw new InvalidModel("The nodes of the GLB file are no tree: load the file again.");
+  return {
+    id,
+    parent,
+    children: children ?? [],
+    level: Number(extras["level"]),
+    label: Number(extras["label"] ?? extras["segment"] ?? 0),
+    area: Number(extras["area"]),
+    faces: Number(extras["faces"]),
+    cutValue: extras["cut_value"] ?? null,
+  };
+}
+
+/** IEC 61966-2-1, from the linear light of glTF. */
+function srgb(linear: readonly number[]): readonly [number, number, number] {
+  const encode = (value = 0) => (value <= 0.0031308 ? 12.92 * value : 1.055 * value ** (1 / 2.4) - 0.055);
+  return [encode(linear[0]), encode(linear[1]), encode(linear[2])];
+}
+
+function at<T>(values: readonly T[], i: number): T {
+  const value = values[i];
+  if (value === undefined) throw new InvalidModel("The GLB file points at something that it does not hold.");
+  return value;
+}

@@ -1,0 +1,222 @@
+/** Renderer, camera and loop: draws when something has changed, and not otherwise. */
+
+import {
+  Group,
+  NoToneMapping,
+  PerspectiveCamera,
+  Scene,
+  Spherical,
+  Vector3,
+  WebGLRenderer,
+  WebGLRenderTarget,
+} from "three";
+import { OrbitControls } from "three/addons/controls/OrbitControls.js";
+import type { Drawing } from "./drawing";
+
+/** Where the viewer stands, in radii of the model: angles in radians, distance and target. */
+export interface View {
+  readonly azimuth: number;
+  readonly polar: number;
+  readonly distance: number;
+  readonly target: readonly [number, number, number];
+}
+
+export const FIRST_VIEW: View = { azimuth: 0.55, polar: 1.18, distance: 3.5, target: [0, 0, 0] };
+
+const FIELD_OF_VIEW = 32; // degrees, of the shorter side
+const MOST_PIXELS = 2; // device pixels for one of the page; more cost much and show little
+const ENTRANCE_MS = 1100;
+const KEY_STEP = Math.PI / 24;
+
+export class Stage {
+  readonly canvas: HTMLCanvasElement;
+  readonly onView: () => void;
+  readonly #renderer: WebGLRenderer;
+  readonly #scene = new Scene();
+  readonly #upright = new Group();
+  readonly #camera = new PerspectiveCamera(FIELD_OF_VIEW, 1, 0.01, 100);
+  readonly #controls: OrbitControls;
+  readonly #numbers = new WebGLRenderTarget(1, 1);
+  #drawing: Drawing | null = null;
+  #frame = 0;
+  #entrance = 0;
+  #numbersAreOld = true;
+  #reach = 1;
+
+  /** ``onView`` is called after the viewer has moved. Throws where the browser has no WebGL 2. */
+  constructor(canvas: HTMLCanvasElement, onView: () => void) {
+    this.canvas = canvas;
+    this.onView = onView;
+    this.#renderer = new WebGLRenderer({ canvas, antialias: true, alpha: true, preserveDrawingBuffer: false });
+    this.#renderer.toneMapping = NoToneMapping;
+    this.#renderer.setClearColor(0, 0);
+    this.#scene.add(this.#upright);
+    this.#controls = new OrbitControls(this.#camera, canvas);
+    this.#controls.enableDamping = true;
+    this.#controls.dampingFactor = 0.12;
+    this.#controls.zoomToCursor = true;
+    this.#controls.addEventListener("change", () => this.#moved());
+    this.#controls.addEventListener("start", () => this.#endEntrance());
+    this.view = FIRST_VIEW;
+  }
+
+  get drawCalls(): number {
+    return this.#renderer.info.render.calls;
+  }
+
+  /** What is held on the graphics card. */
+  get memory(): { geometries: number; textures: number } {
+    const { geometries, textures } = this.#renderer.info.memory;
+    return { geometries, textures };
+  }
+
+  get view(): View {
+    const { target } = this.#controls;
+    const around = new Spherical().setFromVector3(this.#camera.position.clone().sub(target));
+    return { azimuth: around.theta, polar: around.phi, distance: around.radius, target: target.toArray() };
+  }
+
+  set view(view: View) {
+    this.#controls.target.fromArray([...view.target]);
+    const around = new Spherical(view.distance, view.polar, view.azimuth).makeSafe();
+    this.#camera.position.setFromSpherical(around).add(this.#controls.target);
+    this.#controls.update();
+    this.#moved();
+  }
+
+  /** Whether the z axis of the mesh points up, instead of its y axis. */
+  set isZUp(isZUp: boolean) {
+    this.#upright.rotation.x = isZUp ? -Math.PI / 2 : 0;
+    this.changed();
+  }
+
+  /** How far from the centre things are drawn, in radii of the model. */
+  set reach(reach: number) {
+    this.#reach = reach;
+    this.#clip();
+  }
+
+  show(drawing: Drawing | null): void {
+    this.#drawing = drawing;
+    if (drawing !== null) this.#upright.add(drawing.group);
+    this.resize();
+  }
+
+  /** Turn gently into view; at once for people who want less motion. */
+  enter(): void {
+    if (matchMedia("(prefers-reduced-motion: reduce)").matches) return;
+    this.#endEntrance();
+    const end = this.view;
+    const began = performance.now();
+    const step = () => {
+      const t = Math.min((performance.now() - began) / ENTRANCE_MS, 1);
+      const left = (1 - t) ** 4;
+      this.view = { ...end, azimuth: end.azimuth - 1.2 * left, distance: end.distance * (1 + 0.35 * left) };
+      if (this.#drawing !== null) this.#drawing.unfold = 1 - (1 - t) ** 3 * 0.9;
+      this.#entrance = t < 1 ? requestAnimationFrame(step) : 0;
+    };
+    step();
+  }
+
+  resize(): void {
+    const { clientWidth: width, clientHeight: height } = this.canvas;
+    if (width === 0 || height === 0) return;
+    const ratio = Math.min(devicePixelRatio, MOST_PIXELS);
+    this.#renderer.setPixelRatio(ratio);
+    this.#renderer.setSize(width, height, false);
+    this.#camera.aspect = width / height;
+    const narrow = Math.min(this.#camera.aspect, 1);
+    this.#camera.fov = (2 * Math.atan(Math.tan((FIELD_OF_VIEW * Math.PI) / 360) / narrow) * 180) / Math.PI;
+    this.#camera.updateProjectionMatrix();
+    this.#numbers.setSize(width, height);
+    this.#drawing?.resize(width * ratio, height * ratio, ratio);
+    this.changed();
+    // The picture of another size is empty: it is filled before anybody sees that.
+    this.draw();
+  }
+
+  /** Have a picture drawn soon. */
+  changed(): void {
+    this.#numbersAreOld = true;
+    if (this.#frame === 0) this.#frame = requestAnimationFrame(() => this.draw());
+  }
+
+  draw(): void {
+    cancelAnimationFrame(this.#frame);
+    this.#frame = 0;
+    this.#controls.update();
+    this.#renderer.render(this.#scene, this.#camera);
+  }
+
+  /** Wait until the graphics card has drawn everything asked for. */
+  finish(): void {
+    this.draw();
+    const gl = this.#renderer.getContext();
+    gl.readPixels(0, 0, 1, 1, gl.RGBA, gl.UNSIGNED_BYTE, new Uint8Array(4));
+  }
+
+  /** The leaf at a place of the canvas in pixels of the page; -1 where there is none. */
+  leafAt(x: number, y: number): number {
+    const { width, height } = this.#numbers;
+    if (this.#drawing === null || x < 0 || y < 0 || x >= width || y >= height) return -1;
+    if (this.#numbersAreOld) this.#drawNumbers(this.#drawing);
+    const pixel = new Uint8Array(4);
+    this.#renderer.readRenderTargetPixels(this.#numbers, Math.floor(x), height - 1 - Math.floor(y), 1, 1, pixel);
+    return pixel[0]! + 256 * pixel[1]! - 1;
+  }
+
+  /** The picture as it is seen, without a background. */
+  async picture(): Promise<Blob> {
+    this.draw();
+    return new Promise((resolve, reject) => {
+      this.canvas.toBlob((blob) => (blob ? resolve(blob) : reject(new Error("The picture could not be made."))));
+    });
+  }
+
+  turn(right: number, up: number): void {
+    const { azimuth, polar, ...rest } = this.view;
+    this.view = { ...rest, azimuth: azimuth + right * KEY_STEP, polar: polar + up * KEY_STEP };
+  }
+
+  zoom(factor: number): void {
+    this.view = { ...this.view, distance: this.view.distance * factor };
+  }
+
+  dispose(): void {
+    cancelAnimationFrame(this.#frame);
+    this.#endEntrance();
+    this.#controls.dispose();
+    this.#numbers.dispose();
+    this.#renderer.dispose();
+    this.#renderer.forceContextLoss();
+  }
+
+  #drawNumbers(drawing: Drawing): void {
+    drawing.asNumbers(() => {
+      this.#renderer.setRenderTarget(this.#numbers);
+      this.#renderer.clear();
+      this.#renderer.render(this.#scene, this.#camera);
+      this.#renderer.setRenderTarget(null);
+    });
+    this.#numbersAreOld = false;
+  }
+
+  #endEntrance(): void {
+    cancelAnimationFrame(this.#entrance);
+    this.#entrance = 0;
+    if (this.#drawing !== null) this.#drawing.unfold = 1;
+  }
+
+  #moved(): void {
+    this.#clip();
+    this.changed();
+    this.onView();
+  }
+
+  #clip(): void {
+    const distance = this.#camera.position.distanceTo(new Vector3());
+    this.#camera.near = Math.max(distance - this.#reach, 0.005 * this.#reach);
+    this.#camera.far = distance + this.#reach;
+    this.#camera.updateProjectionMatrix();
+  }
+}

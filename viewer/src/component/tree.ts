@@ -1,0 +1,143 @@
+/** The tree of cuts: its nodes, and the sets of nodes that are the parts at a level or after cuts made by hand. */
+
+/** A node of the tree; node 0 is the whole mesh, and split s makes the nodes 2 s + 1 and 2 s + 2. */
+export interface TreeNode {
+  readonly id: number;
+  /** -1 for the whole mesh. */
+  readonly parent: number;
+  /** Two, the larger first, or none. */
+  readonly children: readonly number[];
+  /** The smallest number of segments at which the node is a segment. */
+  readonly level: number;
+  /** Its label, and so its colour, wherever it is a segment. */
+  readonly label: number;
+  /** In squared units of the mesh. */
+  readonly area: number;
+  readonly faces: number;
+  /** Of the cut that splits the node; null where nothing splits it. */
+  readonly cutValue: number | null;
+}
+
+/** The nodes that are split; with a node its parent is in the set too. The parts are the nodes just below. */
+export type Cut = ReadonlySet<number>;
+
+export class PartTree {
+  readonly nodes: readonly TreeNode[];
+
+  constructor(nodes: readonly TreeNode[]) {
+    this.nodes = nodes;
+  }
+
+  node(id: number): TreeNode {
+    const node = this.nodes[id];
+    if (node === undefined) throw new RangeError(`The tree has no node ${id}.`);
+    return node;
+  }
+
+  get maxSegments(): number {
+    return (this.nodes.length + 1) / 2;
+  }
+
+  get totalArea(): number {
+    return this.node(0).area;
+  }
+
+  /** Entry i is the value of the cut from i + 1 to i + 2 segments. */
+  get cutValues(): (number | null)[] {
+    return Array.from({ length: this.maxSegments - 1 }, (_, split) => this.node(this.splitNode(split)).cutValue);
+  }
+
+  /** The node that split s cuts. */
+  splitNode(split: number): number {
+    return this.node(2 * split + 1).parent;
+  }
+
+  /** The number of the split that cuts a node; -1 for a leaf. */
+  splitOf(id: number): number {
+    const first = this.node(id).children[0];
+    return first === undefined ? -1 : (first - 1) / 2;
+  }
+
+  /** The cut that has a number of segments, 1 to maxSegments. */
+  cutAt(segments: number): Cut {
+    const count = Math.min(Math.max(Math.round(segments), 1), this.maxSegments) - 1;
+    return new Set(Array.from({ length: count }, (_, split) => this.splitNode(split)));
+  }
+
+  /** The cut that makes exactly these splits and those that they need. */
+  cutOfSplits(splits: Iterable<number>): Cut {
+    const cut = new Set<number>();
+    for (const split of splits) {
+      if (!Number.isInteger(split) || split < 0 || split >= this.maxSegments - 1) continue;
+      for (let id = this.splitNode(split); id >= 0; id = this.node(id).parent) cut.add(id);
+    }
+    return cut;
+  }
+
+  /** The splits of a cut, in the order of the tree. */
+  splitsOf(cut: Cut): number[] {
+    return [...cut].map((id) => this.splitOf(id)).sort((a, b) => a - b);
+  }
+
+  /** The number of segments whose cut this is; null where the cut was made by hand. */
+  levelOf(cut: Cut): number | null {
+    for (let split = 0; split < cut.size; split++) if (!cut.has(this.splitNode(split))) return null;
+    return cut.size + 1;
+  }
+
+  /** The parts of a cut, by label. */
+  parts(cut: Cut): number[] {
+    const parts: number[] = [];
+    this.walk(cut, (id, isPart) => isPart && parts.push(id));
+    return parts.sort((a, b) => this.node(a).label - this.node(b).label);
+  }
+
+  /** Visit the nodes of a cut, parents first. */
+  walk(cut: Cut, visit: (id: number, isPart: boolean, depth: number) => void): void {
+    const waiting: [number, number][] = [[0, 0]];
+    for (let entry = waiting.pop(); entry !== undefined; entry = waiting.pop()) {
+      const [id, depth] = entry;
+      const { children } = this.node(id);
+      const isPart = children.length === 0 || !cut.has(id);
+      visit(id, isPart, depth);
+      if (!isPart) for (const child of children.toReversed()) waiting.push([child, depth + 1]);
+    }
+  }
+
+  /** The part that a node belongs to: itself or the first node above it that is not split; -1 where it is split. */
+  partOf(cut: Cut, id: number): number {
+    let part = -1;
+    for (let at = id; at >= 0; at = this.node(at).parent) if (!cut.has(at)) part = at;
+    return part;
+  }
+
+  /** Whether a node is another one or lies above it. */
+  contains(above: number, below: number): boolean {
+    for (let id = below; id >= above; id = this.node(id).parent) if (id === above) return true;
+    return false;
+  }
+
+  /** The parts of a cut below a node, or the node itself where it is one. */
+  partsBelow(cut: Cut, id: number): number[] {
+    return this.parts(cut).filter((part) => this.contains(id, part));
+  }
+
+  /** The cut with one part split further. */
+  split(cut: Cut, part: number): Cut {
+    return this.node(part).children.length === 0 ? cut : new Set([...cut, part]);
+  }
+
+  /** The cut with all parts below a node made one. */
+  merge(cut: Cut, id: number): Cut {
+    return new Set([...cut].filter((other) => !this.contains(id, other)));
+  }
+
+  /** The nearest node that lies above all the given ones; the parent where it is one alone. */
+  commonAncestor(ids: readonly number[]): number {
+    const [first, ...others] = ids;
+    if (first === undefined) return 0;
+    let above = others.length === 0 ? Math.max(this.node(first).parent, 0) : first;
+    while (!others.every((id) => this.contains(above, id))) above = this.node(above).parent;
+    return above;
+  }
+}

@@ -1,0 +1,74 @@
+/** The state of the page as the fragment of its address, so that a link shows the same thing. */
+
+import type { PartTree, View } from "../component/element";
+import { FIRST_MODES, type Modes, type Session, type Work } from "./session";
+
+export interface Address {
+  readonly job: string | null;
+  /** A second job, shown beside the first. */
+  readonly beside: string | null;
+  readonly view: View | null;
+  readonly values: URLSearchParams;
+}
+
+export function readAddress(hash: string): Address {
+  const values = new URLSearchParams(hash.replace(/^#/, ""));
+  return { job: values.get("job"), beside: values.get("beside"), view: readView(values.get("view")), values };
+}
+
+/** What an address says about the work on a result and the way it is looked at. */
+export function readState({ values }: Address, tree: PartTree): { work: Partial<Work>; modes: Partial<Modes> } {
+  const level = values.get("k");
+  const splits = values.get("cut");
+  const cut = splits !== null ? tree.cutOfSplits(integers(splits)) : level !== null ? tree.cutAt(Number(level) || 1) : null;
+  const show = new Set((values.get("show") ?? "").split("."));
+  const names = [...values].flatMap(([key, name]) => (/^n\d+$/.test(key) ? [[Number(key.slice(1)), name] as const] : []));
+  return {
+    work: {
+      ...(cut === null ? {} : { cut }),
+      hidden: new Set(integers(values.get("hide")).filter((id) => id < tree.nodes.length)),
+      names: new Map(names.filter(([id]) => id < tree.nodes.length)),
+    },
+    modes: {
+      selected: integers(values.get("sel")),
+      explode: Math.min(Math.max(Number(values.get("explode")) || 0, 0), 1),
+      wireframe: show.has("wires"),
+      concavity: show.has("concavity"),
+      lines: !show.has("nolines"),
+      up: values.get("up") === "z" ? "z" : "y",
+    },
+  };
+}
+
+export function writeAddress(job: string, session: Session, view: View | null, beside: string | null): string {
+  const { tree, work, modes } = session;
+  const values = new URLSearchParams({ job });
+  const level = tree.levelOf(work.cut);
+  if (level === null) values.set("cut", tree.splitsOf(work.cut).join("."));
+  else if (level !== session.automaticSegments) values.set("k", String(level));
+  if (work.hidden.size > 0) values.set("hide", [...work.hidden].join("."));
+  if (modes.selected.length > 0) values.set("sel", modes.selected.join("."));
+  if (modes.explode > 0) values.set("explode", modes.explode.toFixed(2));
+  const show = [modes.wireframe && "wires", modes.concavity && "concavity", !modes.lines && "nolines"].filter(Boolean);
+  if (show.length > 0) values.set("show", show.join("."));
+  if (modes.up !== FIRST_MODES.up) values.set("up", modes.up);
+  for (const [id, name] of work.names) values.set(`n${id}`, name);
+  if (view !== null) values.set("view", writeView(view));
+  if (beside !== null) values.set("beside", beside);
+  return `#${values}`;
+}
+
+function writeView({ azimuth, polar, distance, target }: View): string {
+  return [azimuth, polar, distance, ...target].map((value) => Number(value.toFixed(3))).join("_");
+}
+
+function readView(text: string | null): View | null {
+  const [azimuth, polar, distance, x, y, z] = (text ?? "").split("_").map(Number);
+  const values = [azimuth, polar, distance, x, y, z];
+  if (values.some((value) => value === undefined || !Number.isFinite(value)) || !(distance! > 0)) return null;
+  return { azimuth: azimuth!, polar: polar!, distance: distance!, target: [x!, y!, z!] };
+}
+
+function integers(text: string | null): number[] {
+  return (text ?? "").split(".").flatMap((part) => (/^\d+$/.test(part) ? [Number(part)] : []));
+}

@@ -1,0 +1,131 @@
+/** The HTTP API of the service, as far as the page needs it. */
+
+import { ApiError, type Problem } from "./problems";
+
+export type Status = "queued" | "running" | "succeeded" | "failed" | "canceled";
+
+export interface Job {
+  readonly id: string;
+  readonly status: Status;
+  readonly stage: string | null;
+  readonly progress: number;
+  readonly queue_position: number | null;
+  readonly created_at: string;
+  readonly finished_at: string | null;
+  readonly input: { readonly file_name: string | null; readonly size_bytes: number };
+  readonly parameters: Readonly<Record<string, unknown>>;
+  readonly mesh: { readonly faces: number; readonly vertices: number } | null;
+  readonly max_segments: number | null;
+  readonly automatic_segments: number | null;
+  readonly error: { readonly code: string; readonly message: string } | null;
+}
+
+export interface JobPage {
+  readonly jobs: Job[];
+  readonly next_cursor: string | null;
+}
+
+export interface Formats {
+  readonly meshes: { readonly title: string; readonly extensions: string[] }[];
+  readonly max_upload_bytes: number;
+}
+
+export interface ParameterSchema {
+  readonly properties: Record<string, Parameter>;
+}
+
+export interface Parameter {
+  readonly type?: string | string[];
+  readonly enum?: (string | number | null)[];
+  readonly anyOf?: Parameter[];
+  readonly const?: unknown;
+  readonly default?: unknown;
+  readonly description?: string;
+  readonly minimum?: number;
+  readonly maximum?: number;
+  readonly exclusiveMinimum?: number;
+  readonly exclusiveMaximum?: number;
+}
+
+const KEY = "cleave.key";
+
+/** The API key of this browser; empty where the server asks for none. */
+export const apiKey = {
+  get: (): string => localStorage.getItem(KEY) ?? "",
+  set: (key: string): void => localStorage.setItem(KEY, key),
+};
+
+export function headers(): Record<string, string> {
+  const key = apiKey.get();
+  return key === "" ? {} : { Authorization: `Bearer ${key}` };
+}
+
+/** The path of a job on this server, below the folder of the page. */
+export const jobPath = (id: string, rest = ""): string => `v1/jobs/${encodeURIComponent(id)}${rest}`;
+
+export const getJob = (id: string): Promise<Job> => get(jobPath(id));
+export const getFormats = (): Promise<Formats> => get("v1/formats");
+export const getMethods = (): Promise<ParameterSchema> => get("v1/methods");
+
+export function listJobs(cursor: string | null): Promise<JobPage> {
+  return get(`v1/jobs?limit=50${cursor === null ? "" : `&cursor=${encodeURIComponent(cursor)}`}`);
+}
+
+export async function deleteJob(id: string): Promise<void> {
+  await request(jobPath(id), { method: "DELETE" });
+}
+
+export async function cancelJob(id: string): Promise<void> {
+  await request(jobPath(id, "/cancel"), { method: "POST" });
+}
+
+export async function getBlob(path: string, signal?: AbortSignal): Promise<Blob> {
+  return (await request(path, signal === undefined ? {} : { signal })).blob();
+}
+
+/** An answer that is no error. Throws ApiError, or TypeError where the server does not answer. */
+export async function request(path: string, options: RequestInit = {}): Promise<Response> {
+  const answer = await fetch(path, { ...options, headers: { ...headers(), ...options.headers } });
+  if (!answer.ok) throw new ApiError(problemIn(await answer.text(), answer.status), answer.status);
+  return answer;
+}
+
+/** Send a mesh, telling how much of it is under way. */
+export function submit(
+  file: File,
+  parameters: Readonly<Record<string, unknown>>,
+  signal: AbortSignal,
+  onSent: (share: number) => void,
+): Promise<Job> {
+  return new Promise((resolve, reject) => {
+    const form = new FormData();
+    form.append("parameters", JSON.stringify(parameters));
+    form.append("mesh", file, file.name);
+    const exchange = new XMLHttpRequest();
+    exchange.open("POST", "v1/jobs");
+    for (const [name, value] of Object.entries(headers())) exchange.setRequestHeader(name, value);
+    exchange.upload.onprogress = (event) => event.lengthComputable && onSent(event.loaded / event.total);
+    exchange.onload = () => {
+      if (exchange.status < 300) resolve(JSON.parse(exchange.responseText) as Job);
+      else reject(new ApiError(problemIn(exchange.responseText, exchange.status), exchange.status));
+    };
+    exchange.onerror = () => reject(new TypeError("The server does not answer."));
+    exchange.onabort = () => reject(new DOMException("Stopped.", "AbortError"));
+    signal.addEventListener("abort", () => exchange.abort());
+    exchange.send(form);
+  });
+}
+
+async function get<T>(path: string): Promise<T> {
+  return (await (await request(path)).json()) as T;
+}
+
+function problemIn(text: string, status: number): Problem {
+  try {
+    const { code, detail } = JSON.parse(text) as Partial<Problem>;
+    if (typeof code === "string" && typeof detail === "string") return { code, detail };
+  } catch {
+    // Something between the page and the server has answered.
+  }
+  return { code: status === 401 ? "unauthorized" : "unexpected", detail: `The server answered ${status}.` };
+}

@@ -1,0 +1,82 @@
+/** A second result beside the first, seen from the same side. */
+
+import type { CleaveViewer, LoadDetail } from "../component/element";
+import { headers, jobPath, type Job } from "./api";
+import { byId } from "./dom";
+import { plural, stem } from "./text";
+
+export class Beside {
+  readonly #first: CleaveViewer;
+  readonly viewer = document.createElement("cleave-viewer") as CleaveViewer;
+  readonly #range = byId<HTMLInputElement>("beside-level");
+  readonly #onChange: () => void;
+  #job: string | null = null;
+  #leading: CleaveViewer | null = null;
+
+  constructor(first: CleaveViewer, onChange: () => void) {
+    this.#first = first;
+    this.#onChange = onChange;
+    this.viewer.toggleAttribute("no-entrance", true);
+    first.addEventListener("cleave-view", () => this.#follow(first, this.viewer));
+    this.viewer.addEventListener("cleave-view", () => this.#follow(this.viewer, first));
+    this.viewer.addEventListener("cleave-load", (event) => this.#loaded((event as CustomEvent<LoadDetail>).detail));
+    this.#range.addEventListener("input", () => this.#showLevel(this.#range.valueAsNumber));
+    byId("close-beside").addEventListener("click", () => this.close());
+  }
+
+  get job(): string | null {
+    return this.#job;
+  }
+
+  open(job: Job): void {
+    this.#job = job.id;
+    byId("beside").hidden = false;
+    byId("beside-name").textContent = stem(job.input.file_name ?? "mesh");
+    byId("beside-about").textContent = differences(job);
+    byId("beside-stage").append(this.viewer);
+    this.viewer.requestHeaders = headers();
+    this.viewer.setAttribute("label", `Beside it: ${job.input.file_name ?? "mesh"}`);
+    this.viewer.setAttribute("src", jobPath(job.id, "/model.glb?levels=all"));
+    this.#onChange();
+  }
+
+  close(): void {
+    if (this.#job === null) return;
+    this.#job = null;
+    this.viewer.removeAttribute("src");
+    this.viewer.remove();
+    byId("beside").hidden = true;
+    this.#onChange();
+  }
+
+  set upAxis(axis: "y" | "z") {
+    this.viewer.setAttribute("up", axis);
+  }
+
+  #loaded({ maxSegments, automaticSegments }: LoadDetail): void {
+    this.#range.max = String(maxSegments);
+    this.#showLevel(automaticSegments);
+    this.viewer.view = this.#first.view;
+  }
+
+  #showLevel(segments: number): void {
+    this.#range.value = String(segments);
+    this.viewer.setAttribute("segments", String(segments));
+    const text = plural(segments, "part");
+    byId("beside-number").textContent = text;
+    this.#range.setAttribute("aria-valuetext", text);
+  }
+
+  #follow(leader: CleaveViewer, follower: CleaveViewer): void {
+    if (this.#job === null || this.#leading !== null) return;
+    this.#leading = leader;
+    follower.view = leader.view;
+    this.#leading = null;
+  }
+}
+
+const SHOWN = ["affinity", "solver", "graph"];
+
+function differences(job: Job): string {
+  return SHOWN.flatMap((name) => (name in job.parameters ? [String(job.parameters[name])] : [])).join(" · ");
+}

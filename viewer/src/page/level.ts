@@ -1,0 +1,78 @@
+/** The level slider, with the curve of cut values under it. */
+
+import { byId } from "./dom";
+import type { Session } from "./session";
+import { figure, plural } from "./text";
+
+const HEIGHT = 40;
+const HEADROOM = 3; // above the highest value
+
+export class LevelSlider {
+  readonly #range = byId<HTMLInputElement>("level");
+  readonly #number = byId<HTMLOutputElement>("level-number");
+  readonly #unit = byId("level-unit");
+  readonly #note = byId("level-note");
+  readonly #automatic = byId<HTMLButtonElement>("level-automatic");
+  readonly #chart = byId<SVGSVGElement>("level-chart");
+  readonly #session: () => Session | null;
+
+  constructor(session: () => Session | null) {
+    this.#session = session;
+    this.#range.addEventListener("input", () => session()?.slide(this.#range.valueAsNumber));
+    this.#range.addEventListener("change", () => session()?.endSlide());
+    this.#automatic.addEventListener("click", () => {
+      const now = session();
+      now?.showLevel(now.automaticSegments);
+    });
+    byId("level-less").addEventListener("click", () => this.#step(-1));
+    byId("level-more").addEventListener("click", () => this.#step(1));
+  }
+
+  /** Draw the curve of a new result. */
+  open(session: Session): void {
+    const values = session.tree.cutValues;
+    const most = session.tree.maxSegments;
+    this.#range.max = String(most);
+    this.#range.disabled = most === 1;
+    this.#chart.setAttribute("viewBox", `0 0 ${Math.max(most - 1, 1)} ${HEIGHT}`);
+    const highest = Math.max(...values.map((value) => value ?? 0), Number.MIN_VALUE);
+    // Roots, since the cuts between parts have far smaller values than the arbitrary ones at the end.
+    const heights = values.map((value) => HEIGHT - (HEIGHT - HEADROOM) * Math.sqrt((value ?? highest) / highest));
+    const curve = heights.map((height, i) => `${i === 0 ? "M" : "L"}${i + 1} ${height}`).join("");
+    const area = values.length === 0 ? "" : `M0 ${HEIGHT}L1 ${heights[0]}${curve.replace("M", "L")}V${HEIGHT}Z`;
+    for (const path of this.#chart.querySelectorAll(".area")) path.setAttribute("d", area);
+    this.#chart.querySelector(".curve")!.setAttribute("d", curve);
+    const mark = this.#chart.querySelector(".mark")!;
+    mark.setAttribute("d", `M${session.automaticSegments - 1} 0V${HEIGHT}`);
+    this.#automatic.querySelector("b")!.textContent = String(session.automaticSegments);
+    this.update();
+  }
+
+  update(): void {
+    const session = this.#session();
+    if (session === null) return;
+    const segments = session.parts.length;
+    const isLevel = session.tree.levelOf(session.work.cut) !== null;
+    this.#range.value = String(segments);
+    this.#number.value = String(segments);
+    this.#unit.textContent = segments === 1 ? "part" : "parts";
+    this.#range.setAttribute("aria-valuetext", `${plural(segments, "part")}${isLevel ? "" : ", cut by hand"}`);
+    const isAutomatic = isLevel && segments === session.automaticSegments;
+    this.#automatic.setAttribute("aria-pressed", String(isAutomatic));
+    this.#note.textContent = isLevel ? nextCut(session, segments) : "Cut by hand. Moving the slider returns to the levels.";
+    this.#chart.querySelector("#level-clip rect")!.setAttribute("width", String(segments - 1));
+  }
+
+  #step(by: number): void {
+    const session = this.#session();
+    if (session === null) return;
+    const segments = Math.min(Math.max(session.parts.length + by, 1), session.tree.maxSegments);
+    session.showLevel(segments);
+  }
+}
+
+function nextCut(session: Session, segments: number): string {
+  const value = session.tree.cutValues[segments - 1];
+  if (value === undefined) return "The finest level.";
+  return `The next cut has the value ${figure(value)}.`;
+}

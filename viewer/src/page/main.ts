@@ -1,0 +1,273 @@
+/** The page: one viewer, what is shown in it, and everything around it. */
+
+import { CleaveViewer, type LoadDetail, type View } from "../component/element";
+import { readAddress, readState, writeAddress, type Address } from "./address";
+import { getJob, headers, jobPath, type Job } from "./api";
+import { Beside } from "./beside";
+import { announce, byId, openDialog, toast } from "./dom";
+import { hasEnded } from "./follow";
+import { JobList } from "./jobs";
+import { LevelSlider } from "./level";
+import { ParameterDrawer, type Run } from "./parameters";
+import { PartsPanel } from "./parts";
+import { explain, problemOf, type Problem, type Remedy } from "./problems";
+import { Session } from "./session";
+import { Start } from "./start";
+import { TakeAway } from "./takeaway";
+import { bytes, plural, stem } from "./text";
+import { listenToTheme } from "./theme";
+import { Tools } from "./tools";
+
+const SAVE_PAUSE_MS = 250; // browsers refuse an address that changes too often
+
+class Page {
+  readonly #viewer = byId<CleaveViewer>("viewer");
+  readonly #start = new Start({
+    onFinished: (job, file) => this.#finished(job, file),
+    onRemedy: (remedy) => this.#help(remedy),
+  });
+  readonly #level = new LevelSlider(() => this.#session);
+  readonly #parts = new PartsPanel(this.#viewer, () => this.#session);
+  readonly #tools = new Tools(this.#viewer, () => this.#session);
+  readonly #drawer = new ParameterDrawer((run) => void this.#run(run));
+  readonly #jobs = new JobList(
+    (job, purpose) => this.#chosen(job, purpose === "beside"),
+    (id) => this.#deleted(id),
+  );
+  readonly #beside = new Beside(this.#viewer, () => this.#save());
+  #session: Session | null = null;
+  #job: Job | null = null;
+  /** The mesh itself, where it was sent from this page. */
+  #file: File | null = null;
+  #opening: Address | null = null;
+  #next: { segments: number | null; isBeside: boolean } = { segments: null, isBeside: false };
+  #view: View | null = null;
+  #saving = 0;
+  #frame = 0;
+
+  constructor() {
+    new TakeAway(this.#viewer, () =>
+      this.#session === null || this.#job === null
+        ? null
+        : {
+            job: this.#job.id,
+            fileName: this.#job.input.file_name ?? "mesh",
+            parameters: this.#job.parameters,
+            session: this.#session,
+          },
+    );
+    this.#listen();
+    void this.#openAddress();
+  }
+
+  #listen(): void {
+    const viewer = this.#viewer;
+    viewer.addEventListener("cleave-load", (event) => this.#loaded((event as CustomEvent<LoadDetail>).detail));
+    viewer.addEventListener("cleave-error", (event) => this.#failed((event as CustomEvent<Problem & { message: string }>).detail));
+    viewer.addEventListener("cleave-hover", (event) => this.#parts.highlight((event as CustomEvent<{ part: number }>).detail.part));
+    viewer.addEventListener("cleave-select", (event) => {
+      event.preventDefault();
+      const { parts } = (event as CustomEvent<{ parts: number[] }>).detail;
+      this.#session?.setModes({ selected: parts });
+      if (parts.length === 1) announce(`${this.#session?.nameOf(parts[0]!)} selected.`);
+    });
+    viewer.addEventListener("pointerup", () => this.#keepView());
+    viewer.addEventListener("wheel", () => this.#keepView(), { passive: true });
+    viewer.addEventListener("keyup", () => this.#keepView());
+    byId("home").addEventListener("click", (event) => {
+      event.preventDefault();
+      history.pushState(null, "", location.pathname);
+      void this.#openAddress();
+    });
+    byId("open-jobs").addEventListener("click", () => void this.#jobs.open("open"));
+    byId("open-beside").addEventListener("click", () => void this.#jobs.open("beside"));
+    byId("open-parameters").addEventListener("click", () => this.#openParameters());
+    byId("open-keys").addEventListener("click", () => openDialog(byId<HTMLDialogElement>("keys")));
+    for (const button of document.querySelectorAll<HTMLElement>("[data-close]"))
+      button.addEventListener("click", () => button.closest("dialog")?.close());
+    addEventListener("popstate", () => void this.#openAddress());
+    listenToTheme([viewer, this.#beside.viewer]);
+  }
+
+  /** Show what the address says. */
+  async #openAddress(): Promise<void> {
+    const address = readAddress(location.hash);
+    if (address.job === null) return this.#close();
+    this.#opening = address;
+    try {
+      const job = await getJob(address.job);
+      if (hasEnded(job) && job.status === "succeeded") this.#show(job);
+      else await this.#start.resume(job);
+    } catch (error) {
+      this.#failed(problemOf(error));
+    }
+  }
+
+  #finished(job: Job, file: File | null): void {
+    this.#file = file ?? this.#file;
+    if (this.#next.isBeside && this.#job !== null) {
+      this.#start.show("none");
+      this.#showWork(true);
+      this.#beside.open(job);
+    } else {
+      if (readAddress(location.hash).job !== job.id) {
+        this.#opening = null;
+        history.pushState(null, "", `#job=${job.id}`);
+      }
+      this.#show(job);
+    }
+  }
+
+  #chosen(job: Job, isBeside: boolean): void {
+    if (isBeside) return this.#beside.open(job);
+    this.#file = null;
+    location.hash = `job=${job.id}`;
+  }
+
+  #show(job: Job): void {
+    const isSame = this.#job?.id === job.id && this.#viewer.tree !== null;
+    this.#job = job;
+    if (isSame) return this.#restore();
+    this.#session = null;
+    this.#view = null;
+    const source = jobPath(job.id, "/model.glb?levels=all");
+    this.#viewer.requestHeaders = headers();
+    if (this.#opening?.view) this.#viewer.clear();
+    if (this.#opening?.view) this.#viewer.view = this.#opening.view;
+    this.#viewer.removeAttribute("src");
+    this.#viewer.setAttribute("src", source);
+  }
+
+  #loaded({ automaticSegments, faces }: LoadDetail): void {
+    const job = this.#job!;
+    const name = job.input.file_name ?? "mesh";
+    this.#session = new Session(this.#viewer.tree!, automaticSegments, () => this.#changed());
+    this.#viewer.setAttribute("label", name);
+    byId("title").textContent = name;
+    byId("about").textContent = `${plural(faces, "face")} · ${bytes(job.input.size_bytes)}`;
+    document.title = `${stem(name)} – Cleave`;
+    this.#start.show("none");
+    this.#showWork(true);
+    this.#level.open(this.#session);
+    if (this.#next.segments !== null) this.#session.restore({ cut: this.#session.tree.cutAt(this.#next.segments) }, {});
+    this.#next = { segments: null, isBeside: false };
+    this.#restore();
+    announce(`${name}: ${plural(this.#session.parts.length, "part")}.`);
+  }
+
+  #restore(): void {
+    const { tree } = this.#viewer;
+    if (tree === null || this.#session === null) return;
+    const address = this.#opening;
+    this.#opening = null;
+    if (address !== null) {
+      const { work, modes } = readState(address, tree);
+      this.#view = address.view;
+      this.#session.restore(work, modes);
+      if (address.beside !== null) void this.#openBeside(address.beside);
+      else this.#beside.close();
+    } else {
+      this.#beside.close();
+    }
+    this.#update();
+  }
+
+  async #openBeside(id: string): Promise<void> {
+    try {
+      this.#beside.open(await getJob(id));
+    } catch (error) {
+      toast(explain(problemOf(error)).title);
+    }
+  }
+
+  /** After any change: the picture follows at once, the rest of the page with the next frame. */
+  #changed(): void {
+    const { work, modes } = this.#session!;
+    this.#viewer.cut = work.cut;
+    this.#viewer.hiddenParts = work.hidden;
+    this.#viewer.selected = modes.selected;
+    this.#level.update();
+    if (this.#frame === 0) this.#frame = requestAnimationFrame(() => this.#update());
+  }
+
+  #update(): void {
+    this.#frame = 0;
+    if (this.#session === null) return;
+    this.#viewer.names = this.#session.work.names;
+    this.#level.update();
+    this.#parts.update();
+    this.#tools.update();
+    this.#beside.upAxis = this.#session.modes.up;
+    this.#save();
+  }
+
+  #keepView(): void {
+    this.#view = this.#viewer.view;
+    this.#save();
+  }
+
+  #save(): void {
+    clearTimeout(this.#saving);
+    this.#saving = setTimeout(() => {
+      if (this.#session === null || this.#job === null) return;
+      const address = writeAddress(this.#job.id, this.#session, this.#view, this.#beside.job);
+      if (address !== location.hash) history.replaceState(null, "", address);
+    }, SAVE_PAUSE_MS);
+  }
+
+  async #run(run: Run): Promise<void> {
+    this.#next = { segments: run.segments, isBeside: run.isBeside };
+    if (this.#file === null) {
+      toast("Choose the mesh again to run it with other parameters.");
+      this.#start.parameters = run.parameters;
+      this.#start.choose();
+    } else {
+      await this.#start.send(this.#file, run.parameters);
+    }
+  }
+
+  #openParameters(): void {
+    void this.#drawer.open(this.#job?.parameters ?? this.#start.parameters, this.#session !== null);
+  }
+
+  #help(remedy: Remedy): void {
+    if (remedy === "jobs") void this.#jobs.open("open");
+    else if (remedy === "parameters") this.#openParameters();
+    else void this.#openAddress();
+  }
+
+  #failed(problem: Problem & { message?: string }): void {
+    clearTimeout(this.#saving);
+    this.#session = null;
+    this.#showWork(false);
+    this.#start.fail({ code: problem.code, detail: problem.message ?? problem.detail });
+  }
+
+  #deleted(id: string): void {
+    if (this.#beside.job === id) this.#beside.close();
+    if (this.#job?.id !== id) return;
+    history.replaceState(null, "", location.pathname);
+    this.#close();
+  }
+
+  #close(): void {
+    clearTimeout(this.#saving);
+    this.#session = null;
+    this.#job = null;
+    this.#file = null;
+    this.#beside.close();
+    this.#viewer.removeAttribute("src");
+    document.title = "Cleave";
+    this.#showWork(false);
+    this.#start.show("start");
+  }
+
+  #showWork(isShown: boolean): void {
+    document.body.classList.toggle("has-result", isShown);
+    byId("work").hidden = !isShown;
+    for (const element of document.querySelectorAll<HTMLElement>(".with-result")) element.hidden = !isShown;
+  }
+}
+
+await customElements.whenDefined("cleave-viewer");
+new Page();

@@ -1,0 +1,168 @@
+/** Taking the result away: files at the cut that is shown, a picture, and the lines that would have done the same. */
+
+import type { CleaveViewer } from "../component/element";
+import { apiKey, getBlob, getMethods, jobPath, request } from "./api";
+import { byId, h, icon, openDialog, save, toast } from "./dom";
+import { renameNodes } from "./glb-names";
+import { explain, problemOf } from "./problems";
+import type { Session } from "./session";
+import { plural, stem } from "./text";
+
+interface Download {
+  readonly id: string;
+  readonly title: string;
+  readonly about: string;
+  /** The end of its path, and of the name of the file. */
+  readonly path: string;
+  readonly ending: string;
+}
+
+const DOWNLOADS: readonly Download[] = [
+  { id: "glb", title: "GLB", about: "Named, coloured parts for any viewer", path: "model.glb", ending: ".glb" },
+  { id: "ply", title: "PLY", about: "Faces with colours and labels", path: "model.ply", ending: ".ply" },
+  { id: "obj", title: "OBJ", about: "A group for every part", path: "model.obj", ending: ".obj" },
+  { id: "3mf", title: "3MF", about: "Parts for printing", path: "model.3mf", ending: ".3mf" },
+  { id: "zip", title: "Separate parts", about: "A file for every part, in a ZIP", path: "parts.zip", ending: "-parts.zip" },
+  { id: "json", title: "Labels", about: "The part of every face, as JSON", path: "labels", ending: "-labels.json" },
+];
+
+export interface Shown {
+  readonly job: string;
+  readonly fileName: string;
+  readonly parameters: Readonly<Record<string, unknown>>;
+  readonly session: Session;
+}
+
+export class TakeAway {
+  readonly #dialog = byId<HTMLDialogElement>("take-away");
+  readonly #viewer: CleaveViewer;
+  readonly #shown: () => Shown | null;
+
+  constructor(viewer: CleaveViewer, shown: () => Shown | null) {
+    this.#viewer = viewer;
+    this.#shown = shown;
+    byId("open-take-away").addEventListener("click", () => this.open());
+    byId("copy-link").addEventListener("click", () => void copy(location.href, "The link is copied."));
+    for (const id of ["curl", "python"])
+      byId(`copy-${id}`).addEventListener("click", () => void copy(byId(id).textContent, "The lines are copied."));
+  }
+
+  open(): void {
+    const shown = this.#shown();
+    if (shown === null) return;
+    byId("take-away-title").textContent = `Take away ${plural(shown.session.parts.length, "part")}`;
+    byId("downloads").replaceChildren(
+      ...DOWNLOADS.map((item) => this.#row(item.id, item.title, item.about, () => this.#download(item))),
+      this.#row("png", "Picture", "What you see, as PNG without a background", () => this.#savePicture()),
+    );
+    openDialog(this.#dialog);
+    void this.#writeLines(shown);
+  }
+
+  async #writeLines(shown: Shown): Promise<void> {
+    const chosen = await chosenParameters(shown.parameters);
+    byId("curl").textContent = curlLines(shown, chosen);
+    byId("python").textContent = pythonLines(shown, chosen);
+  }
+
+  #row(id: string, title: string, about: string, act: () => Promise<void>): HTMLElement {
+    const button = h("button", { type: "button", className: "download", "data-format": id }, icon("download"));
+    button.append(h("b", {}, title), h("span", {}, about));
+    button.addEventListener("click", () => {
+      button.setAttribute("aria-busy", "true");
+      act()
+        .catch((error: unknown) => toast(explain(problemOf(error)).title))
+        .finally(() => button.removeAttribute("aria-busy"));
+    });
+    return h("li", {}, button);
+  }
+
+  async #download({ path, ending }: Download): Promise<void> {
+    const { job, fileName: from, session } = this.#shown()!;
+    const address = jobPath(job, `/${path}${query(session)}`);
+    const fileName = `${stem(from)}-${session.parts.length}${ending}`;
+    const { names } = session.work;
+    if (path === "model.glb" && names.size > 0) {
+      const data = await (await request(address)).arrayBuffer();
+      save(renameNodes(data, partNames(session)), fileName);
+    } else if (path === "labels") {
+      const document = (await (await request(address)).json()) as object;
+      const text = JSON.stringify({ ...document, names: partNames(session) });
+      save(new Blob([text], { type: "application/json" }), fileName);
+    } else if (apiKey.get() === "") {
+      await request(address, { method: "HEAD" }).catch(() => undefined);
+      h("a", { href: address, download: fileName }).click();
+    } else {
+      save(await getBlob(address), fileName);
+    }
+  }
+
+  async #savePicture(): Promise<void> {
+    save(await this.#viewer.picture(), `${stem(this.#shown()!.fileName)}.png`);
+  }
+}
+
+/** The names of the parts by their labels in a file: 0, 1, ... in the order of the labels. */
+function partNames(session: Session): string[] {
+  return session.parts.map((id) => session.nameOf(id));
+}
+
+/** What the cut that is shown is called in the address of a result. */
+function query(session: Session): string {
+  const { tree, work } = session;
+  const level = tree.levelOf(work.cut);
+  return level === null ? `?splits=${tree.splitsOf(work.cut).join(",")}` : `?segments=${level}`;
+}
+
+/** The parameters that are not the defaults; all of them where the defaults cannot be asked for. */
+async function chosenParameters(parameters: Shown["parameters"]): Promise<[string, unknown][]> {
+  const schema = await getMethods().catch(() => null);
+  return Object.entries(parameters).filter(([name, value]) => schema?.properties[name]?.default !== value);
+}
+
+function curlLines({ job, fileName, session }: Shown, chosen: [string, unknown][]): string {
+  const root = new URL(".", document.baseURI).href;
+  const key = apiKey.get() === "" ? "" : ` -H "Authorization: Bearer $CLEAVE_KEY"`;
+  const form = [`mesh=@${fileName}`, ...(chosen.length === 0 ? [] : [`parameters=${JSON.stringify(Object.fromEntries(chosen))}`])];
+  return [
+    `curl -f${key} ${form.map((field) => `-F ${shellWord(field)}`).join(" ")} ${root}v1/jobs`,
+    `curl -f${key} -o ${shellWord(`${stem(fileName)}.glb`)} "${root}${jobPath(job)}/model.glb${query(session)}"`,
+    `curl -f${key} "${root}${jobPath(job)}/labels${query(session)}"`,
+  ].join("\n");
+}
+
+function pythonLines({ fileName, session }: Shown, chosen: [string, unknown][]): string {
+  const { tree, work } = session;
+  const level = tree.levelOf(work.cut);
+  const values = chosen.map(([name, value]) => `${name}=${literal(value)}`).join(", ");
+  const call = values === "" ? "mesh" : `mesh, SegmentationParameters(${values})`;
+  return [
+    "import segcore",
+    ...(values === "" ? [] : ["from segcore.parameters import SegmentationParameters"]),
+    ...(level === null ? ["from segcore.recut import keep_splits"] : []),
+    "",
+    `mesh = segcore.read_mesh(${JSON.stringify(fileName)})`,
+    `hierarchy = segcore.segment(${call})`,
+    ...(level === null ? [`hierarchy = keep_splits(hierarchy, [${tree.splitsOf(work.cut).join(", ")}])`] : []),
+    `labels = hierarchy.labels(${level ?? ""})  # the part 0..${session.parts.length - 1} of every face`,
+  ].join("\n");
+}
+
+function shellWord(text: string): string {
+  return /^[\w.,:@%+/-]+$/.test(text) ? text : `'${text.replaceAll("'", `'\\''`)}'`;
+}
+
+function literal(value: unknown): string {
+  if (value === null) return "None";
+  if (typeof value === "boolean") return value ? "True" : "False";
+  return JSON.stringify(value);
+}
+
+async function copy(text: string | null, said: string): Promise<void> {
+  try {
+    await navigator.clipboard.writeText(text ?? "");
+    toast(said);
+  } catch {
+    toast("The browser does not allow copying: select the text and copy it by hand.");
+  }
+}

@@ -1,0 +1,136 @@
+/** The tools beside the picture, what can be done with selected parts, and their keys. */
+
+import type { CleaveViewer } from "../component/element";
+import { byId, openDialog } from "./dom";
+import type { Modes, Session } from "./session";
+
+type Toggle = "wireframe" | "concavity" | "lines";
+
+export class Tools {
+  readonly #viewer: CleaveViewer;
+  readonly #session: () => Session | null;
+  readonly #explode = byId<HTMLInputElement>("explode");
+
+  constructor(viewer: CleaveViewer, session: () => Session | null) {
+    this.#viewer = viewer;
+    this.#session = session;
+    const toggle = (name: Toggle) => () => this.#with((now) => now.setModes({ [name]: !now.modes[name] }));
+    const actions: Record<string, () => void> = {
+      undo: () => this.#with((now) => now.undo()),
+      redo: () => this.#with((now) => now.redo()),
+      "reset-view": () => viewer.resetView(),
+      wireframe: toggle("wireframe"),
+      concavity: toggle("concavity"),
+      lines: toggle("lines"),
+      up: () => this.#with((now) => now.setModes({ up: now.modes.up === "y" ? "z" : "y" })),
+      split: () => this.#split(),
+      merge: () => this.#merge(),
+      hide: () => this.#hide(),
+      isolate: () => this.#isolate(),
+    };
+    for (const [id, action] of Object.entries(actions)) byId(id).addEventListener("click", action);
+    this.#explode.addEventListener("input", () =>
+      this.#with((now) => now.setModes({ explode: this.#explode.valueAsNumber / 100 })),
+    );
+    this.#listenToName();
+    viewer.addEventListener("keydown", (event) => this.#key(event));
+    document.addEventListener("keydown", (event) => this.#undoKey(event));
+  }
+
+  update(): void {
+    const session = this.#session();
+    if (session === null) return;
+    const { modes } = session;
+    byId<HTMLButtonElement>("undo").disabled = !session.canUndo;
+    byId<HTMLButtonElement>("redo").disabled = !session.canRedo;
+    for (const name of ["wireframe", "concavity", "lines"] as const) press(name, modes[name]);
+    press("up", modes.up === "z");
+    this.#explode.value = String(Math.round(100 * modes.explode));
+    this.#explode.setAttribute("aria-valuetext", `${this.#explode.value} %`);
+    applyModes(this.#viewer, modes);
+  }
+
+  #with(act: (session: Session) => void): void {
+    const session = this.#session();
+    if (session !== null) act(session);
+  }
+
+  #split(): void {
+    this.#with((now) => now.split(now.modes.selected));
+  }
+
+  #merge(): void {
+    this.#with((now) => now.modes.selected.length > 0 && now.mergeBelow(now.tree.commonAncestor(now.modes.selected)));
+  }
+
+  #hide(): void {
+    this.#with((now) => {
+      const { selected } = now.modes;
+      if (selected.length > 0) now.setHidden(selected, !selected.every((id) => now.work.hidden.has(id)));
+    });
+  }
+
+  #isolate(): void {
+    this.#with((now) => now.modes.selected.length > 0 && now.isolate(now.modes.selected));
+  }
+
+  #listenToName(): void {
+    const name = byId<HTMLInputElement>("part-name");
+    const rename = () =>
+      this.#with((now) => {
+        const [id] = now.modes.selected;
+        if (id === undefined || name.value === now.nameOf(id)) return;
+        now.rename(id, name.value === `Part ${now.tree.node(id).label + 1}` ? "" : name.value);
+      });
+    name.addEventListener("change", rename);
+    name.addEventListener("keydown", (event) => {
+      if (event.key === "Enter") name.blur();
+    });
+  }
+
+  /** Keys that work while the picture has the focus. */
+  #key(event: KeyboardEvent): void {
+    if (event.ctrlKey || event.metaKey || event.altKey) return;
+    const step = (by: number) =>
+      this.#with((now) => now.showLevel(Math.min(Math.max(now.parts.length + by, 1), now.tree.maxSegments)));
+    const actions: Record<string, () => void> = {
+      s: () => this.#split(),
+      m: () => this.#merge(),
+      h: () => this.#hide(),
+      i: () => this.#isolate(),
+      a: () => this.#with((now) => now.showAll()),
+      w: () => byId("wireframe").click(),
+      l: () => byId("lines").click(),
+      c: () => byId("concavity").click(),
+      ",": () => step(-1),
+      ".": () => step(1),
+      "?": () => openDialog(byId<HTMLDialogElement>("keys")),
+    };
+    const action = actions[event.key];
+    if (action === undefined) return;
+    event.preventDefault();
+    action();
+  }
+
+  #undoKey(event: KeyboardEvent): void {
+    const isTyping = event.target instanceof HTMLInputElement && event.target.type !== "range";
+    if (!(event.ctrlKey || event.metaKey) || isTyping || document.querySelector("dialog[open]") !== null) return;
+    const key = event.key.toLowerCase();
+    if (key !== "z" && key !== "y") return;
+    event.preventDefault();
+    this.#with((now) => (key === "y" || event.shiftKey ? now.redo() : now.undo()));
+  }
+}
+
+/** Have a viewer show a result as the page is set. */
+export function applyModes(viewer: CleaveViewer, modes: Modes): void {
+  viewer.toggleAttribute("wireframe", modes.wireframe);
+  viewer.toggleAttribute("concavity", modes.concavity);
+  viewer.toggleAttribute("no-lines", !modes.lines);
+  viewer.setAttribute("up", modes.up);
+  viewer.setAttribute("explode", String(modes.explode));
+}
+
+function press(id: string, isPressed: boolean): void {
+  byId(id).setAttribute("aria-pressed", String(isPressed));
+}
