@@ -5,14 +5,15 @@ from typing import Any
 from fastapi import APIRouter
 
 import segcore.io
+from segcore.io.writing import WRITERS
 from segcore.parameters import parameters_schema
 from service.context import ContextOf
 from service.documents import FormatDocument, FormatsDocument
+from service.labels import LABELS
 
 router = APIRouter(prefix="/v1", tags=["about"])
 
-_LABELS = [FormatDocument(name="json", title="JSON", extensions=[".json"], media_types=["application/json"])]
-_MODELS = [FormatDocument(name="glb", title="GLB", extensions=[".glb"], media_types=["model/gltf-binary"])]
+_MODELS = ("glb", "ply", "obj", "3mf", "zip")  # of WRITERS
 
 
 @router.get("/formats", response_model=FormatsDocument)
@@ -25,8 +26,24 @@ async def get_formats(context: ContextOf) -> FormatsDocument:
             )
             for name, form in segcore.io.FORMATS.items()
         ],
-        labels=_LABELS,
-        models=_MODELS,
+        labels=[
+            FormatDocument(
+                name=name,
+                title=form.title,
+                extensions=[form.extension],
+                media_types=[form.media_type.partition(";")[0]],
+            )
+            for name, form in LABELS.items()
+        ],
+        models=[
+            FormatDocument(
+                name=name,
+                title=WRITERS[name].title,
+                extensions=[WRITERS[name].extension],
+                media_types=[WRITERS[name].media_type],
+            )
+            for name in _MODELS
+        ],
         max_upload_bytes=context.settings.max_upload_bytes,
         max_faces=context.settings.max_faces,
     )

@@ -4,6 +4,7 @@ import hashlib
 import re
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
+from typing import Any
 
 from fastapi import Request
 from starlette.responses import Response
@@ -12,6 +13,11 @@ from service.problems import Problem
 
 # Results never change, but who may read them does.
 _FOR_EVER = "private, max-age=31536000, immutable"
+_RESULT_HEADERS = {
+    "ETag": {"schema": {"type": "string"}, "description": "Of these bytes; for If-None-Match and If-Range."},
+    "Accept-Ranges": {"schema": {"const": "bytes"}},
+}
+NOT_MODIFIED = "The client has it already: If-None-Match names its ETag."
 _ONE_RANGE = re.compile(r"bytes=(\d{0,18})-(\d{0,18})", re.ASCII)
 
 
@@ -24,6 +30,18 @@ class Rendition:
     render: Callable[[], bytes]
     file_name: str | None = None  # where it is to be saved rather than shown
     vary: str | None = None  # the request header that chose it
+
+
+def rendition_responses(content: dict[str, Any], description: str) -> dict[int | str, dict[str, Any]]:
+    """The ways in which a result is answered, for the OpenAPI document."""
+    return {
+        200: {"content": content, "description": description, "headers": _RESULT_HEADERS},
+        206: {
+            "content": {media_type: {"schema": {"type": "string", "format": "binary"}} for media_type in content},
+            "description": "The range of it that was asked for.",
+        },
+        304: {"description": NOT_MODIFIED},
+    }
 
 
 def answer_rendition(request: Request, rendition: Rendition) -> Response:

@@ -4,14 +4,32 @@ from importlib.metadata import PackageNotFoundError, version
 from typing import Any
 
 from fastapi import FastAPI
+from starlette.middleware.cors import CORSMiddleware
 
-from service import about_routes, health, home, result_routes, routes
+from service import about_routes, health, home, model_routes, result_routes, routes, submission_routes
+from service.access import ForeignSites
+from service.api_keys import key_ring
 from service.context import Context, QueueView
+from service.headers import SecurityHeaders
 from service.problems import MEDIA_TYPE, handle_problems
 from service.results import ResultCache
+from worker.installation_secret import InstallationSecret
 from worker.queue import JobQueue, connect_impatiently
+from worker.quota import UploadQuota
 from worker.settings import Settings
 from worker.store import LocalStore
+
+_EXPOSED_HEADERS = (
+    "Location",
+    "Retry-After",
+    "ETag",
+    "Content-Disposition",
+    "Content-Range",
+    "Preference-Applied",
+    "RateLimit",
+    "RateLimit-Policy",
+)
+_ROUTES = (home, health, submission_routes, routes, result_routes, model_routes, about_routes)
 
 
 def create_app(settings: Settings) -> FastAPI:
@@ -26,19 +44,41 @@ def create_app(settings: Settings) -> FastAPI:
         redoc_url=None,
     )
     store = LocalStore(settings.data_dir)
+    keys = key_ring(settings)
     queue = JobQueue(connect_impatiently(settings.redis_url))
     app.state.context = Context(
-        settings,
-        store,
-        queue,
-        QueueView(queue),
-        ResultCache(store, settings.result_cache_bytes, settings.rendered_cache_bytes),
+        settings=settings,
+        version=app.version,
+        store=store,
+        queue=queue,
+        view=QueueView(queue),
+        quota=UploadQuota(queue.connection),
+        results=ResultCache(store, settings.result_cache_bytes, settings.rendered_cache_bytes),
+        secret=InstallationSecret(settings.data_dir),
+        keys=keys,
+        keys_required=settings.auth == "required" or (settings.auth == "auto" and bool(keys.all())),
     )
-    for router in (home.router, health.router, routes.router, result_routes.router, about_routes.router):
-        app.include_router(router)
+    for module in _ROUTES:
+        app.include_router(module.router)
+    _add_middleware(app, settings)
     handle_problems(app)
     app.openapi = lambda: _with_problems_only(FastAPI.openapi(app))  # type: ignore[method-assign]
     return app
+
+
+def _add_middleware(app: FastAPI, settings: Settings) -> None:
+    origins = [origin.strip() for origin in (settings.cors_origins or "").split(",") if origin.strip()]
+    app.add_middleware(ForeignSites, allowed_origins=origins)
+    if origins:
+        app.add_middleware(
+            CORSMiddleware,
+            allow_origins=origins,
+            allow_methods=["GET", "POST", "DELETE"],
+            allow_headers=["*"],
+            expose_headers=list(_EXPOSED_HEADERS),
+            max_age=600,
+        )
+    app.add_middleware(SecurityHeaders)
 
 
 def installed_version() -> str:

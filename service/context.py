@@ -6,8 +6,12 @@ from typing import Annotated
 
 from fastapi import Depends, Request
 
+from service.api_keys import KeyRing
 from service.results import ResultCache
+from worker.admission import admit
+from worker.installation_secret import InstallationSecret
 from worker.queue import Activity, JobQueue, QueueError
+from worker.quota import UploadQuota
 from worker.settings import Settings
 from worker.store import LocalStore
 
@@ -38,10 +42,18 @@ class QueueView:
 @dataclass(frozen=True, slots=True)
 class Context:
     settings: Settings
+    version: str  # of the software
     store: LocalStore
     queue: JobQueue
     view: QueueView
+    quota: UploadQuota
     results: ResultCache
+    secret: InstallationSecret
+    keys: KeyRing
+    keys_required: bool
+
+    def admit(self, owner: str | None, job_id: str | None = None) -> None:
+        admit(self.store, self.queue, owner, self.settings.key_max_running_jobs, job_id)
 
 
 async def _context(request: Request) -> Context:

@@ -35,6 +35,10 @@ class JobLinks(BaseModel):
     labels: str
     hierarchy: str
     model: str = Field(description="A coloured GLB; ?segments=k for another level, ?levels=all for all in one file.")
+    ply: str
+    obj: str
+    threemf: str
+    parts: str = Field(description="A ZIP archive with a file per segment.")
     preview: str = Field(description="A picture.")
 
 
@@ -62,9 +66,25 @@ class JobPageDocument(BaseModel):
     next_cursor: str | None = Field(description="To be sent as cursor for the jobs that follow; null at the end.")
 
 
+class SubmittedJobDocument(JobDocument):
+    """A job as it was submitted; with its labels where the client waited for it and it succeeded."""
+
+    segments: int | None = Field(description="The number of segments of these labels.")
+    labels: list[int] | None = Field(description="For every face, in the order of the file, its segment.")
+
+
 class LabelsDocument(BaseModel):
     segments: int
     labels: list[int] = Field(description="For every face, in the order of the file, its segment 0..segments-1.")
+
+
+class RunsDocument(BaseModel):
+    """Labels in run-length form: the first lengths[0] faces have the label values[0], and so on."""
+
+    segments: int
+    faces: int
+    values: list[int]
+    lengths: list[int]
 
 
 class HierarchyNode(BaseModel):
@@ -176,5 +196,9 @@ def _links(job_id: str) -> JobLinks:
         labels=f"{path}/labels",
         hierarchy=f"{path}/hierarchy",
         model=f"{path}/model.glb",
+        ply=f"{path}/model.ply",
+        obj=f"{path}/model.obj",
+        threemf=f"{path}/model.3mf",
+        parts=f"{path}/parts.zip",
         preview=f"{path}/preview.png",
     )

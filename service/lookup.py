@@ -2,7 +2,9 @@
 
 from collections.abc import Sequence
 
+from segcore.hierarchy import Hierarchy
 from segcore.io.result import Segmentation
+from service.access import Caller
 from service.context import Context
 from service.documents import JobDocument, job_document
 from service.problems import JobError, Problem
@@ -10,8 +12,8 @@ from worker.jobs import Canceled, Failed, Job, Outcome, Succeeded
 from worker.store import UnknownJob
 
 
-def known_job(context: Context, job_id: str) -> Job:
-    """The record of a job.
+def known_job(context: Context, caller: Caller, job_id: str) -> Job:
+    """The record of a job of the caller; others' jobs are not there.
 
     Raises
     ------
@@ -21,11 +23,22 @@ def known_job(context: Context, job_id: str) -> Job:
         Where there was one.
     """
     job = context.store.job(job_id)
-    if job is not None:
+    if job is not None and job.owner == caller.owner:
         return job
-    if context.store.was_deleted(job_id, None):
+    if context.store.was_deleted(job_id, caller.owner):
         raise Problem("job_deleted", "This job was deleted with its files: submit the mesh again.")
     raise UnknownJob(job_id)
+
+
+def level_of(hierarchy: Hierarchy, segments: int | None) -> int:
+    """The number of segments that is meant.
+
+    Raises
+    ------
+    InvalidParameters
+        Where the hierarchy has no such level.
+    """
+    return len(hierarchy.segment_nodes(segments))
 
 
 def describe(context: Context, job: Job) -> JobDocument:

@@ -24,20 +24,30 @@ MEDIA_TYPE = "application/problem+json"
 
 STATUS = {
     "malformed_request": 400,
+    "unauthorized": 401,
+    "foreign_site": 403,
     "not_found": 404,
     "job_not_found": 404,
     "method_not_allowed": 405,
+    "not_acceptable": 406,
+    "too_slow": 408,
     "not_finished": 409,
     "already_finished": 409,
     "job_failed": 409,
     "job_canceled": 409,
+    "idempotency_key_spent": 409,
     "job_deleted": 410,
+    "length_required": 411,
     "too_large": 413,
     "unsupported_media_type": 415,
     "range_not_satisfiable": 416,
     "invalid_mesh": 422,
     "invalid_parameters": 422,
     "invalid_request": 422,
+    "idempotency_key_reused": 422,
+    "queue_full": 429,
+    "too_many_jobs": 429,
+    "too_many_bytes": 429,
     "internal_error": 500,
     "queue_unavailable": 503,
     "storage_full": 507,
@@ -67,11 +77,14 @@ class ProblemDocument(BaseModel):
 class Problem(Exception):  # noqa: N818
     """An answer that is not what the client asked for; ``code`` is a key of STATUS."""
 
-    def __init__(self, code: str, detail: str, error: JobError | None = None) -> None:
+    def __init__(
+        self, code: str, detail: str, error: JobError | None = None, headers: Mapping[str, str] | None = None
+    ) -> None:
         super().__init__(detail)
         self.code = code
         self.detail = detail
         self.error = error
+        self.headers = headers or {}
 
     def response(self, headers: Mapping[str, str] | None = None) -> Response:
         status = STATUS[self.code]
@@ -84,10 +97,12 @@ class Problem(Exception):  # noqa: N818
         }
         if self.error is not None:
             document["error"] = self.error.model_dump()
-        retry = {"Retry-After": str(_RETRY_AFTER_S[self.code])} if self.code in _RETRY_AFTER_S else {}
+        own = {"Retry-After": str(_RETRY_AFTER_S[self.code])} if self.code in _RETRY_AFTER_S else {}
+        if self.code == "unauthorized":
+            own["WWW-Authenticate"] = "Bearer"
         # Pure ASCII: a lone surrogate that a client sent can be quoted, and NaN cannot get in.
         body = json.dumps(document, ensure_ascii=True, allow_nan=False)
-        return Response(body, status, {**retry, **(headers or {})}, MEDIA_TYPE)
+        return Response(body, status, {**own, **self.headers, **(headers or {})}, MEDIA_TYPE)
 
 
 def translate(exception: Exception) -> Problem:

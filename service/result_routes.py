@@ -1,124 +1,99 @@
 """Results: what is cut from the stored hierarchy of a job that succeeded, without recomputation."""
 
-import io
-import json
-from collections.abc import Callable
-from typing import Annotated, Any, BinaryIO, Literal
+from typing import Annotated, Any
 
-from fastapi import APIRouter, Query, Request
+from fastapi import APIRouter, Header, Query, Request
 from starlette.responses import Response
 
-from segcore.io.glb import write_glb
-from segcore.io.labels import hierarchy_document, labels_document
-from segcore.io.png import write_png
+from segcore.io.labels import hierarchy_document
 from segcore.io.result import Segmentation
-from segcore.picture import draw
-from service.answers import Rendition, answer_rendition
+from service.access import CallerOf
+from service.answers import Rendition, answer_rendition, rendition_responses
 from service.context import ContextOf
-from service.documents import HierarchyDocument, LabelsDocument
-from service.lookup import known_job, result_of
+from service.documents import HierarchyDocument, LabelsDocument, RunsDocument
+from service.labels import LABELS, LabelsFormat, compact_json, negotiate
+from service.lookup import known_job, level_of, result_of
 from service.problems import documented
 from service.routes import JobId
-from worker.jobs import Job
 
 router = APIRouter(prefix="/v1/jobs/{job_id}", tags=["results"])
 
 Segments = Annotated[
     int | None, Query(ge=1, description="The number of segments, 1 to max_segments; by default automatic_segments.")
 ]
-GLB, PNG, JSON = "model/gltf-binary", "image/png", "application/json"
 
-_RESULT_PROBLEMS = documented(
-    "job_not_found", "job_deleted", "not_finished", "job_failed", "job_canceled", "range_not_satisfiable"
+RESULT_PROBLEMS = documented(
+    "unauthorized",
+    "job_not_found",
+    "job_deleted",
+    "not_finished",
+    "job_failed",
+    "job_canceled",
+    "range_not_satisfiable",
 )
-_LEVEL_PROBLEMS = _RESULT_PROBLEMS | documented("invalid_parameters", "invalid_request")
+LEVEL_PROBLEMS = RESULT_PROBLEMS | documented("invalid_parameters", "invalid_request")
 
-
-def _responses(content: dict[str, Any], description: str) -> dict[int | str, dict[str, Any]]:
-    """The ways in which a result is answered, for the OpenAPI document."""
-    return {
-        200: {"content": content, "description": description},
-        206: {"content": content, "description": "The range of it that was asked for."},
-        304: {"description": "The client has it already: If-None-Match names its ETag."},
-    }
+_LABELS_CONTENT: dict[str, Any] = {
+    form.media_type.partition(";")[0]: {"schema": {"type": "string", "format": "binary"}} for form in LABELS.values()
+} | {
+    "text/plain": {"schema": {"type": "string"}, "example": "0\n0\n1\n2\n"},
+    "application/json": {"schema": LabelsDocument.model_json_schema()},
+    "application/vnd.cleave.runs+json": {"schema": RunsDocument.model_json_schema()},
+}
 
 
 @router.get(
     "/labels",
     response_class=Response,
-    responses=_responses({JSON: {}}, "The labels.") | {200: {"model": LabelsDocument}} | _LEVEL_PROBLEMS,
+    responses=rendition_responses(_LABELS_CONTENT, "The labels.") | LEVEL_PROBLEMS | documented("not_acceptable"),
 )
-def get_labels(job_id: JobId, request: Request, context: ContextOf, segments: Segments = None) -> Response:
+def get_labels(
+    job_id: JobId,
+    request: Request,
+    context: ContextOf,
+    caller: CallerOf,
+    segments: Segments = None,
+    format: Annotated[  # noqa: A002
+        LabelsFormat | None, Query(description="The form of the labels; by default the Accept header chooses.")
+    ] = None,
+    accept: Annotated[str, Header(description="The media types that are taken, with weights.")] = "*/*",
+) -> Response:
     """The segment of every face, in the order of the file, at any number of segments."""
-    job = known_job(context, job_id)
-    result = result_of(context, job)
-    count = _level(result, segments)
-    return _answer(
-        request, job, f"labels.json?segments={count}", JSON, lambda: _json(labels_document(result.hierarchy, count))
+    job = known_job(context, caller, job_id)
+    hierarchy = result_of(context, job).hierarchy
+    count = level_of(hierarchy, segments)
+    chosen = format or negotiate(accept)
+    form = LABELS[chosen]
+    return answer_rendition(
+        request,
+        Rendition(
+            identity=f"{job.id}/labels?segments={count}&format={chosen}",
+            media_type=form.media_type,
+            render=lambda: form.render(hierarchy, count),
+            file_name=None if chosen in ("json", "runs", "seg") else f"{job.id}{form.extension}",
+            vary=None if format else "Accept",
+        ),
     )
 
 
 @router.get(
     "/hierarchy",
     response_class=Response,
-    responses=_responses({JSON: {}}, "The tree of cuts.") | {200: {"model": HierarchyDocument}} | _RESULT_PROBLEMS,
+    responses=rendition_responses({"application/json": {"schema": HierarchyDocument.model_json_schema()}}, "The tree.")
+    | RESULT_PROBLEMS,
 )
-def get_hierarchy(job_id: JobId, request: Request, context: ContextOf) -> Response:
+def get_hierarchy(job_id: JobId, request: Request, context: ContextOf, caller: CallerOf) -> Response:
     """The tree of cuts from which every number of segments is read, and the curve that helps to choose one."""
-    job = known_job(context, job_id)
+    job = known_job(context, caller, job_id)
     result = result_of(context, job)
-    return _answer(request, job, "hierarchy.json", JSON, lambda: _json(_hierarchy(result)))
-
-
-@router.get(
-    "/model.glb", response_class=Response, responses=_responses({GLB: {}}, "Binary glTF 2.0.") | _LEVEL_PROBLEMS
-)
-def get_model(
-    job_id: JobId,
-    request: Request,
-    context: ContextOf,
-    segments: Segments = None,
-    levels: Annotated[
-        Literal["all"] | None,
-        Query(description="Every level in one file: a node per node of the hierarchy, a material variant per level."),
-    ] = None,
-) -> Response:
-    """The mesh as binary glTF, a named node and a colour for every segment, at any number of segments."""
-    job = known_job(context, job_id)
-    result = result_of(context, job)
-    count = _level(result, segments)
-
-    def write(target: BinaryIO) -> None:
-        write_glb(target, result.mesh, result.hierarchy, count, all_levels=levels == "all")
-
-    name = f"model.glb?segments={count}&levels={levels or 'one'}"
-    return _answer(request, job, name, GLB, lambda: _written(write), file_name=f"{job.id}.glb")
-
-
-@router.get("/preview.png", response_class=Response, responses=_responses({PNG: {}}, "A picture.") | _LEVEL_PROBLEMS)
-def get_preview(
-    job_id: JobId,
-    request: Request,
-    context: ContextOf,
-    segments: Segments = None,
-    size: Annotated[int, Query(ge=16, le=1024, description="Width and height in pixels.")] = 256,
-) -> Response:
-    """A picture of the mesh in the colours of its segments, on a transparent ground."""
-    job = known_job(context, job_id)
-    result = result_of(context, job)
-    count = _level(result, segments)
-
-    def render() -> bytes:
-        pixels = draw(result.mesh, result.hierarchy.labels(count), size)
-        return _written(lambda target: write_png(target, pixels))
-
-    name = f"preview.png?segments={count}&size={size}"
-    return _answer(request, job, name, PNG, lambda: context.results.rendered(job.id, name, render))
-
-
-def _level(result: Segmentation, segments: int | None) -> int:
-    """The number of segments that is meant, checked."""
-    return len(result.hierarchy.segment_nodes(segments))
+    return answer_rendition(
+        request,
+        Rendition(
+            identity=f"{job.id}/hierarchy",
+            media_type="application/json",
+            render=lambda: compact_json(_hierarchy(result)),
+        ),
+    )
 
 
 def _hierarchy(result: Segmentation) -> dict[str, Any]:
@@ -129,22 +104,3 @@ def _hierarchy(result: Segmentation) -> dict[str, Any]:
         for split, (value, node) in enumerate(zip(document["cut_values"], nodes, strict=True))
     ]
     return document | {"curve": curve}
-
-
-def _answer(
-    request: Request, job: Job, name: str, media_type: str, render: Callable[[], bytes], file_name: str | None = None
-) -> Response:
-    identity = f"{job.id}/{name}"
-    return answer_rendition(
-        request, Rendition(identity=identity, media_type=media_type, render=render, file_name=file_name)
-    )
-
-
-def _written(write: Callable[[BinaryIO], object]) -> bytes:
-    target = io.BytesIO()
-    write(target)
-    return target.getvalue()
-
-
-def _json(document: dict[str, Any]) -> bytes:
-    return json.dumps(document, allow_nan=False, separators=(",", ":")).encode()

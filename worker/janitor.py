@@ -5,6 +5,7 @@ import os
 import socket
 import time
 
+from worker.admission import may_wait_outside
 from worker.jobs import exhausted
 from worker.logs import configure_logging
 from worker.queue import JobQueue, QueueError, connect_impatiently
@@ -52,7 +53,8 @@ class Janitor:
     def _lost(self, at_s: float) -> list[str]:
         unfinished = self._store.unfinished()
         held = self._queue.held(unfinished)
-        missing = [job_id for job_id in unfinished if job_id not in held]
+        outside = may_wait_outside(unfinished, held, self._settings.key_max_running_jobs)
+        missing = [job_id for job_id in unfinished if job_id not in held and job_id not in outside]
         self._missing_since = {job_id: self._missing_since.get(job_id, at_s) for job_id in missing}
         return [job_id for job_id in missing if at_s - self._missing_since[job_id] >= MISSING_S]
 

@@ -25,6 +25,7 @@ class Job:
     created_at: datetime  # UTC
     file_name: str | None = None  # what the client calls the file: a label for people, never a path
     owner: str | None = None  # the name of the API key that it was submitted with; None: without one
+    version: str | None = None  # of the software that accepted it
     webhook_url: str | None = None  # who is told that it has ended
 
 

@@ -18,6 +18,7 @@ from rq.worker import WorkerStatus
 from rq.worker_registration import register
 
 import segcore
+from worker.admission import admit
 from worker.jobs import Attempt, Cause, exhausted, is_job_id
 from worker.logs import configure_logging
 from worker.parent_death import die_with_parent
@@ -184,6 +185,13 @@ class JobWorker(Worker):  # type: ignore[misc]  # rq is not analysed
             self._queue.requeue(job_id, at_front=True)
         else:
             self._queue.forget(job_id)
+            self._admit_next(job_id)
+
+    def _admit_next(self, job_id: str) -> None:
+        """The owner of a job that has ended may have another in the queue."""
+        job = self._store.job(job_id)
+        if job is not None:
+            admit(self._store, self._queue, job.owner, self._settings.key_max_running_jobs)
 
     def _is_open(self, job_id: str) -> bool:
         return self._store.job(job_id) is not None and self._store.outcome(job_id) is None

@@ -1,7 +1,7 @@
 """What an installation may choose, read once at the edge of a process from the environment."""
 
 from pathlib import Path
-from typing import Annotated, Any
+from typing import Annotated, Any, Literal
 
 from platformdirs import user_data_path
 from pydantic import AfterValidator, Field, ValidationError
@@ -26,7 +26,37 @@ class Settings(BaseSettings):
         pattern=r"^(redis|rediss|unix)://",
         description="The queue server, such as redis://host:6379/0; `cleave serve` brings its own where none is set.",
     )
+    auth: Literal["auto", "required", "off"] = Field(
+        default="auto",
+        description="Whether API keys are required; auto: where there are any, or the address is not loopback.",
+    )
+    api_keys: str | None = Field(
+        default=None, description="API keys, NAME:DIGEST with commas between, as `cleave key NAME` prints them."
+    )
+    api_keys_file: Path | None = Field(
+        default=None, description="File with one NAME:DIGEST per line; it is read again when it changes."
+    )
+    cors_origins: str | None = Field(
+        default=None, description="Origins whose pages may use the API, with commas between; * for all."
+    )
+    key_max_queued_jobs: int = Field(default=1000, ge=1, description="Unfinished jobs that a key may have.")
+    key_max_running_jobs: int | None = Field(
+        default=None, ge=1, description="Jobs of a key that are in the queue or run at a time; the others wait outside."
+    )
+    key_upload_bytes_per_hour: int | None = Field(
+        default=None, ge=1, description="Bytes that a key may upload in an hour."
+    )
+    max_queued_jobs: int = Field(default=10_000, ge=1, description="Unfinished jobs that the installation may have.")
+    max_wait_s: float = Field(default=60.0, ge=0, le=600, description="Longest time that an answer is held back.")
+    max_batch_jobs: int = Field(default=1000, ge=1, le=10_000, description="Most jobs in a batch.")
+    webhook_private_targets: bool = Field(
+        default=False, description="Whether webhooks may go to private, link-local and loopback addresses."
+    )
     max_upload_bytes: int = Field(default=512 * 2**20, gt=0, description="Largest mesh file that is accepted.")
+    upload_idle_s: float = Field(default=30.0, gt=0, description="Silence after which an upload is given up.")
+    upload_bytes_per_s: int = Field(
+        default=1024, ge=0, description="Least speed of an upload, on average after its first upload_idle_s."
+    )
     max_faces: int = Field(default=5_000_000, gt=0, description="Largest number of faces that is segmented.")
     max_attempts: int = Field(default=3, ge=1, description="Runs of a job that keeps killing its worker.")
     job_timeout_s: float = Field(default=3600.0, gt=0, description="Longest run of a job.")

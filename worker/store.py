@@ -3,6 +3,7 @@
     <data>/incoming/<random>/      a mesh that is being uploaded
     <data>/pending/<id>[.<owner>]  empty: the job has no outcome yet (an index of jobs/, made before and removed after)
     <data>/index/<owner>/          which jobs there are, by time
+    <data>/computed/<owner>/       which job has computed what
     <data>/gone/<id>               the job was deleted; in it, whose it was
     <data>/jobs/<id>/job.json      the job is accepted
                     /mesh          the bytes that the client sent
@@ -24,9 +25,10 @@ from typing import BinaryIO, TypeVar
 
 from pydantic import TypeAdapter
 
+from worker.computed import ComputedIndex
 from worker.durable import TEMPORARY_SUFFIX, create_file, replace_file, sync_folder
 from worker.index import JobIndex, entry_name, is_entry_name, job_id_of
-from worker.jobs import Attempt, Cause, Job, Outcome, is_job_id, new_job_id, now
+from worker.jobs import Attempt, Cause, Job, Outcome, Succeeded, is_job_id, new_job_id, now
 from worker.upload import MeshUpload
 
 _JOB = TypeAdapter(Job)
@@ -63,6 +65,7 @@ class LocalStore:
         self._incoming = data_dir / "incoming"
         self._gone = data_dir / "gone"
         self._index = JobIndex(data_dir / "index")
+        self._computed = ComputedIndex(data_dir / "computed")
         for folder in (self._jobs, self._pending, self._incoming, self._gone):
             folder.mkdir(mode=0o700, parents=True, exist_ok=True)
 
@@ -90,6 +93,12 @@ class LocalStore:
             self._index.remove(job)
             raise JobExists(job.id) from error
         sync_folder(self._jobs)
+        self._computed.note(job)
+
+    def computed_before(self, job: Job) -> Job | None:
+        """A job of the same owner that has succeeded with the same mesh, parameters and software."""
+        job_id = self._computed.find(job)
+        return self.job(job_id) if job_id and isinstance(self.outcome(job_id), Succeeded) else None
 
     def page(self, owner: str | None, cursor: str | None, limit: int) -> JobPage:
         """The jobs of an owner, newest first, from a cursor on."""
@@ -127,16 +136,20 @@ class LocalStore:
             self._marker(job).unlink(missing_ok=True)
         return self.outcome(job_id) or outcome
 
-    def unfinished(self) -> list[str]:
-        """The accepted jobs without an outcome, oldest first."""
+    def unfinished(self) -> dict[str, str | None]:
+        """The accepted jobs without an outcome, oldest first, and their owners."""
         markers = sorted(os.scandir(self._pending), key=_modified_at)
-        return [_job_id(marker) for marker in markers if self._is_unfinished(marker)]
+        return {_job_id(marker): _owner(marker) for marker in markers if self._is_unfinished(marker)}
 
     def unfinished_of(self, owner: str | None) -> list[str]:
         """Those of one owner, oldest first."""
-        suffix = f".{owner}" if owner else ""
-        markers = [marker for marker in os.scandir(self._pending) if marker.name[_ID_LENGTH:] == suffix]
+        markers = [marker for marker in os.scandir(self._pending) if _owner(marker) == owner]
         return [_job_id(marker) for marker in sorted(markers, key=_modified_at) if self._is_unfinished(marker)]
+
+    def count_unfinished(self, owner: str | None) -> tuple[int, int]:
+        """How many jobs have no outcome: of everybody, and of one owner; cheap, and now and then one too many."""
+        markers = list(os.scandir(self._pending))
+        return len(markers), sum(_owner(marker) == owner for marker in markers)
 
     def begin_attempt(self, job_id: str, worker: str) -> Attempt:
         """Count one more run of a job, before it starts.
@@ -217,6 +230,7 @@ class LocalStore:
         except FileNotFoundError as error:
             raise UnknownJob(job_id) from error
         self._index.remove(job)
+        self._computed.remove(job)
         self._marker(job).unlink(missing_ok=True)
         shutil.rmtree(doomed, ignore_errors=True)
 
@@ -269,6 +283,10 @@ class LocalStore:
 
 def _job_id(marker: os.DirEntry[str]) -> str:
     return marker.name[:_ID_LENGTH]
+
+
+def _owner(marker: os.DirEntry[str]) -> str | None:
+    return marker.name[_ID_LENGTH + 1 :] or None
 
 
 def _attempt_file(folder: Path, attempt: Attempt) -> Path:

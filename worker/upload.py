@@ -37,5 +37,7 @@ class MeshUpload:
         return self._digest.hexdigest()
 
     def make_durable(self) -> None:
-        sync_file(self._file)
-        self._file.close()
+        """End the writing; a second time changes nothing."""
+        if not self._file.closed:
+            sync_file(self._file)
+            self._file.close()

@@ -1,5 +1,7 @@
 """What the tests of the API ask again and again."""
 
+from pathlib import Path
+
 import httpx
 
 from support import sphere
@@ -8,8 +10,11 @@ FACES = 4 * 12 * 11  # of sphere(12)
 UNKNOWN = "/v1/jobs/" + "0" * 32
 
 
+AGAIN = {"Cache-Control": "no-cache"}  # compute it, whatever was computed before
+
+
 def submit(client: httpx.Client, mesh: bytes | None = None, **fields: str) -> str:
-    answer = client.post("/v1/jobs", files={"mesh": ("mesh.off", mesh or sphere(12))}, data=fields)
+    answer = client.post("/v1/jobs", files={"mesh": ("mesh.off", mesh or sphere(12))}, data=fields, headers=AGAIN)
     assert answer.status_code == 202, answer.text
     return str(answer.headers["Location"])
 
@@ -22,3 +27,9 @@ def problem(answer: httpx.Response, status: int, code: str) -> dict[str, object]
     assert (body["status"], body["code"]) == (status, code)
     assert str(body["detail"]).endswith(".")
     return body
+
+
+def traces(data_dir: Path) -> list[Path]:
+    """What jobs and uploads have left in a data folder."""
+    folders = ("jobs", "pending", "incoming", "index", "computed")
+    return [file for folder in folders for file in (data_dir / folder).rglob("*") if file.is_file()]

@@ -9,6 +9,7 @@ from pathlib import Path
 import httpx
 import pytest
 import uvicorn
+from asking import AGAIN
 from redis import Redis
 
 from service.app import create_app
@@ -58,7 +59,7 @@ def finished_job(client: httpx.Client, settings: Settings, store: LocalStore) ->
     """Submit a mesh, do the work, and give the path of the job."""
 
     def submit_and_perform(mesh: bytes | None = None) -> str:
-        answer = client.post("/v1/jobs", files={"mesh": ("mesh.off", mesh or sphere(12))})
+        answer = client.post("/v1/jobs", files={"mesh": ("mesh.off", mesh or sphere(12))}, headers=AGAIN)
         assert answer.status_code == 202, answer.text
         perform(store, settings, answer.json()["id"], lambda *_: None)
         return answer.headers["Location"]

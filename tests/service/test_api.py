@@ -5,7 +5,7 @@ from collections.abc import Callable
 
 import httpx
 import pytest
-from asking import FACES, UNKNOWN, problem, submit
+from asking import FACES, UNKNOWN, problem, submit, traces
 
 from segcore.io.result import read_result
 from support import sphere
@@ -146,7 +146,7 @@ def test_a_deleted_job_is_gone_with_its_files(
         assert client.delete(path).status_code == 204
         for gone in (client.get(path), client.get(f"{path}/labels"), client.delete(path)):
             problem(gone, 410, "job_deleted")
-    assert {file.parent.name for file in settings.data_dir.rglob("*") if file.is_file()} == {"gone"}
+    assert traces(settings.data_dir) == []
     assert queue.entries.get_job_ids() == []
 
 
@@ -207,7 +207,7 @@ def test_what_is_accepted_while_the_queue_goes_down_stays_accepted(
 
     monkeypatch.setattr(JobQueue, "enqueue", fail)
     path = submit(client)
-    assert store.unfinished() == [path.rpartition("/")[2]]
+    assert list(store.unfinished()) == [path.rpartition("/")[2]]
     assert queue.entries.get_job_ids() == []
 
 
@@ -220,7 +220,7 @@ def test_a_full_disk_is_said_and_leaves_nothing(
     monkeypatch.setattr("worker.upload.MeshUpload.write", fail)
     answer = client.post("/v1/jobs", files={"mesh": ("mesh.off", sphere(12))})
     problem(answer, 507, "storage_full")
-    assert [file for file in settings.data_dir.rglob("*") if file.is_file()] == []
+    assert traces(settings.data_dir) == []
 
 
 def test_an_internal_error_tells_no_secrets(client: httpx.Client, monkeypatch: pytest.MonkeyPatch) -> None:
@@ -241,36 +241,8 @@ def test_other_paths_and_methods_are_problems_too(client: httpx.Client) -> None:
     assert "POST" in wrong.headers["Allow"]
 
 
-def test_the_home_page_has_a_form_and_loads_nothing(client: httpx.Client) -> None:
-    page = client.get("/")
-    assert 'action="/v1/jobs"' in page.text
-    assert "default-src 'none'" in page.headers["Content-Security-Policy"]
-
-
-def test_the_openapi_document_names_every_status_that_can_be_met(client: httpx.Client) -> None:
+def test_every_documented_error_is_a_problem(client: httpx.Client) -> None:
     document = client.get("/openapi.json").json()
-    expected = {
-        ("/v1/jobs", "post"): {"202", "400", "413", "415", "422", "503", "507"},
-        ("/v1/jobs", "get"): {"200", "304", "422"},
-        ("/v1/jobs/{job_id}", "get"): {"200", "304", "404", "410", "422"},
-        ("/v1/jobs/{job_id}", "delete"): {"204", "404", "410", "507"},
-        ("/v1/jobs/{job_id}/cancel", "post"): {"200", "404", "409", "410", "507"},
-        ("/v1/jobs/{job_id}/events", "get"): {"200", "204", "404", "410", "422"},
-        ("/v1/jobs/{job_id}/labels", "get"): {"200", "206", "304", "404", "409", "410", "416", "422"},
-        ("/v1/jobs/{job_id}/hierarchy", "get"): {"200", "206", "304", "404", "409", "410", "416"},
-        ("/v1/jobs/{job_id}/model.glb", "get"): {"200", "206", "304", "404", "409", "410", "416", "422"},
-        ("/v1/jobs/{job_id}/preview.png", "get"): {"200", "206", "304", "404", "409", "410", "416", "422"},
-        ("/v1/formats", "get"): {"200"},
-        ("/v1/methods", "get"): {"200"},
-        ("/healthz", "get"): {"200"},
-        ("/readyz", "get"): {"200", "503"},
-    }
-    found = {
-        (path, method): set(operation["responses"])
-        for path, operations in document["paths"].items()
-        for method, operation in operations.items()
-    }
-    assert found == expected
     for path, operations in document["paths"].items():
         for operation in operations.values():
             for status, response in operation["responses"].items():

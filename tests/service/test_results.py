@@ -3,6 +3,7 @@
 import io
 import json
 import struct
+import zipfile
 from collections.abc import Callable
 
 import httpx
@@ -10,7 +11,18 @@ import matplotlib.image
 import pytest
 from asking import FACES, problem
 
-PATHS = ["labels", "hierarchy", "model.glb", "model.glb?levels=all", "preview.png", "labels?segments=2"]
+PATHS = [
+    "labels",
+    "hierarchy",
+    "model.glb",
+    "model.glb?levels=all",
+    "preview.png",
+    "labels?segments=2",
+    "model.ply",
+    "model.obj",
+    "model.3mf",
+    "parts.zip?capped=true",
+]
 
 
 @pytest.mark.parametrize("result", PATHS)
@@ -77,3 +89,30 @@ def test_the_preview_shows_the_segments(client: httpx.Client, finished_job: Call
     assert client.get(f"{path}/preview.png", params={"segments": 5, "size": 64}).content != answer.content
     problem(client.get(f"{path}/preview.png", params={"size": 100_000}), 422, "invalid_request")
     problem(client.get(f"{path}/preview.png", params={"segments": FACES}), 422, "invalid_parameters")
+
+
+@pytest.mark.parametrize(
+    ("result", "media_type", "begins"),
+    [
+        ("model.glb", "model/gltf-binary", b"glTF"),
+        ("model.ply", "model/ply", b"ply"),
+        ("model.obj", "model/obj", b""),
+        ("model.3mf", "model/3mf", b"PK"),
+        ("parts.zip", "application/zip", b"PK"),
+    ],
+)
+def test_models_are_files_to_be_saved(
+    client: httpx.Client, finished_job: Callable[..., str], result: str, media_type: str, begins: bytes
+) -> None:
+    answer = client.get(f"{finished_job()}/{result}", params={"segments": 3})
+    assert answer.headers["Content-Type"] == media_type
+    assert answer.headers["Content-Disposition"].startswith("attachment; filename=")
+    assert answer.content.startswith(begins)
+
+
+def test_parts_are_a_file_per_segment(client: httpx.Client, finished_job: Callable[..., str]) -> None:
+    path = finished_job()
+    for form in ("stl", "obj"):
+        data = client.get(f"{path}/parts.zip", params={"segments": 3, "part_format": form}).content
+        names = zipfile.ZipFile(io.BytesIO(data)).namelist()
+        assert names == [f"segment_{number}.{form}" for number in range(3)]

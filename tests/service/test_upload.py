@@ -9,16 +9,19 @@ from pathlib import Path
 import httpx
 import hypothesis
 import pytest
+from asking import problem, traces
 from hypothesis import strategies as st
 from starlette.requests import ClientDisconnect, Request
 
 from segcore.errors import InvalidParameters
+from service.form import FormReader
 from service.problems import Problem
-from service.upload import FormReader, file_label, mesh_format, parse_parameters, receive_form
+from service.upload import file_label, mesh_format, parse_parameters, receive_mesh
 from worker.settings import Settings
 from worker.store import LocalStore
 
 BOUNDARY = "----boundary"
+LIMITED = Settings(max_upload_bytes=10_000, upload_idle_s=0.2)
 CONTENT_TYPE = f"multipart/form-data; boundary={BOUNDARY}"
 
 
@@ -41,14 +44,13 @@ def test_a_form_means_the_same_however_it_is_cut_up(store: LocalStore, step: int
     content = b"\r\n--" + bytes(range(256)) + f"\r\n--{BOUNDARY[:-1]}\r\n".encode() * 3
     body = form(part("parameters", b'{"seed": 1}'), part("mesh", content, '; filename="hand.OFF"'))
     with store.begin_upload() as upload:
-        reader = FormReader(BOUNDARY.encode(), upload, 10_000)
+        reader = FormReader(BOUNDARY.encode(), lambda: upload, 10_000)
         for start in range(0, len(body), step):
             reader.feed(body[start : start + step])
         result = reader.finish()
-        upload.make_durable()
         assert (upload.folder / "mesh").read_bytes() == content
     assert bytes(result.parameters) == b'{"seed": 1}'
-    assert result.file_name == "hand.OFF"
+    assert [mesh.file_name for mesh in result.meshes] == ["hand.OFF"]
 
 
 @hypothesis.settings(
@@ -62,7 +64,7 @@ def test_a_form_means_the_same_however_it_is_cut_up(store: LocalStore, step: int
 )
 def test_whatever_is_sent_is_a_form_or_a_problem(store: LocalStore, pieces: list[bytes]) -> None:
     with store.begin_upload() as upload:
-        reader = FormReader(BOUNDARY.encode(), upload, 10_000)
+        reader = FormReader(BOUNDARY.encode(), lambda: upload, 10_000)
         with suppress(Problem):
             for piece in [form(part("mesh", b"abc"))[:40], *pieces]:
                 reader.feed(piece)
@@ -77,7 +79,6 @@ def test_whatever_is_sent_is_a_form_or_a_problem(store: LocalStore, pieces: list
         (form(part("parameters", b"{}")), "malformed_request"),
         (form(part("file", b"abc")), "malformed_request"),
         (form(part("mesh", b"abc"), part("mesh", b"abc")), "malformed_request"),
-        (b"", "malformed_request"),
         (b"\x00" * 1000, "malformed_request"),
         (f"--{BOUNDARY}\r\n\r\nabc\r\n--{BOUNDARY}--\r\n".encode(), "malformed_request"),
         (form(part("mesh", b"")), "invalid_mesh"),
@@ -92,7 +93,7 @@ def test_a_form_that_cannot_be_used_is_refused_and_leaves_nothing(
     status, found = post(client, body)
     assert found == code
     assert 400 <= status < 500
-    assert [file for file in settings.data_dir.rglob("*") if file.is_file()] == []
+    assert traces(settings.data_dir) == []
     assert list((settings.data_dir / "incoming").iterdir()) == []
 
 
@@ -100,9 +101,9 @@ def test_a_form_that_cannot_be_used_is_refused_and_leaves_nothing(
     ("content_type", "expected"),
     [
         ("application/json", (415, "unsupported_media_type")),
+        ("application/x-www-form-urlencoded", (415, "unsupported_media_type")),
         ("multipart/form-data", (400, "malformed_request")),
         (f"multipart/form-data; boundary={'b' * 71}", (400, "malformed_request")),
-        ("", (415, "unsupported_media_type")),
     ],
 )
 def test_a_body_of_another_kind_is_refused(client: httpx.Client, content_type: str, expected: tuple[int, str]) -> None:
@@ -120,7 +121,7 @@ def test_an_undeclared_length_is_limited_while_it_streams(client: httpx.Client, 
             yield b"x" * 10_000
 
     assert post(client, endless()) == (413, "too_large")
-    assert [file for file in settings.data_dir.rglob("*") if file.is_file()] == []
+    assert traces(settings.data_dir) == []
 
 
 def request_of(chunks: list[bytes], **headers: str) -> Request:
@@ -137,11 +138,11 @@ def request_of(chunks: list[bytes], **headers: str) -> Request:
 
 
 def test_a_client_that_goes_away_leaves_nothing(store: LocalStore, tmp_path: Path) -> None:
-    request = request_of([part("mesh", b"half of a mesh")], content_type=CONTENT_TYPE)
+    request = request_of([part("mesh", b"half of a mesh")], content_type=CONTENT_TYPE, transfer_encoding="chunked")
 
     async def receive() -> None:
         with store.begin_upload() as upload:
-            await receive_form(request, upload, 10_000)
+            await receive_mesh(request, LIMITED, lambda: upload)
 
     with pytest.raises(ClientDisconnect):
         asyncio.run(receive())
@@ -154,7 +155,7 @@ def test_a_declared_length_is_refused_before_the_body_is_read(store: LocalStore,
 
     async def receive() -> None:
         with store.begin_upload() as upload:
-            await receive_form(request, upload, 10_000)
+            await receive_mesh(request, LIMITED, lambda: upload)
 
     with pytest.raises(Problem, match="larger than"):
         asyncio.run(receive())
@@ -181,9 +182,9 @@ def test_a_file_name_is_a_hint_at_the_format_and_nothing_else(name: str | None, 
 def test_a_file_name_never_becomes_a_path(client: httpx.Client, settings: Settings, tmp_path: Path) -> None:
     for name in ("../../../escape.off", str(tmp_path / "escape.off"), "a\x00b.off"):
         assert client.post("/v1/jobs", files={"mesh": (name, io.BytesIO(b"abc"))}).status_code == 202
-    files = {file for file in tmp_path.rglob("*") if file.is_file() and file.parent.parent.name != "index"}
-    ids = {path.name for path in (settings.data_dir / "pending").iterdir()}
-    assert {file.name for file in files} <= {"mesh", "job.json", *ids}
+    outside = {file for file in tmp_path.rglob("*") if file.is_file()} - set(traces(settings.data_dir))
+    assert outside == {settings.data_dir / "secret"}
+    assert {file.name for file in (settings.data_dir / "jobs").rglob("*") if file.is_file()} == {"mesh", "job.json"}
 
 
 @pytest.mark.parametrize(
@@ -233,3 +234,78 @@ def test_parameters_that_cannot_be_used_are_refused(client: httpx.Client, text: 
         parse_parameters(text)
     status, code = post(client, form(part("mesh", b"abc"), part("parameters", text)))
     assert (status, code) == (422, "invalid_parameters")
+
+
+def raw(client: httpx.Client, body: bytes, url: str = "/v1/jobs", **headers: str) -> httpx.Response:
+    return client.post(url, content=body, headers={name.replace("_", "-"): value for name, value in headers.items()})
+
+
+@pytest.mark.parametrize(
+    ("query", "headers", "declared"),
+    [
+        ("", {}, None),
+        ("", {"content_type": "application/octet-stream"}, None),
+        ("", {"content_type": "model/stl"}, "stl"),
+        ("?format=ply", {}, "ply"),
+        ("?format=.OBJ", {"content_type": "application/x-www-form-urlencoded"}, "obj"),
+        ("?format=stl", {"content_type": "model/off"}, "stl"),
+        ("?file_name=hand.off", {}, "off"),
+    ],
+)
+def test_the_body_can_be_the_mesh_itself(
+    client: httpx.Client, store: LocalStore, query: str, headers: dict[str, str], declared: str | None
+) -> None:
+    answer = raw(client, b"abc", f"/v1/jobs{query}", **headers)
+    assert answer.status_code == 202, answer.text
+    assert answer.json()["input"]["format"] == declared
+    with store.open_mesh(answer.json()["id"]) as mesh:
+        assert mesh.read() == b"abc"
+
+
+def test_parameters_can_stand_in_the_query(client: httpx.Client) -> None:
+    answer = client.post("/v1/jobs", content=b"abc", params={"parameters": '{"seed": 9}'})
+    assert answer.json()["parameters"]["seed"] == 9
+    refused = client.post("/v1/jobs", content=b"abc", params={"parameters": '{"seed": -9}'})
+    problem(refused, 422, "invalid_parameters")
+
+
+def test_a_raw_body_is_limited_and_leaves_nothing(client: httpx.Client, settings: Settings) -> None:
+    problem(raw(client, b"x" * 200_001), 413, "too_large")
+    problem(client.post("/v1/jobs", content=iter([b"x" * 100_000] * 3)), 413, "too_large")
+    problem(raw(client, b""), 422, "invalid_mesh")
+    problem(raw(client, b"abc", "/v1/jobs?format=exe"), 415, "unsupported_media_type")
+    assert list((settings.data_dir / "incoming").iterdir()) == []
+
+
+def test_a_request_without_a_body_is_told_so(store: LocalStore) -> None:
+    request = request_of([], content_type=CONTENT_TYPE)
+
+    async def receive() -> None:
+        with store.begin_upload() as upload:
+            await receive_mesh(request, LIMITED, lambda: upload)
+
+    with pytest.raises(Problem, match="no body") as refused:
+        asyncio.run(receive())
+    assert refused.value.code == "length_required"
+
+
+def slow_request(pause_s: float) -> Request:
+    """A request that sends a byte after every pause, for ever."""
+
+    async def receive() -> dict[str, object]:
+        await asyncio.sleep(pause_s)
+        return {"type": "http.request", "body": b"x", "more_body": True}
+
+    return Request({"type": "http", "method": "POST", "headers": [(b"transfer-encoding", b"chunked")]}, receive)
+
+
+@pytest.mark.parametrize("pause_s", [60.0, 0.01])
+def test_a_client_that_sends_hardly_anything_is_given_up(store: LocalStore, tmp_path: Path, pause_s: float) -> None:
+    async def receive() -> None:
+        with store.begin_upload() as upload:
+            await receive_mesh(slow_request(pause_s), LIMITED, lambda: upload)
+
+    with pytest.raises(Problem, match="slow") as refused:
+        asyncio.run(receive())
+    assert refused.value.code == "too_slow"
+    assert list((tmp_path / "data" / "incoming").iterdir()) == []

@@ -27,7 +27,7 @@ def test_an_accepted_job_is_read_back_as_it_was_written(store: LocalStore) -> No
     assert store.job(job.id) == job
     with store.open_mesh(job.id) as mesh:
         assert mesh.read() == b"mesh bytes"
-    assert store.unfinished() == [job.id]
+    assert list(store.unfinished()) == [job.id]
     assert job.sha256 == hashlib.sha256(b"mesh bytes").hexdigest()
 
 
@@ -56,7 +56,7 @@ def test_the_first_outcome_stands(store: LocalStore) -> None:
     assert store.finish(job.id, first) == first
     assert store.finish(job.id, succeeded()) == first
     assert store.outcome(job.id) == first
-    assert store.unfinished() == []
+    assert store.unfinished() == {}
 
 
 def test_of_many_writers_at_once_one_gives_the_outcome(store: LocalStore) -> None:
@@ -128,10 +128,10 @@ def test_what_is_no_job_id_is_never_a_path(store: LocalStore, name: str) -> None
 def test_a_marker_without_a_job_is_no_job(store: LocalStore, tmp_path: Path) -> None:
     marker = tmp_path / "data" / "pending" / new_job_id()
     marker.touch()
-    assert store.unfinished() == []
+    assert store.unfinished() == {}
     assert marker.exists()  # the job may be on its way in
     os.utime(marker, (0, 0))
-    assert store.unfinished() == []
+    assert store.unfinished() == {}
     assert not marker.exists()
 
 
@@ -139,7 +139,7 @@ def test_a_crash_between_the_manifest_and_its_marker_heals(store: LocalStore, tm
     job = accepted(store, b"mesh")
     store.finish(job.id, succeeded())
     (tmp_path / "data" / "pending" / job.id).touch()
-    assert store.unfinished() == []
+    assert store.unfinished() == {}
     assert list((tmp_path / "data" / "pending").iterdir()) == []
 
 
@@ -147,7 +147,7 @@ def test_unfinished_jobs_come_oldest_first(store: LocalStore, tmp_path: Path) ->
     jobs = [accepted(store, b"mesh") for _ in range(3)]
     for age, job in enumerate(jobs):
         os.utime(tmp_path / "data" / "pending" / job.id, (1000 - age, 1000 - age))
-    assert store.unfinished() == [job.id for job in reversed(jobs)]
+    assert list(store.unfinished()) == [job.id for job in reversed(jobs)]
 
 
 def test_a_write_that_fails_leaves_the_old_file(tmp_path: Path) -> None:
@@ -188,7 +188,7 @@ def test_owners_see_their_own_jobs_alone(store: LocalStore) -> None:
     for job in (mine, theirs, nobodys):
         assert store.page(job.owner, None, 10).jobs == [job]
         assert store.unfinished_of(job.owner) == [job.id]
-    assert sorted(store.unfinished()) == sorted([mine.id, theirs.id, nobodys.id])
+    assert store.unfinished() == {mine.id: "me", theirs.id: "them", nobodys.id: None}
     store.finish(mine.id, Canceled(finished_at=now()))
     assert store.unfinished_of("me") == []
     assert store.page("me", None, 10).jobs == [mine]

@@ -1,0 +1,35 @@
+"""Bytes that an owner has uploaded in the current hour, counted in Redis: who loses the count gives some bytes away."""
+
+import time
+from dataclasses import dataclass
+
+from redis import Redis
+
+WINDOW_S = 3600
+
+
+@dataclass(frozen=True, slots=True)
+class Uploaded:
+    size_bytes: int
+    ends_in_s: int  # until the count starts again
+
+
+class UploadQuota:
+    def __init__(self, connection: Redis) -> None:
+        self._connection = connection
+
+    def uploaded(self, owner: str | None) -> Uploaded:
+        key, ends_in_s = _window(owner)
+        return Uploaded(int(self._connection.get(key) or 0), ends_in_s)
+
+    def add(self, owner: str | None, size_bytes: int) -> None:
+        key, _ = _window(owner)
+        with self._connection.pipeline() as transaction:
+            transaction.incrby(key, size_bytes)
+            transaction.expire(key, WINDOW_S)
+            transaction.execute()
+
+
+def _window(owner: str | None) -> tuple[str, int]:
+    at_s = int(time.time())
+    return f"cleave:uploaded:{owner or ''}:{at_s // WINDOW_S}", WINDOW_S - at_s % WINDOW_S
