@@ -1,0 +1,50 @@
+"""Other cuts through the same tree: any splits first, for people who cut one part further than the others."""
+
+from collections.abc import Collection
+
+import numpy as np
+
+from segcore.errors import InvalidParameters
+from segcore.hierarchy import Hierarchy
+
+
+def keep_splits(hierarchy: Hierarchy, splits: Collection[int]) -> Hierarchy:
+    """The hierarchy with some splits moved to the front: they alone are made at its automatic number of segments.
+
+    Split s is the one that makes the nodes 2 s + 1 and 2 s + 2. The other splits follow in their order, so that every
+    level is still a cut through the same tree; nodes and labels are numbered anew.
+
+    Parameters
+    ----------
+    splits : some of 0..max_segments - 2, and with each the split that makes the node that it cuts.
+
+    Raises
+    ------
+    InvalidParameters
+        Where a split does not exist or its part is not there without another split.
+    """
+    count = hierarchy.max_segments - 1
+    chosen = sorted(set(splits))
+    for split in chosen:
+        if not 0 <= split < count:
+            raise InvalidParameters(f"The splits of this mesh are 0 to {count - 1}: there is no split {split}.")
+        if (made_by := (int(hierarchy.split_node[split]) - 1) // 2) >= 0 and made_by not in splits:
+            raise InvalidParameters(f"Split {split} cuts a part that split {made_by} makes: give both or neither.")
+    order = np.array([*chosen, *sorted(set(range(count)) - set(chosen))], dtype=np.int32)
+    return _reordered(hierarchy, order, len(chosen) + 1)
+
+
+def _reordered(hierarchy: Hierarchy, order: np.ndarray[tuple[int], np.dtype[np.int32]], segments: int) -> Hierarchy:
+    new_node = np.zeros(hierarchy.node_count, dtype=np.int32)
+    place = np.arange(len(order), dtype=np.int32)
+    new_node[2 * order + 1] = 2 * place + 1
+    new_node[2 * order + 2] = 2 * place + 2
+    old_node = np.argsort(new_node)
+    return Hierarchy(
+        split_node=new_node[hierarchy.split_node[order]],
+        cut_value=hierarchy.cut_value[order],
+        area=hierarchy.area[old_node],
+        face_count=hierarchy.face_count[old_node],
+        face_leaf=new_node[hierarchy.face_leaf],
+        automatic_segments=segments,
+    )
