@@ -44,7 +44,7 @@ def read_gltf(data: bytes, limits: ReadLimits) -> Mesh:
     InvalidMesh, UnsupportedFormat, LimitExceeded
     """
     document = read_document(data)
-    accessors = Accessors(document)
+    accessors = Accessors(document, limits)
     instances = mesh_instances(document)
     primitives = {mesh: _primitives(document, accessors, mesh) for mesh in {at.mesh for at in instances}}
     parts = [(instance, primitive) for instance in instances for primitive in primitives[instance.mesh]]

@@ -6,7 +6,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from segcore.errors import InvalidMesh
-from segcore.io.gltf_document import Document, Item, integer, member
+from segcore.io.gltf_document import Document, Item, integer, member, view_bytes
+from segcore.io.gltf_meshopt import MESHOPT, decode_view
+from segcore.io.limits import ReadLimits
 
 _COMPONENTS = {5120: "<i1", 5121: "<u1", 5122: "<i2", 5123: "<u2", 5125: "<u4", 5126: "<f4"}
 _WIDTHS = {"SCALAR": 1, "VEC3": 3}
@@ -16,8 +18,10 @@ _SMALL = 65536  # elements that an accessor without data may have in any case
 class Accessors:
     """Reads accessors."""
 
-    def __init__(self, document: Document) -> None:
+    def __init__(self, document: Document, limits: ReadLimits) -> None:
         self._document = document
+        self._limits = limits
+        self._views: dict[int, memoryview] = {}  # the compressed ones, decoded once
         self._supplied: dict[int, NDArray[Any]] = {}
 
     def supply(self, index: int, values: NDArray[Any], where: str) -> None:
@@ -70,16 +74,25 @@ class Accessors:
         """(count, width) elements of the buffer view that ``item`` names; nothing is copied."""
         view = integer(item, "bufferView", where)
         entry, name = self._document.item("bufferViews", view), f"bufferViews[{view}]"
-        begin, length = integer(entry, "byteOffset", name, 0), integer(entry, "byteLength", name)
-        buffer = self._document.buffer(integer(entry, "buffer", name))
+        data = self._view_bytes(view, entry, name)
         size = width * dtype.itemsize
         stride = integer(entry, "byteStride", name, size)
         offset = integer(item, "byteOffset", where, 0)
-        if begin + length > len(buffer):
-            raise InvalidMesh(f"{name} of the glTF file reaches beyond its buffer of {len(buffer)} bytes.")
-        if stride < size or offset + stride * max(count - 1, 0) + size > length:
-            raise InvalidMesh(f"{where} of the glTF file reaches beyond the {length} bytes of {name}.")
-        return np.ndarray((count, width), dtype, buffer, begin + offset, (stride, dtype.itemsize))
+        if stride < size or offset + stride * max(count - 1, 0) + size > len(data):
+            raise InvalidMesh(f"{where} of the glTF file reaches beyond the {len(data)} bytes of {name}.")
+        return np.ndarray((count, width), dtype, data, offset, (stride, dtype.itemsize))
+
+    def _view_bytes(self, view: int, entry: Item, name: str) -> memoryview:
+        extensions = entry.get("extensions")
+        codec = next((key for key in MESHOPT if isinstance(extensions, dict) and key in extensions), None)
+        if codec is None:
+            return view_bytes(self._document, view)
+        if view not in self._views:
+            where = f"{name}.extensions.{codec}"
+            self._views[view] = decode_view(
+                self._document, member(entry["extensions"], codec, name), where, self._limits
+            )
+        return self._views[view]
 
     def _with_sparse(self, values: NDArray[Any], sparse: Item, where: str) -> NDArray[Any]:
         count = integer(sparse, "count", where)

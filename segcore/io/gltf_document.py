@@ -18,7 +18,9 @@ _HARMLESS = (
     "EXT_instance_features", "EXT_lights_", "EXT_mesh_features", "EXT_structural_metadata", "EXT_texture_",
     "KHR_animation_pointer", "KHR_lights_", "KHR_materials_", "KHR_texture_", "KHR_xmp", "MSFT_texture_dds",
 )  # fmt: skip
-_UNDERSTOOD = ("KHR_mesh_quantization", "KHR_draco_mesh_compression")
+_UNDERSTOOD = (
+    "KHR_mesh_quantization", "KHR_draco_mesh_compression", "EXT_meshopt_compression", "KHR_meshopt_compression",
+)  # fmt: skip
 
 Item = dict[str, Any]
 

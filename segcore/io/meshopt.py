@@ -1,0 +1,253 @@
+"""Compiled decoders of the meshoptimizer codecs that glTF uses. Arrays in, arrays out.
+
+References
+----------
+The glTF extensions EXT_meshopt_compression and KHR_meshopt_compression, appendix A (bitstreams) and B (filters).
+"""
+
+import numpy as np
+from numba import njit
+from numpy.typing import NDArray
+
+from segcore.arrays import LongArray
+
+Bytes = NDArray[np.uint8]
+
+_GROUP = 16  # elements that are packed together
+_LONGEST_GROUP = 24  # bytes
+_SHORTEST_TAILS = (32, 24)  # bytes, of version 0 and 1
+
+
+@njit(cache=True)
+def decode_attributes(source: Bytes, target: Bytes, count: int, stride: int) -> bool:
+    """Fill ``target`` (count * stride,) with the rows that ``source`` holds; False where the data is damaged."""
+    version = source[0] & 15 if len(source) else 2
+    if version > 1 or source[0] >> 4 != 10:
+        return False
+    tail = stride + version * (stride // 4)
+    end = len(source) - max(tail, _SHORTEST_TAILS[version])
+    if end < 1:
+        return False
+    last = source[len(source) - tail : len(source) - tail + stride].copy()
+    channels = source[len(source) - tail + stride :]
+    largest_block = min((8192 // stride) // _GROUP * _GROUP, 256)
+    deltas = np.empty((stride, largest_block), np.uint8)
+    at = 1
+    for first in range(0, count, largest_block):
+        size = min(largest_block, count - first)
+        at = _unpack_block(source, at, end, version, deltas, size)
+        if at < 0 or not _add_deltas(deltas, last, channels, version, target, first, size):
+            return False
+    return at == end
+
+
+@njit(cache=True)
+def _unpack_block(source: Bytes, at: int, end: int, version: int, deltas: Bytes, size: int) -> int:
+    """Where the data of the block ends, or -1."""
+    stride = len(deltas)
+    groups = (size + _GROUP - 1) // _GROUP
+    controls = at
+    at += version * (stride // 4)
+    for byte in range(stride):
+        if at > end:
+            return -1
+        control = (source[controls + byte // 4] >> (2 * (byte % 4))) & 3 if version else 0
+        if control == 2:
+            deltas[byte] = 0
+            continue
+        if control == 3:
+            if at + size > end:
+                return -1
+            deltas[byte, :size] = source[at : at + size]
+            at += size
+            continue
+        header = at
+        at += (groups + 3) // 4
+        for group in range(groups):
+            if at > end:
+                return -1
+            mode = (source[header + group // 4] >> (2 * (group % 4))) & 3
+            at = _unpack_group(source, at, _bits(version, control, mode), deltas[byte], _GROUP * group)
+    return at if at <= end else -1
+
+
+@njit(cache=True)
+def _bits(version: int, control: int, mode: int) -> int:
+    """The width of the numbers of a group: 0, 1, 2, 4 or 8."""
+    if version == 1 and control == 1:
+        return 1 << mode
+    if version == 1:
+        return (1 << mode) >> 1
+    return 0 if mode == 0 else 1 << mode
+
+
+@njit(cache=True)
+def _unpack_group(source: Bytes, at: int, bits: int, deltas: Bytes, first: int) -> int:
+    """Where the data of the group ends; numbers with all bits set stand for a byte that follows."""
+    if bits == 8:
+        for i in range(_GROUP):
+            deltas[first + i] = source[at + i]
+        return at + _GROUP
+    following = at + 2 * bits
+    for i in range(_GROUP):
+        value = 0
+        if bits == 1:
+            value = (source[at + i // 8] >> (i % 8)) & 1
+        elif bits > 1:
+            of_byte = 8 // bits
+            value = (source[at + i // of_byte] >> (8 - bits - bits * (i % of_byte))) & ((1 << bits) - 1)
+        if bits and value == (1 << bits) - 1:
+            value = source[following]
+            following += 1
+        deltas[first + i] = value
+    return following
+
+
+@njit(cache=True)
+def _add_deltas(
+    deltas: Bytes, last: Bytes, channels: Bytes, version: int, target: Bytes, first: int, size: int
+) -> bool:
+    stride = len(deltas)
+    for k in range(0, stride, 4):
+        channel = channels[k // 4] if version else 0
+        kind, turn = channel & 3, channel >> 4
+        if kind == 3:
+            return False
+        for i in range(size):
+            out = (first + i) * stride + k
+            if kind == 0:
+                for byte in range(k, k + 4):
+                    delta = deltas[byte, i]
+                    last[byte] = (last[byte] + ((delta >> 1) ^ -(delta & 1))) & 255
+            elif kind == 1:
+                for byte in range(k, k + 4, 2):
+                    delta = deltas[byte, i] | deltas[byte + 1, i] << 8
+                    value = (last[byte] | last[byte + 1] << 8) + ((delta >> 1) ^ -(delta & 1))
+                    last[byte], last[byte + 1] = value & 255, (value >> 8) & 255
+            else:
+                word = np.uint64(0)
+                for byte in range(4):
+                    word |= np.uint64(deltas[k + byte, i]) << np.uint64(8 * byte)
+                word = (word >> np.uint64(turn) | word << np.uint64(32 - turn)) & np.uint64(0xFFFFFFFF)
+                for byte in range(4):
+                    last[k + byte] ^= np.uint8((word >> np.uint64(8 * byte)) & np.uint64(255))
+            for byte in range(4):
+                target[out + byte] = last[k + byte]
+    return True
+
+
+@njit(cache=True)
+def decode_triangles(source: Bytes, target: LongArray) -> bool:
+    """Fill ``target`` (3 T,) with vertex indices; False where the data is damaged."""
+    triangles = len(target) // 3
+    codes, at, end = 1, 1 + triangles, len(source) - 16
+    if at > end or source[0] != 0xE1:
+        return False
+    edges, vertices = np.zeros((16, 2), np.int64), np.zeros(16, np.int64)
+    edge, vertex, following, last = 0, 0, 0, 0
+    for t in range(triangles):
+        if at > end:
+            return False
+        code = source[codes + t]
+        high, low = code >> 4, code & 15
+        if high < 15:
+            a, b = edges[(edge - 1 - high) & 15, 0], edges[(edge - 1 - high) & 15, 1]
+            if low == 0:
+                c = following
+                following += 1
+            elif low < 13:
+                c = vertices[(vertex - 1 - low) & 15]
+            elif low < 15:
+                c = last = last + (1 if low == 14 else -1)
+            else:
+                at, last = _moved(source, at, last)
+                c = last
+            if low == 0 or low > 12:
+                vertices[vertex & 15] = c
+                vertex += 1
+        else:
+            if low < 14:
+                pair = source[end + low]
+                first_is_new = True
+            else:
+                pair = source[at]
+                at += 1
+                first_is_new = low == 14
+                if pair == 0:
+                    following = 0
+            high, low = pair >> 4, pair & 15
+            explicit = code & 15 >= 14
+            if first_is_new:
+                a = following
+                following += 1
+            else:
+                at, last = _moved(source, at, last)
+                a = last
+            b = vertices[(vertex - high) & 15]
+            if high == 0:
+                b = following
+                following += 1
+            elif high == 15 and explicit:
+                at, last = _moved(source, at, last)
+                b = last
+            c = vertices[(vertex - low) & 15]
+            if low == 0:
+                c = following
+                following += 1
+            elif low == 15 and explicit:
+                at, last = _moved(source, at, last)
+                c = last
+            vertices[vertex & 15] = a
+            vertex += 1
+            if high == 0 or (high == 15 and explicit):
+                vertices[vertex & 15] = b
+                vertex += 1
+            if low == 0 or (low == 15 and explicit):
+                vertices[vertex & 15] = c
+                vertex += 1
+            edges[edge & 15, 0], edges[edge & 15, 1] = b, a
+            edge += 1
+        edges[edge & 15, 0], edges[edge & 15, 1] = c, b
+        edges[(edge + 1) & 15, 0], edges[(edge + 1) & 15, 1] = a, c
+        edge += 2
+        target[3 * t], target[3 * t + 1], target[3 * t + 2] = a, b, c
+    return at == end
+
+
+@njit(cache=True)
+def decode_indices(source: Bytes, target: LongArray) -> bool:
+    """Fill ``target`` (N,) with indices in any order; False where the data is damaged."""
+    at, end = 1, len(source) - 4
+    if end < 1 or source[0] != 0xD1:
+        return False
+    last = np.zeros(2, np.int64)
+    for i in range(len(target)):
+        if at >= end:
+            return False
+        at, value = _number(source, at, end)
+        which = value & 1
+        last[which] += (value >> 2) ^ -((value >> 1) & 1)
+        target[i] = last[which]
+    return at == end
+
+
+@njit(cache=True)
+def _moved(source: Bytes, at: int, last: int) -> tuple[int, int]:
+    """Where the next number ends, and ``last`` moved by it."""
+    at, value = _number(source, at, len(source))
+    return at, last + ((value >> 1) ^ -(value & 1))
+
+
+@njit(cache=True)
+def _number(source: Bytes, at: int, end: int) -> tuple[int, int]:
+    """Where a number of at most five bytes, seven bits each, ends, and the number."""
+    value = 0
+    for shift in range(0, 35, 7):
+        if at >= end:
+            break
+        byte = source[at]
+        at += 1
+        value |= int(byte & 127) << shift
+        if byte < 128:
+            break
+    return at, value
