@@ -1,8 +1,8 @@
 """The cleaned surface that the method works on, and the way back from it to the faces of the input.
 
-Nothing is refused here. Vertices at the same place are welded; faces that lose a corner by that, and repeated faces,
-are left out and follow a face that stands for them; faces are turned so that neighbours agree and closed parts face
-outward.
+Nothing is refused here. Vertices at the same place, at open borders also within a tolerance, are welded; faces that
+lose a corner by that, and repeated faces, are left out and follow a face that stands for them; faces are turned so that
+neighbours agree and closed parts face outward.
 """
 
 from dataclasses import dataclass
@@ -13,7 +13,8 @@ from scipy.spatial import KDTree
 from segcore.arrays import BoolArray, FloatArray, IntArray, group_sums
 from segcore.graph import SurfaceGraph, rows_of
 from segcore.mesh import Mesh, face_normals_and_areas
-from segcore.topology import as_bits, consistent_orientation, dual_edges, first_equal_row
+from segcore.topology import consistent_orientation, dual_edges, first_equal_row
+from segcore.welding import weld
 
 _SLIVER = 1e-6  # area over squared longest edge below which the direction of a face is rounding noise
 _CLEARLY_INSIDE_OUT = 0.01  # enclosed volume over area**1.5 from which an open patch is turned round
@@ -40,8 +41,7 @@ class Surface:
 def build_surface(mesh: Mesh) -> Surface:
     """Clean a mesh. Where no face has three different corners, the first face stands for all."""
     unit, scaled = _normalized(mesh.vertices)
-    welded = first_equal_row(as_bits(mesh.vertices))
-    corners = welded[mesh.faces]
+    corners = weld(mesh.vertices, mesh.faces)[mesh.faces]
     kept, stands_for = _distinct_faces(corners)
     vertices, faces = _compacted(scaled, corners[kept])
     edge_faces, edge_vertices, manifold, disagree = dual_edges(faces, len(vertices))

@@ -99,6 +99,37 @@ def dual_edges(faces: IntArray, vertex_count: int) -> tuple[IntArray, IntArray, 
 
 
 @njit(cache=True)
+def border_vertices(faces: IntArray, vertex_count: int) -> BoolArray:
+    """(V,): the vertices at edges that only one face (F, 3) has; edges between equal corners do not count."""
+    start = np.zeros(vertex_count + 1, np.int64)
+    for f in range(len(faces)):
+        for k in range(3):
+            start[min(faces[f, k], faces[f, (k + 1) % 3]) + 1] += 1
+    for v in range(vertex_count):
+        start[v + 1] += start[v]
+    far_end = np.empty(3 * len(faces), np.int32)
+    uses = np.zeros(3 * len(faces), np.int32)
+    fill = start[:-1].copy()
+    for f in range(len(faces)):
+        for k in range(3):
+            a, b = faces[f, k], faces[f, (k + 1) % 3]
+            low, high = min(a, b), max(a, b)
+            p = start[low]
+            while p < fill[low] and far_end[p] != high:
+                p += 1
+            if p == fill[low]:
+                far_end[p] = high
+                fill[low] += 1
+            uses[p] += 1
+    border = np.zeros(vertex_count, np.bool_)
+    for v in range(vertex_count):
+        for p in range(start[v], fill[v]):
+            if uses[p] == 1 and far_end[p] != v:
+                border[v] = border[far_end[p]] = True
+    return border
+
+
+@njit(cache=True)
 def consistent_orientation(
     start: IntArray, neighbour: IntArray, edge: IntArray, manifold: BoolArray, disagree: BoolArray
 ) -> tuple[IntArray, BoolArray]:

@@ -1,0 +1,131 @@
+"""The mesh report counts what is in a mesh, as plain Python counts it."""
+
+from collections import Counter
+
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from meshes import exploded
+from segcore import shapes
+from segcore.mesh import Mesh
+from segcore.report import mesh_report
+from segcore.welding import WELD_TOLERANCE, weld
+
+BALL = shapes.icosphere(2)
+
+
+def on_grid() -> st.SearchStrategy[Mesh]:
+    """Meshes whose vertices often share a place and whose faces often share an edge."""
+    place = st.tuples(*[st.integers(0, 2)] * 3)
+    vertices = st.lists(place, min_size=1, max_size=9)
+    return vertices.flatmap(
+        lambda points: st.lists(st.tuples(*[st.integers(0, len(points) - 1)] * 3), min_size=1, max_size=9).map(
+            lambda faces: Mesh(np.array(points, dtype=float), faces)
+        )
+    )
+
+
+@given(on_grid())
+def test_counts_are_those_of_plain_python(mesh: Mesh) -> None:
+    report = mesh_report(mesh)
+    places = [tuple(corner) for corner in mesh.vertices.tolist()]
+    faces = [tuple(places[corner] for corner in face) for face in mesh.faces.tolist()]
+    proper = [face for face in faces if len(set(face)) == 3]
+    distinct = {frozenset(face) for face in proper}
+    edges = Counter(frozenset(edge) for face in distinct for edge in sides(tuple(face)))
+    used = {corner for face in mesh.faces.tolist() for corner in face}
+    assert report.degenerate_faces == len(faces) - len(proper)
+    assert report.duplicate_faces == len(proper) - len(distinct)
+    assert report.border_edges == sum(count == 1 for count in edges.values())
+    assert report.non_manifold_edges == sum(count > 2 for count in edges.values())
+    assert report.unused_vertices == len(places) - len(used)
+    assert report.welded_vertices == len(used) - len({places[corner] for corner in used})
+    assert report.is_closed == (bool(edges) and set(edges.values()) == {2})
+    assert report.components == max(1, len(pieces(distinct)))
+
+
+def sides(face: tuple) -> list[tuple]:
+    return [(face[0], face[1]), (face[1], face[2]), (face[2], face[0])]
+
+
+def pieces(faces: set[frozenset]) -> list[set[frozenset]]:
+    """Sets of faces that hang together by edges."""
+    found: list[set[frozenset]] = []
+    for face in faces:
+        joined = [piece for piece in found if any(len(face & other) == 2 for other in piece)]
+        found = [piece for piece in found if piece not in joined] + [{face}.union(*joined)]
+    return found
+
+
+@given(st.sets(st.integers(0, len(BALL.faces) - 1), max_size=len(BALL.faces) // 2 - 1))
+def test_flipped_faces_are_those_that_were_turned(turned: set[int]) -> None:
+    faces = BALL.faces.copy()
+    for face in turned:
+        faces[face] = faces[face][::-1]
+    report = mesh_report(Mesh(BALL.vertices, faces))
+    assert report.flipped_faces == len(turned)
+    assert report.volume == pytest.approx(mesh_report(BALL).volume)
+
+
+def test_a_ball_that_is_inside_out_is_turned_as_a_whole() -> None:
+    report = mesh_report(Mesh(BALL.vertices, BALL.faces[:, ::-1]))
+    assert report.flipped_faces == report.faces
+    assert 4 < report.volume < 4 * np.pi / 3
+
+
+def test_a_closed_ball_without_fault() -> None:
+    report = mesh_report(Mesh(BALL.vertices * 10 + 5, BALL.faces))
+    assert report.is_closed
+    assert (report.components, report.border_edges, report.flipped_faces, report.sliver_faces) == (1, 0, 0, 0)
+    assert report.area == pytest.approx(400 * np.pi, rel=0.05)
+    np.testing.assert_allclose(report.lower, [-5] * 3, atol=0.5)
+    np.testing.assert_allclose(report.upper, [15] * 3, atol=0.5)
+
+
+def test_separate_corners_are_welded() -> None:
+    report = mesh_report(exploded(BALL))
+    assert report.welded_vertices == 3 * len(BALL.faces) - len(BALL.vertices)
+    assert report.is_closed
+
+
+def test_slivers_are_counted() -> None:
+    mesh = Mesh([[0, 0, 0], [1, 0, 0], [0.5, 1e-9, 0], [0.5, 1, 0]], [[0, 1, 2], [0, 1, 3]])
+    assert mesh_report(mesh).sliver_faces == 1
+
+
+def test_polygons_of_the_file_are_counted() -> None:
+    mesh = Mesh([[0, 0, 0], [1, 0, 0], [1, 1, 0], [0, 1, 0]], [[0, 1, 2], [0, 2, 3]], [0, 0])
+    assert mesh_report(mesh).polygons == 1
+
+
+def test_a_seam_that_was_rounded_differently_on_both_sides_is_closed() -> None:
+    rng = np.random.default_rng(4)
+    parts = exploded(BALL)
+    noise = rng.uniform(-0.25, 0.25, parts.vertices.shape) * WELD_TOLERANCE
+    for scale in (1e-3, 1.0, 1e6):
+        report = mesh_report(Mesh((parts.vertices + noise) * scale, parts.faces))
+        assert report.is_closed
+        assert report.components == 1
+
+
+def test_what_is_farther_apart_than_the_tolerance_stays_apart() -> None:
+    gap = np.array([0, 0, 2 + 4 * WELD_TOLERANCE])
+    two = Mesh(
+        np.vstack([BALL.vertices, BALL.vertices + gap]), np.vstack([BALL.faces, BALL.faces + len(BALL.vertices)])
+    )
+    assert mesh_report(two).components == 2
+
+
+def test_welding_takes_no_corner_from_a_face_but_where_two_are_at_the_same_place() -> None:
+    tiny = np.array([[0, 0, 0], [1, 0, 0], [1, 1e-8, 0], [0, 1, 0], [1, 1e-8, 0], [2, 2, 2]])
+    faces = np.array([[0, 1, 2], [0, 2, 3]], dtype=np.int32)
+    assert weld(tiny, faces).tolist() == [0, 1, 2, 3, 2, 5]
+
+
+def test_a_mesh_without_borders_is_welded_exactly_only() -> None:
+    near = np.vstack([BALL.vertices, BALL.vertices * (1 + 1e-9)])
+    faces = np.vstack([BALL.faces, BALL.faces[:, ::-1] + len(BALL.vertices)])
+    assert weld(near, faces).tolist() == list(range(len(near)))
+    assert mesh_report(Mesh(near, faces)).components == 2
