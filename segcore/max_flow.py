@@ -42,7 +42,7 @@ class Network:
         """
         potential = self.factor.solve(supply)
         residual, excess = _electrical_flow(self.start, self.neighbour, self.capacity, potential)
-        distance = _push(self.start, self.neighbour, self.reverse, residual, excess)
+        distance = push(self.start, self.neighbour, self.reverse, residual, excess)
         return distance == len(distance)
 
 
@@ -75,7 +75,7 @@ def _electrical_flow(start, neighbour, capacity, potential):  # type: ignore[no-
 
 
 @njit(cache=True)
-def _push(start, neighbour, reverse, residual, excess):  # type: ignore[no-untyped-def]
+def push(start, neighbour, reverse, residual, excess):  # type: ignore[no-untyped-def]
     """Push-relabel: move excess to deficits (negative excess) until the rest of it cannot reach any.
 
     First in, first out, with exact distances now and then. Both arrays are changed. Amounts are moved whole or up to a

@@ -26,9 +26,7 @@ def project(tree: Tree, corners: IntArray, faces: SurfaceGraph) -> Tree:
     -------
     The tree over the faces.
     """
-    if corners.shape[1] == 1:
-        return Tree(tree.split_node, tree.cut_value, tree.leaf[corners[:, 0]], tree.automatic_segments)
-    place, first, end = _intervals(tree)
+    place, first, end = intervals(tree)
     corner_place = place[tree.leaf][corners]
     parts = {0: _Part(np.arange(len(corners), dtype=np.int32), faces, 0)}
     split_node: list[int] = []
@@ -79,7 +77,7 @@ def _connected(graph: SurfaceGraph, side: BoolArray) -> BoolArray:
     return connected if 2 * kept >= graph.total_volume else ~connected
 
 
-def _intervals(tree: Tree) -> tuple[IntArray, IntArray, IntArray]:
+def intervals(tree: Tree) -> tuple[IntArray, IntArray, IntArray]:
     """A numbering of the leaves in which every node has consecutive ones: number of a leaf, first and end of a node."""
     count = 2 * len(tree.split_node) + 1
     leaves = np.ones(count, dtype=np.int32)

@@ -1,17 +1,20 @@
 """The whole method on one screen."""
 
 from collections.abc import Callable
+from dataclasses import replace
 
 import numpy as np
 
 from segcore.arrays import group_sums
 from segcore.assembly import assemble
-from segcore.clusters import cluster_nodes
+from segcore.boundary import draw_boundaries
+from segcore.clusters import Clusters, cluster_nodes
 from segcore.hierarchy import Hierarchy
 from segcore.mesh import Mesh
-from segcore.mesh_graph import mesh_graph
+from segcore.mesh_graph import MeshGraph, mesh_graph
 from segcore.parameters import SegmentationParameters
 from segcore.projection import project
+from segcore.proximity import Links
 from segcore.recursion import Tree, bisect
 from segcore.surface import Surface, build_surface
 
@@ -47,10 +50,18 @@ def segment(
     on_progress("cut", 0.6)
     tree = bisect(clusters.graph, clusters.points, chosen, rng, lambda done: on_progress("cut", 0.6 + 0.35 * done))
     on_progress("label", 0.95)
-    tree = project(tree, clusters.of_node[nodes.corners], surface.face_graph().with_edges(links.faces, links.length))
+    tree = _over_faces(tree, clusters, nodes, links, surface)
     hierarchy = _of_input(surface, tree)
     on_progress("label", 1.0)
     return hierarchy
+
+
+def _over_faces(tree: Tree, clusters: Clusters, nodes: MeshGraph, links: Links, surface: Surface) -> Tree:
+    """Carry a tree over the clusters over to the faces; where faces are the nodes, draw the boundaries anew."""
+    if nodes.corners.shape[1] > 1:
+        linked = surface.face_graph().with_edges(links.faces, links.length)
+        return project(tree, clusters.of_node[nodes.corners], linked)
+    return draw_boundaries(replace(tree, leaf=tree.leaf[clusters.of_node]), nodes, links, surface)
 
 
 def _of_input(surface: Surface, tree: Tree) -> Hierarchy:
