@@ -103,9 +103,9 @@ class _ModelParser:
             raise InvalidMesh(
                 f"Line {error.lineno}: the XML of the 3MF model is damaged ({expat.ErrorString(error.code)})."
             ) from error
-        except (KeyError, ValueError, OverflowError) as error:
+        except (LookupError, ValueError, OverflowError) as error:
             raise InvalidMesh(
-                f"Line {self._parser.CurrentLineNumber}: an attribute in the 3MF model is missing or no number."
+                f"Line {self._parser.CurrentLineNumber}: an attribute in the 3MF model, or its encoding, is missing or wrong."
             ) from error
         if not self._has_model:
             raise InvalidMesh("The 3MF model is XML, but has no element 'model' of the 3MF core specification.")

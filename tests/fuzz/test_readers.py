@@ -1,0 +1,52 @@
+"""Every reader gives a valid mesh or a typed error for whatever comes.
+
+Short by default. ``CLEAVE_FUZZ_SECONDS=600 pytest tests/fuzz`` takes that long for each reader, with new examples in
+every run; ``CLEAVE_FUZZ_SEED`` repeats one.
+"""
+
+import os
+import time
+
+import numpy as np
+import pytest
+from hypothesis import HealthCheck, given, seed, settings
+from mutations import mutated
+from soups import read_or_none
+
+from segcore.io import FORMATS
+
+SECONDS = float(os.environ.get("CLEAVE_FUZZ_SECONDS", "0"))
+FIRST_SEED = int(os.environ.get("CLEAVE_FUZZ_SEED", str(time.time_ns() if SECONDS else 1)))
+EXAMPLES = 300  # for each seed
+
+
+@pytest.mark.timeout(SECONDS + 300)
+@pytest.mark.parametrize("name", FORMATS)
+def test_whatever_comes_gives_a_valid_mesh_or_a_typed_error(name: str) -> None:
+    ends_at = time.monotonic() + SECONDS
+    number = FIRST_SEED
+    while True:
+        fuzz(name, number)
+        number += 1
+        if time.monotonic() >= ends_at:
+            break
+
+
+def fuzz(name: str, number: int) -> None:
+    @seed(number)
+    @settings(
+        max_examples=EXAMPLES, derandomize=False, database=None, deadline=None, suppress_health_check=list(HealthCheck)
+    )
+    @given(mutated(name))
+    def check(data: bytes) -> None:
+        for form in (None, name):
+            mesh = read_or_none(data, form)
+            if mesh is not None:
+                assert np.isfinite(mesh.vertices).all()
+                assert 0 <= mesh.faces.min() <= mesh.faces.max() < len(mesh.vertices)
+
+    try:
+        check()
+    except BaseException as error:
+        error.add_note(f"Repeat it with CLEAVE_FUZZ_SEED={number}.")
+        raise
