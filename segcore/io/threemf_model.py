@@ -105,7 +105,7 @@ class _ModelParser:
             ) from error
         except (LookupError, ValueError, OverflowError) as error:
             raise InvalidMesh(
-                f"Line {self._parser.CurrentLineNumber}: an attribute in the 3MF model, or its encoding, is missing or wrong."
+                f"Line {self._parser.CurrentLineNumber}: an attribute in the 3MF model is missing or wrong."
             ) from error
         if not self._has_model:
             raise InvalidMesh("The 3MF model is XML, but has no element 'model' of the 3MF core specification.")
