@@ -10,7 +10,8 @@ from pathlib import Path
 from worker.settings import InvalidSettings, Settings
 
 _PREFIX = "cleave_"
-_ENTRY = re.compile(r"([a-z0-9][a-z0-9-]{0,31})[:\s]+([0-9a-f]{64})", re.ASCII)
+_NAME = re.compile(r"[a-z0-9][a-z0-9-]{0,31}", re.ASCII)
+_ENTRY = re.compile(rf"({_NAME.pattern})[:\s]+([0-9a-f]{{64}})", re.ASCII)
 
 
 @dataclass(slots=True)
@@ -54,6 +55,10 @@ def key_ring(settings: Settings) -> KeyRing:
     except OSError as error:
         raise InvalidSettings(f"CLEAVE_API_KEYS_FILE cannot be read: {error.strerror}.") from error
     return ring
+
+
+def is_owner_name(text: str) -> bool:
+    return _NAME.fullmatch(text) is not None
 
 
 def new_key() -> str:

@@ -6,11 +6,12 @@ from typing import Any
 from fastapi import FastAPI
 from starlette.middleware.cors import CORSMiddleware
 
-from service import about_routes, health, home, model_routes, result_routes, routes, submission_routes
+from service import about_routes, health, home, model_routes, result_routes, routes, submission_routes, webhook_routes
 from service.access import ForeignSites
 from service.api_keys import key_ring
 from service.context import Context, QueueView
 from service.headers import SecurityHeaders
+from service.metrics import MeasuredRequests, Metrics
 from service.problems import MEDIA_TYPE, handle_problems
 from service.results import ResultCache
 from worker.installation_secret import InstallationSecret
@@ -29,7 +30,7 @@ _EXPOSED_HEADERS = (
     "RateLimit",
     "RateLimit-Policy",
 )
-_ROUTES = (home, health, submission_routes, routes, result_routes, model_routes, about_routes)
+_ROUTES = (home, health, submission_routes, routes, result_routes, model_routes, about_routes, webhook_routes)
 
 
 def create_app(settings: Settings) -> FastAPI:
@@ -46,6 +47,7 @@ def create_app(settings: Settings) -> FastAPI:
     store = LocalStore(settings.data_dir)
     keys = key_ring(settings)
     queue = JobQueue(connect_impatiently(settings.redis_url))
+    metrics = Metrics(store, queue)
     app.state.context = Context(
         settings=settings,
         version=app.version,
@@ -56,11 +58,13 @@ def create_app(settings: Settings) -> FastAPI:
         results=ResultCache(store, settings.result_cache_bytes, settings.rendered_cache_bytes),
         secret=InstallationSecret(settings.data_dir),
         keys=keys,
+        metrics=metrics,
         keys_required=settings.auth == "required" or (settings.auth == "auto" and bool(keys.all())),
     )
     for module in _ROUTES:
         app.include_router(module.router)
     _add_middleware(app, settings)
+    app.add_middleware(MeasuredRequests, metrics=metrics)
     handle_problems(app)
     app.openapi = lambda: _with_problems_only(FastAPI.openapi(app))  # type: ignore[method-assign]
     return app

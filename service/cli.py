@@ -43,6 +43,7 @@ def _parser() -> argparse.ArgumentParser:
     _add_serve(commands)
     _add_worker(commands)
     _add_segment(commands)
+    _add_key(commands)
     return parser
 
 
@@ -104,6 +105,16 @@ def _add_segment(commands: "argparse._SubParsersAction[_Parser]") -> None:
     segment.set_defaults(run=_segment)
 
 
+def _add_key(commands: "argparse._SubParsersAction[_Parser]") -> None:
+    key = commands.add_parser(
+        "key",
+        help="make an API key",
+        description="Make an API key for somebody. The key itself is shown once and kept nowhere.",
+    )
+    key.add_argument("name", metavar="NAME", help="whose it is: lower-case letters, digits and dashes")
+    key.set_defaults(run=_key)
+
+
 # Each command imports what it needs when it runs: `cleave --help` does not wait for the numerics.
 
 
@@ -138,6 +149,17 @@ def _segment(choices: argparse.Namespace) -> None:
         )
     )
     _say("\n".join(summary))
+
+
+def _key(choices: argparse.Namespace) -> None:
+    from service.api_keys import is_owner_name, key_digest, new_key
+
+    if not is_owner_name(choices.name):
+        raise InvalidSettings("The name of a key has 1 to 32 lower-case letters, digits and dashes.")
+    key = new_key()
+    _say(f"key    {key}")
+    _say(f"entry  {choices.name}:{key_digest(key)}")
+    _say(f"Give the key to {choices.name}, and the entry to CLEAVE_API_KEYS_FILE.")
 
 
 def _parameter(text: str) -> tuple[str, object]:

@@ -7,6 +7,7 @@ from typing import Annotated
 from fastapi import Depends, Request
 
 from service.api_keys import KeyRing
+from service.metrics import Metrics
 from service.results import ResultCache
 from worker.admission import admit
 from worker.installation_secret import InstallationSecret
@@ -51,6 +52,7 @@ class Context:
     secret: InstallationSecret
     keys: KeyRing
     keys_required: bool
+    metrics: Metrics
 
     def admit(self, owner: str | None, job_id: str | None = None) -> None:
         admit(self.store, self.queue, owner, self.settings.key_max_running_jobs, job_id)

@@ -134,6 +134,12 @@ class FormatsDocument(BaseModel):
     max_faces: int
 
 
+class WebhookSecret(BaseModel):
+    secret: str = Field(
+        description="For any library of Standard Webhooks.", examples=["whsec_MfKQ9r8GKYqrTwjUPD8ILPZIo2LaLaSw"]
+    )
+
+
 class Health(BaseModel):
     status: Literal["ok"] = "ok"
 

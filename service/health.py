@@ -1,10 +1,13 @@
 """Whether the service lives, and whether it can do its work."""
 
 from fastapi import APIRouter
+from prometheus_client.exposition import CONTENT_TYPE_PLAIN_1_0_0, generate_latest
 from starlette.responses import Response
 
+from service.access import CallerOf
 from service.context import Context, ContextOf
 from service.documents import Health, Readiness
+from service.problems import documented
 from worker.queue import QueueError
 
 router = APIRouter(tags=["health"])
@@ -24,6 +27,19 @@ def get_readiness(response: Response, context: ContextOf) -> Readiness:
     readiness = _readiness(context)
     response.status_code = 200 if readiness.ready else 503
     return readiness
+
+
+@router.get(
+    "/metrics",
+    response_class=Response,
+    responses={
+        200: {"content": {"text/plain": {"schema": {"type": "string"}}}, "description": "In the text format."},
+        **documented("unauthorized"),
+    },
+)
+def get_metrics(context: ContextOf, caller: CallerOf) -> Response:  # noqa: ARG001
+    """Metrics for Prometheus. Where API keys are required, any will do."""
+    return Response(generate_latest(context.metrics.registry), headers={"Content-Type": CONTENT_TYPE_PLAIN_1_0_0})
 
 
 def _readiness(context: Context) -> Readiness:

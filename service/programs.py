@@ -25,7 +25,7 @@ def api_program(settings: Settings, listening: int) -> Program:
 
 
 def worker_programs(settings: Settings, count: int) -> list[Program]:
-    """The workers, and the janitor without which a lost job would stay lost."""
+    """The workers, the janitor without which a lost job would stay lost, and the courier who tells the webhooks."""
     environment = _environment(settings)
     threads = {name: os.environ.get(name, value) for name, value in _ONE_THREAD.items()}
     grace_s = settings.shutdown_grace_s + _STOP_MARGIN_S
@@ -33,7 +33,8 @@ def worker_programs(settings: Settings, count: int) -> list[Program]:
         Program(f"worker {number}", _python("worker.process"), environment | threads, grace_s=grace_s)
         for number in range(1, count + 1)
     ]
-    return [*workers, Program("janitor", _python("worker.janitor"), environment)]
+    janitor = Program("janitor", _python("worker.janitor"), environment)
+    return [*workers, janitor, Program("courier", _python("service.courier"), environment)]
 
 
 def _python(module: str) -> list[str]:

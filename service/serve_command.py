@@ -1,5 +1,6 @@
 """`cleave serve` and `cleave worker`: the processes of an installation under one supervisor."""
 
+import ipaddress
 import os
 import socket
 from collections.abc import Callable
@@ -7,10 +8,11 @@ from contextlib import ExitStack
 from pathlib import Path
 from urllib.parse import urlsplit
 
+from service.api_keys import key_ring
 from service.programs import api_program, queue_server_program, worker_programs
 from service.queue_server import NoQueueServer, embedded_queue_server, stop_orphan
 from service.supervisor import Program, Supervisor, lock_data
-from worker.settings import Settings, load_settings
+from worker.settings import InvalidSettings, Settings, load_settings
 from worker.store import LocalStore
 
 Say = Callable[[str], None]  # tells the person who gave the command
@@ -28,6 +30,7 @@ def serve(host: str, port: int, workers: int | None, data_dir: Path | None, say:
     count = default_workers() if workers is None else workers
     with ExitStack() as stack:
         listening = stack.enter_context(listen(host, port))
+        check_guarded(settings, listening.getsockname()[0])
         stack.enter_context(lock_data(settings.data_dir))
         LocalStore(settings.data_dir).check_writable()
         support: list[Program] = []
@@ -50,6 +53,26 @@ def work(redis_url: str | None, workers: int | None, data_dir: Path | None, say:
     count = default_workers() if workers is None else workers
     say(_announcement(settings, count, None, own_queue=False))
     Supervisor(worker_programs(settings, count)).run()
+
+
+def check_guarded(settings: Settings, address: str) -> None:
+    """Refuse to serve strangers by oversight.
+
+    Raises
+    ------
+    InvalidSettings
+        Where API keys are required, by the settings or because others can reach the address, and there are none.
+    """
+    has_keys = bool(key_ring(settings).all())
+    if has_keys or settings.auth == "off":
+        return
+    if settings.auth == "required":
+        raise InvalidSettings("CLEAVE_AUTH requires API keys and there are none: make one with `cleave key NAME`.")
+    if not ipaddress.ip_address(address).is_loopback:
+        raise InvalidSettings(
+            f"Others can reach {address}: make API keys with `cleave key NAME`, or set CLEAVE_AUTH=off where something "
+            "else keeps strangers out."
+        )
 
 
 def default_workers() -> int:

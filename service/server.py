@@ -6,6 +6,7 @@ import sys
 import uvicorn
 
 from service.app import create_app
+from service.impatience import ImpatientProtocol
 from worker.logs import configure_logging
 from worker.settings import load_settings
 
@@ -22,6 +23,7 @@ def main() -> None:
         log_level="debug" if settings.log_level == "debug" else "warning",
         access_log=settings.log_level == "debug",
         server_header=False,
+        http=ImpatientProtocol,
         timeout_graceful_shutdown=_DRAIN_S,
     )
     uvicorn.Server(config).run(sockets=[socket.socket(fileno=int(sys.argv[1]))])

@@ -24,7 +24,7 @@ from service.problems import documented
 from service.receiving import declared_length
 from service.upload import FORM_TYPE, parse_parameters, receive_mesh, requested_format
 from service.waiting import wait_for_end
-from service.webhook import check_target
+from service.webhook import objection_to
 
 router = APIRouter(prefix="/v1/jobs", tags=["jobs"])
 
@@ -154,8 +154,7 @@ async def create_job(
     # A queue that is down is said before the upload: nobody could run the job, and jobs that nobody runs would fill the
     # disk without a bound. Once the job is in the store it is accepted, and the janitor sees to the queue if need be.
     await run_in_threadpool(context.queue.connection.ping)
-    if webhook is not None:
-        check_target(webhook, context.settings.webhook_private_targets)
+    check_webhook(context, webhook)
     declared = requested_format(request, format)
     limits = await run_in_threadpool(check_limits, context, caller, 1, declared_length(request))
     with ExitStack() as uploads:
@@ -188,8 +187,16 @@ def read_preference(prefer: str | None, most_s: float) -> Preference:
     return Preference(0.0, "respond-async" if is_async else None)
 
 
+def check_webhook(context: Context, url: str | None) -> None:
+    objection = None if url is None else objection_to(url, context.settings.webhook_private_targets)
+    if objection:
+        raise InvalidParameters(objection)
+
+
 def _take_in(context: Context, caller: Caller, mesh: ReceivedMesh, wish: Wish) -> Taken:
     taken = take_in(context, caller, mesh, wish)
+    context.metrics.jobs.labels("accepted" if taken.is_new else "reused").inc()
+    context.metrics.upload_bytes.inc(mesh.upload.size_bytes)
     if context.settings.key_upload_bytes_per_hour is not None:
         context.quota.add(caller.owner, mesh.upload.size_bytes)
     return taken

@@ -10,7 +10,6 @@ from urllib.parse import urlsplit
 
 import httpx
 
-from segcore.errors import InvalidParameters
 from worker.jobs import Job, Outcome
 
 _TIMEOUT_S = 10.0
@@ -21,29 +20,19 @@ class Undeliverable(Exception):  # noqa: N818
     """The message did not get there; the text says why."""
 
 
-def check_target(url: str, private_targets: bool) -> None:
-    """Refuse what can be seen to be wrong with the URL of a webhook before anything is sent.
-
-    Raises
-    ------
-    InvalidParameters
-        Where it is no http or https URL, has a password in it, or names an address that is not public.
-    """
+def objection_to(url: str, private_targets: bool) -> str | None:
+    """What can be seen to be wrong with the URL of a webhook before anything is sent, in a sentence."""
     try:
         parts = urlsplit(url)
         host, _ = parts.hostname, parts.port
     except ValueError:
         host, parts = None, urlsplit("")
-    if (
-        parts.scheme not in ("http", "https")
-        or not host
-        or parts.username
-        or not url.isascii()
-        or not url.isprintable()
-    ):
-        raise InvalidParameters("webhook must be a URL such as https://example.com/hook, without a name or password.")
+    is_plain = url.isascii() and url.isprintable() and " " not in url and parts.username is None
+    if parts.scheme not in ("http", "https") or not host or not is_plain:
+        return "webhook must be a URL such as https://example.com/hook, without a name or password."
     if not private_targets and (host == "localhost" or not _may_be_public(host)):
-        raise InvalidParameters("webhook must lead to a public address.")
+        return "webhook must lead to a public address."
+    return None
 
 
 def webhook_body(job: Job, outcome: Outcome) -> bytes:

@@ -142,6 +142,17 @@ class JobQueue:
         keys = sorted(get_keys(self.entries))
         return self.connection.exists(*keys) if keys else 0
 
+    def length(self) -> int:
+        """The jobs that wait here."""
+        return int(self.connection.llen(self.entries.key))
+
+    def claim(self, what: str, name: str, lease_s: float) -> bool:
+        """Whether this process may do something that one of an installation may do at a time."""
+        return bool(self.connection.set(f"cleave:claim:{what}", name, nx=True, px=_milliseconds(lease_s)))
+
+    def give_back(self, what: str) -> None:
+        self.connection.delete(f"cleave:claim:{what}")
+
     def lead(self, name: str, lease_s: float) -> bool:
         """Whether this process may do what only one of an installation may do at a time; to be asked every time."""
         with self.connection.pipeline() as transaction:

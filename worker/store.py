@@ -4,6 +4,7 @@
     <data>/pending/<id>[.<owner>]  empty: the job has no outcome yet (an index of jobs/, made before and removed after)
     <data>/index/<owner>/          which jobs there are, by time
     <data>/computed/<owner>/       which job has computed what
+    <data>/outbox/<id>             its webhook is still to be told
     <data>/gone/<id>               the job was deleted; in it, whose it was
     <data>/jobs/<id>/job.json      the job is accepted
                     /mesh          the bytes that the client sent
@@ -29,6 +30,7 @@ from worker.computed import ComputedIndex
 from worker.durable import TEMPORARY_SUFFIX, create_file, replace_file, sync_folder
 from worker.index import JobIndex, entry_name, is_entry_name, job_id_of
 from worker.jobs import Attempt, Cause, Job, Outcome, Succeeded, is_job_id, new_job_id, now
+from worker.outbox import Letter, Outbox
 from worker.upload import MeshUpload
 
 _JOB = TypeAdapter(Job)
@@ -66,6 +68,7 @@ class LocalStore:
         self._gone = data_dir / "gone"
         self._index = JobIndex(data_dir / "index")
         self._computed = ComputedIndex(data_dir / "computed")
+        self._outbox = Outbox(data_dir)
         for folder in (self._jobs, self._pending, self._incoming, self._gone):
             folder.mkdir(mode=0o700, parents=True, exist_ok=True)
 
@@ -83,6 +86,8 @@ class LocalStore:
         upload.make_durable()
         create_file(upload.folder / "job.json", _JOB.dump_json(job))
         self._index.add(job)
+        if job.webhook_url is not None:
+            self._outbox.put(job.id, Letter())
         self._marker(job).touch()
         sync_folder(self._pending)
         try:
@@ -150,6 +155,10 @@ class LocalStore:
         """How many jobs have no outcome: of everybody, and of one owner; cheap, and now and then one too many."""
         markers = list(os.scandir(self._pending))
         return len(markers), sum(_owner(marker) == owner for marker in markers)
+
+    def oldest_s(self, at_s: float) -> float:
+        """The age of the oldest job without an outcome at a time in seconds since 1970; 0 where there is none."""
+        return max(0.0, at_s - min((_modified_at(marker) for marker in os.scandir(self._pending)), default=at_s))
 
     def begin_attempt(self, job_id: str, worker: str) -> Attempt:
         """Count one more run of a job, before it starts.

@@ -1,0 +1,64 @@
+"""The process that answers HTTP: its metrics, and its patience."""
+
+import socket
+from urllib.parse import urlsplit
+
+import httpx
+import pytest
+from asking import submit
+from servers import serving
+
+from service.impatience import ImpatientProtocol
+from worker.queue import JobQueue
+from worker.settings import Settings
+
+
+def samples(client: httpx.Client) -> dict[str, float]:
+    answer = client.get("/metrics")
+    assert answer.headers["Content-Type"].startswith("text/plain")
+    lines = [line for line in answer.text.splitlines() if not line.startswith("#")]
+    return {name: float(value) for name, _, value in (line.rpartition(" ") for line in lines)}
+
+
+def test_metrics_count_requests_by_route_and_tell_how_the_queue_is(client: httpx.Client, queue: JobQueue) -> None:
+    path = submit(client)
+    for _ in range(3):
+        client.get(path)
+    client.get("/nowhere")
+    found = samples(client)
+    assert found['cleave_requests_total{method="GET",route="/v1/jobs/{job_id}",status="200"}'] == 3
+    assert found['cleave_requests_total{method="any",route="none",status="404"}'] == 1
+    assert found['cleave_jobs_submitted_total{result="accepted"}'] == 1
+    assert found["cleave_unfinished_jobs"] == found["cleave_waiting_jobs"] == 1
+    assert found["cleave_oldest_unfinished_seconds"] > 0
+    queue.entries.pop_job_id()
+    assert samples(client)["cleave_waiting_jobs"] == 0
+
+
+def test_metrics_are_told_without_the_queue_too(client_without_queue: httpx.Client) -> None:
+    found = samples(client_without_queue)
+    assert found["cleave_queue_up"] == 0
+    assert "cleave_waiting_jobs" not in found
+
+
+@pytest.mark.parametrize(
+    "beginning", [b"", b"GET / HTTP/1.1\r\nHost: x\r\n", b"GET /healthz HTTP/1.1\r\nHost: x\r\n\r\nGET"]
+)
+def test_who_never_comes_to_the_point_is_not_listened_to(
+    settings: Settings, monkeypatch: pytest.MonkeyPatch, beginning: bytes
+) -> None:
+    monkeypatch.setattr(ImpatientProtocol, "head_s", 0.2)
+    with serving(settings) as client:
+        address = urlsplit(str(client.base_url))
+        with socket.create_connection((str(address.hostname), int(str(address.port))), timeout=10) as connection:
+            connection.sendall(beginning)
+            while connection.recv(4096):
+                pass
+
+
+def test_an_answer_that_takes_long_is_waited_for(settings: Settings, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(ImpatientProtocol, "head_s", 0.1)
+    with serving(settings) as client:
+        path = submit(client)
+        assert client.get(path, params={"wait": 0.5}).status_code == 200
+        assert client.get(path).status_code == 200

@@ -1,0 +1,182 @@
+"""Webhooks: signed so that the standard's own library believes them, tried again, and never sent inwards."""
+
+import socket
+import threading
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
+from http.server import BaseHTTPRequestHandler, HTTPServer
+from pathlib import Path
+from typing import Any
+
+import httpx
+import pytest
+from asking import problem
+from servers import serving
+from standardwebhooks import Webhook, WebhookVerificationError
+
+from service.courier import BACK_OFF_S, Courier
+from service.webhook import Undeliverable, objection_to, send
+from support import sphere
+from worker.installation_secret import InstallationSecret
+from worker.jobs import now
+from worker.outbox import Outbox
+from worker.queue import JobQueue
+from worker.settings import Settings
+from worker.store import LocalStore
+from worker.tasks import perform
+
+
+class Receiver:
+    """An HTTP server that keeps what it is sent and answers with given statuses, at last with 200."""
+
+    def __init__(self, *statuses: int) -> None:
+        self.received: list[tuple[dict[str, str], bytes]] = []
+        left = list(statuses)
+
+        class Handler(BaseHTTPRequestHandler):
+            def do_POST(handler) -> None:  # noqa: N805
+                body = handler.rfile.read(int(handler.headers["Content-Length"]))
+                self.received.append((dict(handler.headers.items()), body))
+                handler.send_response(left.pop(0) if left else 200)
+                handler.send_header("Location", "http://127.0.0.1:1/")
+                handler.end_headers()
+
+            def log_message(self, *_: Any) -> None:
+                pass
+
+        self.server = HTTPServer(("127.0.0.1", 0), Handler)
+        self.url = f"http://localhost:{self.server.server_port}/hook?a=b"
+
+
+@contextmanager
+def receiving(*statuses: int) -> Iterator[Receiver]:
+    receiver = Receiver(*statuses)
+    thread = threading.Thread(target=receiver.server.serve_forever)
+    thread.start()
+    try:
+        yield receiver
+    finally:
+        receiver.server.shutdown()
+        thread.join()
+        receiver.server.server_close()
+
+
+@pytest.fixture
+def inside(settings: Settings) -> Settings:
+    """Settings that let webhooks go to this machine."""
+    return settings.model_copy(update={"webhook_private_targets": True})
+
+
+@pytest.fixture
+def courier(store: LocalStore, queue: JobQueue, inside: Settings) -> Courier:
+    folder = inside.data_dir
+    return Courier(store, Outbox(folder), queue, InstallationSecret(folder), inside, "courier")
+
+
+@pytest.fixture
+def finished_with_webhook(inside: Settings, store: LocalStore) -> Callable[[str], tuple[str, str]]:
+    def submit(url: str) -> tuple[str, str]:
+        """The id of a finished job, and the secret of its webhooks."""
+        with serving(inside) as client:
+            answer = client.post("/v1/jobs", params={"webhook": url}, content=sphere(12))
+            assert answer.status_code == 202, answer.text
+            perform(store, inside, answer.json()["id"], lambda *_: None)
+            return answer.json()["id"], client.get("/v1/webhooks/secret").json()["secret"]
+
+    return submit
+
+
+def test_a_webhook_is_told_once_and_can_verify_who_told_it(
+    courier: Courier, finished_with_webhook: Callable[[str], tuple[str, str]]
+) -> None:
+    with receiving() as receiver:
+        job_id, secret = finished_with_webhook(receiver.url)
+        at_s = now().timestamp()
+        courier.round(at_s)
+        courier.round(at_s)
+    ((headers, body),) = receiver.received
+    message = Webhook(secret).verify(body, headers)
+    assert (message["type"], message["data"]["id"]) == ("job.succeeded", job_id)
+    assert headers["Host"] == receiver.url.split("/")[2]
+    with pytest.raises(WebhookVerificationError):
+        Webhook(secret).verify(body.replace(b"succeeded", b"failed"), headers)
+
+
+def test_a_webhook_that_fails_is_tried_again_later_and_later_with_the_same_id(
+    courier: Courier, finished_with_webhook: Callable[[str], tuple[str, str]]
+) -> None:
+    with receiving(500, 302) as receiver:
+        finished_with_webhook(receiver.url)
+        at_s = now().timestamp()
+        for due_s in (0.0, BACK_OFF_S[0], BACK_OFF_S[0] + BACK_OFF_S[1]):
+            courier.round(at_s + due_s)
+            courier.round(at_s + due_s + 1)
+    assert len(receiver.received) == 3
+    assert len({headers["webhook-id"] for headers, _ in receiver.received}) == 1
+    assert len({headers["webhook-timestamp"] for headers, _ in receiver.received}) == 3
+    assert courier.outbox.letters() == {}
+
+
+def test_a_webhook_that_always_fails_is_given_up(
+    courier: Courier, finished_with_webhook: Callable[[str], tuple[str, str]]
+) -> None:
+    job_id, _ = finished_with_webhook("http://127.0.0.1:1/nobody")
+    at_s = now().timestamp()
+    for pause_s in (0.0, *BACK_OFF_S):
+        assert job_id in courier.outbox.letters()
+        at_s += pause_s
+        courier.round(at_s)
+    assert courier.outbox.letters() == {}
+
+
+def test_nothing_is_told_before_the_end(courier: Courier, inside: Settings) -> None:
+    with receiving() as receiver, serving(inside) as client:
+        answer = client.post("/v1/jobs", params={"webhook": receiver.url}, content=b"abc")
+        courier.round(now().timestamp())
+        assert receiver.received == []
+        client.post(f"{answer.headers['Location']}/cancel")
+        courier.round(now().timestamp())
+    assert b"job.canceled" in receiver.received[0][1]
+
+
+@pytest.mark.parametrize(
+    "url",
+    [
+        "ftp://example.com/",
+        "example.com/hook",
+        "http://",
+        "http://user:secret@example.com/",
+        "http://127.0.0.1/",
+        "http://localhost/",
+        "http://[::1]/",
+        "http://[::ffff:127.0.0.1]/",
+        "http://169.254.169.254/latest/meta-data",
+        "http://10.1.2.3/",
+        "http://192.168.0.1:8080/",
+        "http://0.0.0.0/",
+        "http://224.0.0.1/",
+        "http://[fe80::1]/",
+        "http://example.com:99999/",
+        "http://exa mple.com/",
+        "http://example.com/\nHost: other",
+    ],
+)
+def test_a_webhook_that_can_be_seen_to_lead_inwards_is_refused(client: httpx.Client, url: str) -> None:
+    problem(client.post("/v1/jobs", params={"webhook": url}, content=b"abc"), 422, "invalid_parameters")
+    assert objection_to("https://example.com/hook?x=1", False) is None
+
+
+def test_a_name_that_leads_inwards_is_not_followed(monkeypatch: pytest.MonkeyPatch) -> None:
+    def resolve(*_: Any, **__: Any) -> list[Any]:
+        return [(socket.AF_INET, socket.SOCK_STREAM, 6, "", (address, 80)) for address in ("93.184.216.34", "10.0.0.1")]
+
+    monkeypatch.setattr(socket, "getaddrinfo", resolve)
+    with pytest.raises(Undeliverable, match="not public"):
+        send("http://harmless.example/", "msg_1", b"secret", b"{}", now(), private_targets=False)
+
+
+def test_what_is_sent_is_kept_until_it_has_arrived(tmp_path: Path, courier: Courier, inside: Settings) -> None:
+    """A courier that dies in the middle leaves the letter."""
+    with serving(inside) as client:
+        client.post("/v1/jobs", params={"webhook": "http://127.0.0.1:1/"}, content=b"abc")
+    assert len(Outbox(tmp_path / "data").letters()) == len(courier.outbox.letters()) == 1
