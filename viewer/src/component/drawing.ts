@@ -19,6 +19,7 @@ import {
   Vector4,
 } from "three";
 import { Appearance } from "./appearance";
+import { vertexConcavity } from "./concavity";
 import { borderLines, concaveLines, type SurfaceLines } from "./edges";
 import type { Model } from "./glb";
 import {
@@ -70,6 +71,8 @@ export class Drawing {
     this.#surfaceMaterial = this.#material(SURFACE_VERTEX, SURFACE_FRAGMENT, {
       unfold: { value: 1 },
       sky: { value: new Vector3() },
+      concaveInk: { value: new Vector4() },
+      isBentShown: { value: false },
     });
     this.#pickMaterial = this.#material(PICK_VERTEX, PICK_FRAGMENT, {});
     this.#surfaceMesh = new Mesh(this.#geometry, this.#surfaceMaterial);
@@ -95,6 +98,7 @@ export class Drawing {
   applyInks(inks: Inks): void {
     this.#inks = inks;
     (this.#surfaceMaterial.uniforms["sky"]!.value as Vector3).fromArray([...inks.sky]);
+    setInk(this.#surfaceMesh, "concaveInk", inks.concave);
     setInk(this.#wires, "ink", inks.wire);
     setInk(this.#borders, "ink", inks.line);
     setInk(this.#borders, "selectedInk", inks.selected);
@@ -129,7 +133,10 @@ export class Drawing {
   }
 
   set concavity(isShown: boolean) {
+    this.#surfaceMaterial.uniforms["isBentShown"]!.value = isShown;
     if (isShown && this.#concave === null) {
+      const bent = vertexConcavity(this.#model, this.#surface);
+      this.#geometry.setAttribute("concavity", new BufferAttribute(bent, 1, true));
       this.#concave = this.#lineMesh(concaveLines(this.#model, this.#surface));
       this.#add(this.#concave, 2);
     }

@@ -11,71 +11,72 @@ export interface SurfaceLines {
 }
 
 const LEAST_ANGLE = (15 * Math.PI) / 180; // less is the roundness of a mesh
-const FULL_ANGLE = (70 * Math.PI) / 180;
+const LEAST_COSINE = Math.cos(LEAST_ANGLE);
+const FULL_ANGLE = (60 * Math.PI) / 180;
 const MOST_LINES = 60_000;
+const FREE = -1; // states of a place in a table of corners
+const PAIRED = -2;
 
 /** The edges between two leaves, once from each side. */
 export function borderLines(model: Model, surface: Surface): SurfaceLines {
-  const { isShared } = surface;
-  const pairs = adjacentCorners(surface.welded, (i, j) => isShared[i] === 1 && isShared[j] === 1);
   const leafOf = leafLookup(model);
   const kept: [number, number, number][] = [];
-  for (const [a, b] of pairs) {
+  forAdjacentCorners(surface.welded, surface.isShared, (a, b) => {
     const own = leafOf(a);
     const other = leafOf(b);
     if (own !== other) kept.push([a, own, other], [b, other, own]);
-  }
+  });
   return lines(model, kept, () => 1);
 }
 
-/** The edges at which the surface is bent inwards, the sharpest ones where there are very many. */
+/** The edges at which the surface is sharply bent inwards, the sharpest ones where there are very many. */
 export function concaveLines(model: Model, surface: Surface): SurfaceLines {
+  const normals = faceNormals(model);
+  const found: { corner: number; angle: number }[] = [];
+  forAdjacentCorners(surface.welded, null, (a, b) => {
+    const angle = concaveAngle(model, normals, surface.orientation, a, b);
+    if (angle >= LEAST_ANGLE) found.push({ corner: a, angle });
+  });
+  found.sort((one, other) => other.angle - one.angle);
   const leafOf = leafLookup(model);
-  const kept: [number, number, number][] = [];
-  const angles: number[] = [];
-  for (const [a, b] of adjacentCorners(surface.welded, () => true)) {
-    const angle = concavity(model, a, b);
-    if (angle < LEAST_ANGLE) continue;
-    kept.push([a, leafOf(a), -1]);
-    angles.push(angle);
-  }
-  const order = kept.map((_, i) => i).sort((i, j) => angles[j]! - angles[i]!);
-  const chosen = order.slice(0, MOST_LINES);
-  const strength = (i: number) => Math.min(angles[chosen[i]!]! / FULL_ANGLE, 1);
+  const kept = found.slice(0, MOST_LINES);
   return lines(
     model,
-    chosen.map((i) => kept[i]!),
-    strength,
+    kept.map(({ corner }) => [corner, leafOf(corner), -1]),
+    (i) => Math.min(kept[i]!.angle / FULL_ANGLE, 1),
   );
 }
 
-/** Corner i begins the edge to the next corner of its face; the pairs are the edges of two faces. */
-function adjacentCorners(welded: Uint32Array, isWanted: (i: number, j: number) => boolean): [number, number][] {
-  const wanted: number[] = [];
-  for (let i = 0; i < welded.length; i++) if (isWanted(i, next(i))) wanted.push(i);
-  const size = 2 ** Math.ceil(Math.log2(2 * wanted.length + 1));
-  const table = new Int32Array(size).fill(-1);
-  const pairs: [number, number][] = [];
-  for (const i of wanted) {
-    const low = Math.min(welded[i]!, welded[next(i)]!);
-    const high = Math.max(welded[i]!, welded[next(i)]!);
-    let slot = (Math.imul(low, 0x9e3779b1) ^ Math.imul(high, 0x85ebca6b)) & (size - 1);
-    for (;;) {
+/**
+ * Visit the edges of two faces, as the corners of both at which they begin; corner i begins the edge to the next corner
+ * of its face. Where more faces meet, they are taken two by two.
+ */
+function forAdjacentCorners(
+  welded: Uint32Array,
+  isWanted: Uint8Array | null,
+  visit: (a: number, b: number) => void,
+): void {
+  let count = 0;
+  for (let i = 0; i < welded.length; i++) if (isWanted === null || (isWanted[i] && isWanted[next(i)])) count++;
+  const size = 2 ** Math.ceil(Math.log2(2 * count + 1));
+  const table = new Int32Array(size).fill(FREE);
+  for (let i = 0; i < welded.length; i++) {
+    if (isWanted !== null && !(isWanted[i] && isWanted[next(i)])) continue;
+    const from = welded[i]!;
+    const to = welded[next(i)]!;
+    let slot = (Math.imul(Math.min(from, to), 0x9e3779b1) ^ Math.imul(Math.max(from, to), 0x85ebca6b)) & (size - 1);
+    for (; table[slot] !== FREE; slot = (slot + 1) & (size - 1)) {
       const other = table[slot]!;
-      if (other < 0) {
-        table[slot] = i;
-        break;
-      }
+      if (other === PAIRED) continue;
       const a = welded[other]!;
       const b = welded[next(other)]!;
-      if (Math.min(a, b) === low && Math.max(a, b) === high) {
-        pairs.push([other, i]);
-        break;
-      }
-      slot = (slot + 1) & (size - 1);
+      if ((a !== to || b !== from) && (a !== from || b !== to)) continue;
+      visit(other, i);
+      table[slot] = PAIRED;
+      break;
     }
+    if (table[slot] === FREE) table[slot] = i;
   }
-  return pairs;
 }
 
 function next(corner: number): number {
@@ -83,28 +84,42 @@ function next(corner: number): number {
 }
 
 /** How far the faces of two corners of an edge are bent inwards, in radians; 0 where they are not. */
-function concavity(model: Model, a: number, b: number): number {
-  const first = normal(model, a);
-  const second = normal(model, b);
-  const length = Math.hypot(...first) * Math.hypot(...second);
-  if (length === 0) return 0;
-  const cosine = (first[0] * second[0] + first[1] * second[1] + first[2] * second[2]) / length;
-  const angle = Math.acos(Math.min(Math.max(cosine, -1), 1));
-  const { positions: p, index } = model;
+function concaveAngle(
+  { positions: p, index }: Model,
+  n: Float32Array,
+  orientation: number,
+  a: number,
+  b: number,
+): number {
+  const i = a - (a % 3);
+  const j = b - (b % 3);
+  const cosine = n[i]! * n[j]! + n[i + 1]! * n[j + 1]! + n[i + 2]! * n[j + 2]!;
+  if (!(cosine <= LEAST_COSINE)) return 0;
   const base = 3 * index[a]!;
   const tip = 3 * index[next(next(b))]!;
   const above =
-    first[0] * (p[tip]! - p[base]!) + first[1] * (p[tip + 1]! - p[base + 1]!) + first[2] * (p[tip + 2]! - p[base + 2]!);
-  return above > 0 ? angle : 0;
+    n[i]! * (p[tip]! - p[base]!) + n[i + 1]! * (p[tip + 1]! - p[base + 1]!) + n[i + 2]! * (p[tip + 2]! - p[base + 2]!);
+  return orientation * above > 0 ? Math.acos(Math.max(cosine, -1)) : 0;
 }
 
-function normal(model: Model, corner: number): [number, number, number] {
-  const { positions: p, index } = model;
-  const first = corner - (corner % 3);
-  const [a, b, c] = [3 * index[first]!, 3 * index[first + 1]!, 3 * index[first + 2]!];
-  const u = [p[b]! - p[a]!, p[b + 1]! - p[a + 1]!, p[b + 2]! - p[a + 2]!] as const;
-  const v = [p[c]! - p[a]!, p[c + 1]! - p[a + 1]!, p[c + 2]! - p[a + 2]!] as const;
-  return [u[1] * v[2] - u[2] * v[1], u[2] * v[0] - u[0] * v[2], u[0] * v[1] - u[1] * v[0]];
+/** (3 F) the unit normal of every face; that of a face without area is no number, so that no edge of it looks bent. */
+function faceNormals({ positions: p, index }: Model): Float32Array {
+  const normals = new Float32Array(index.length);
+  for (let i = 0; i < index.length; i += 3) {
+    const a = 3 * index[i]!;
+    const b = 3 * index[i + 1]!;
+    const c = 3 * index[i + 2]!;
+    const [ux, uy, uz] = [p[b]! - p[a]!, p[b + 1]! - p[a + 1]!, p[b + 2]! - p[a + 2]!];
+    const [vx, vy, vz] = [p[c]! - p[a]!, p[c + 1]! - p[a + 1]!, p[c + 2]! - p[a + 2]!];
+    const x = uy * vz - uz * vy;
+    const y = uz * vx - ux * vz;
+    const z = ux * vy - uy * vx;
+    const length = Math.sqrt(x * x + y * y + z * z);
+    normals[i] = x / length;
+    normals[i + 1] = y / length;
+    normals[i + 2] = z / length;
+  }
+  return normals;
 }
 
 function leafLookup(model: Model): (corner: number) => number {

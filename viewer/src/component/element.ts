@@ -57,7 +57,7 @@ export class CleaveViewer extends HTMLElement {
   /** Sent with the request for ``src``. */
   requestHeaders: Record<string, string> = {};
 
-  readonly #canvas = document.createElement("canvas");
+  #canvas = document.createElement("canvas");
   #stage: Stage | null = null;
   #resizing: ResizeObserver | null = null;
   #model: Model | null = null;
@@ -71,7 +71,7 @@ export class CleaveViewer extends HTMLElement {
   #firstView: View | null = null;
   #pressed: { x: number; y: number } | null = null;
   #hoverFrame = 0;
-  readonly #dark = matchMedia("(prefers-color-scheme: dark)");
+  readonly #dark: MediaQueryList = matchMedia("(prefers-color-scheme: dark)");
 
   constructor() {
     super();
@@ -79,14 +79,11 @@ export class CleaveViewer extends HTMLElement {
     const style = new CSSStyleSheet();
     style.replaceSync(STYLE);
     root.adoptedStyleSheets = [style];
-    this.#canvas.tabIndex = 0;
-    this.#canvas.setAttribute("role", "application");
-    this.#canvas.setAttribute("aria-roledescription", "3D view");
-    root.append(this.#canvas);
-    this.#listen();
   }
 
   connectedCallback(): void {
+    this.#canvas = this.#newCanvas(); // one whose graphics context was given back shows nothing any more
+    this.shadowRoot!.replaceChildren(this.#canvas);
     try {
       this.#stage = new Stage(this.#canvas, () => this.#emit("cleave-view", this.view));
     } catch {
@@ -342,8 +339,11 @@ export class CleaveViewer extends HTMLElement {
     return this.#names.get(id) ?? `Part ${this.#model!.tree.node(id).label + 1}`;
   }
 
-  #listen(): void {
-    const canvas = this.#canvas;
+  #newCanvas(): HTMLCanvasElement {
+    const canvas = document.createElement("canvas");
+    canvas.tabIndex = 0;
+    canvas.setAttribute("role", "application");
+    canvas.setAttribute("aria-roledescription", "3D view");
     canvas.addEventListener("pointermove", (event) => this.#hover(event));
     canvas.addEventListener("pointerleave", () => this.#setHovered(-1));
     canvas.addEventListener("pointerdown", (event) => (this.#pressed = { x: event.clientX, y: event.clientY }));
@@ -351,6 +351,7 @@ export class CleaveViewer extends HTMLElement {
     canvas.addEventListener("keydown", (event) => this.#key(event));
     canvas.addEventListener("webglcontextlost", (event) => event.preventDefault());
     canvas.addEventListener("webglcontextrestored", () => this.#look());
+    return canvas;
   }
 
   #hover(event: PointerEvent): void {

@@ -21,7 +21,9 @@ ${LEAF}
 export const SURFACE_VERTEX = /* glsl */ `${HEAD}
 in vec3 position;
 in vec4 normalAndLeaf;
+in float concavity;
 out vec3 seenFrom;
+out float bent;
 out vec3 smoothNormal;
 flat out vec3 base;
 flat out float emphasis;
@@ -31,6 +33,7 @@ void main() {
   vec4 moved = leafTexel(leaf, 1);
   vec4 seen = modelViewMatrix * vec4(position + moved.xyz, 1.0);
   seenFrom = seen.xyz;
+  bent = concavity;
   smoothNormal = normalMatrix * normalAndLeaf.xyz;
   base = color.rgb;
   emphasis = moved.w;
@@ -44,7 +47,10 @@ export const SURFACE_FRAGMENT = /* glsl */ `
 precision highp float;
 uniform float unfold;
 uniform vec3 sky;
+uniform vec4 concaveInk;
+uniform bool isBentShown;
 in vec3 seenFrom;
+in float bent;
 in vec3 smoothNormal;
 flat in vec3 base;
 flat in float emphasis;
@@ -66,6 +72,7 @@ void main() {
   float grey = dot(surface, vec3(0.2126, 0.7152, 0.0722));
   vec3 quiet = mix(vec3(grey), surface, 0.35) * 0.55 + 0.22 * toLinear(sky);
   surface = mix(surface, quiet, clamp(-emphasis, 0.0, 1.0));
+  if (isBentShown) surface = mix(mix(surface, toLinear(sky), 0.55), toLinear(concaveInk.rgb), 0.92 * smoothstep(0.0, 1.0, bent));
   vec3 light = vec3(0.36) + 0.24 * up + 0.50 * key + 0.12 * fill + 0.08 * facing;
   vec3 lit = surface * light + vec3(0.06) * gloss + 0.10 * pow(1.0 - facing, 3.0) * toLinear(sky);
   lit = mix(lit, lit * 1.12 + 0.05, clamp(emphasis, 0.0, 1.0));

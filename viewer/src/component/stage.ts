@@ -26,6 +26,9 @@ export const FIRST_VIEW: View = { azimuth: 0.55, polar: 1.18, distance: 3.5, tar
 const FIELD_OF_VIEW = 32; // degrees, of the shorter side
 const MOST_PIXELS = 2; // device pixels for one of the page; more cost much and show little
 const ENTRANCE_MS = 1100;
+const LATE_MS = 45; // of a frame after it was asked for
+const LEAST_SHARPNESS = 0.35;
+const REST_MS = 350;
 const KEY_STEP = Math.PI / 24;
 
 export class Stage {
@@ -39,6 +42,10 @@ export class Stage {
   readonly #numbers = new WebGLRenderTarget(1, 1);
   #drawing: Drawing | null = null;
   #frame = 0;
+  #askedAt = 0;
+  #late = 0;
+  #sharpness = 1;
+  #resting = 0;
   #entrance = 0;
   #numbersAreOld = true;
   #reach = 1;
@@ -121,7 +128,7 @@ export class Stage {
   resize(): void {
     const { clientWidth: width, clientHeight: height } = this.canvas;
     if (width === 0 || height === 0) return;
-    const ratio = Math.min(devicePixelRatio, MOST_PIXELS);
+    const ratio = Math.min(devicePixelRatio, MOST_PIXELS) * this.#sharpness;
     this.#renderer.setPixelRatio(ratio);
     this.#renderer.setSize(width, height, false);
     this.#camera.aspect = width / height;
@@ -138,7 +145,12 @@ export class Stage {
   /** Have a picture drawn soon. */
   changed(): void {
     this.#numbersAreOld = true;
-    if (this.#frame === 0) this.#frame = requestAnimationFrame(() => this.draw());
+    if (this.#frame !== 0) return;
+    this.#askedAt = performance.now();
+    this.#frame = requestAnimationFrame(() => {
+      this.#keepPace(performance.now() - this.#askedAt);
+      this.draw();
+    });
   }
 
   draw(): void {
@@ -184,6 +196,7 @@ export class Stage {
 
   dispose(): void {
     cancelAnimationFrame(this.#frame);
+    clearTimeout(this.#resting);
     this.#endEntrance();
     this.#controls.dispose();
     this.#numbers.dispose();
@@ -199,6 +212,22 @@ export class Stage {
       this.#renderer.setRenderTarget(null);
     });
     this.#numbersAreOld = false;
+  }
+
+  /** Frames that come late are drawn less sharply while things move, and sharply again once they rest. */
+  #keepPace(delay_ms: number): void {
+    this.#late = delay_ms > LATE_MS ? this.#late + 1 : 0;
+    if (this.#late > 1 && this.#sharpness > LEAST_SHARPNESS) {
+      this.#late = 0;
+      this.#sharpness = Math.max(this.#sharpness * 0.6, LEAST_SHARPNESS);
+      this.resize();
+    }
+    clearTimeout(this.#resting);
+    if (this.#sharpness < 1)
+      this.#resting = setTimeout(() => {
+        this.#sharpness = 1;
+        this.resize();
+      }, REST_MS);
   }
 
   #endEntrance(): void {

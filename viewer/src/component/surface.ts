@@ -11,12 +11,16 @@ export interface Surface {
   readonly index: Uint32Array;
   /** (3 F) the same corners as vertices of a surface without seams: equal where positions are. */
   readonly welded: Uint32Array;
+  /** (3 V) the unit normal at every vertex of ``welded``. */
+  readonly vertexNormals: Float32Array;
   /** (3 F) whether the corner's vertex is also one of another leaf. */
   readonly isShared: Uint8Array;
   /** (3 L) centre of area of every leaf. */
   readonly leafCentre: Float64Array;
   /** (L) */
   readonly leafArea: Float64Array;
+  /** -1 where the faces are turned inside out, else 1; ``vertexNormals`` are not turned. */
+  readonly orientation: number;
   readonly centre: readonly [number, number, number];
   readonly radius: number;
 }
@@ -27,7 +31,8 @@ export async function buildSurface(model: Model, breathe: () => Promise<void>): 
   const { positions, index } = model;
   const representative = weld(positions, index.length / 3);
   await breathe();
-  const { normals, leafCentre, leafArea } = faceSums(model, representative);
+  const { normals, leafCentre, leafArea, volume } = faceSums(model, representative);
+  normalize(normals);
   await breathe();
   const corners = splitByLeaf(model, representative);
   await breathe();
@@ -37,9 +42,11 @@ export async function buildSurface(model: Model, breathe: () => Promise<void>): 
     normalAndLeaf: encode(normals, corners.source, corners.leaf, representative),
     index: corners.index,
     welded: representative === null ? index : index.map((vertex) => representative[vertex]!),
+    vertexNormals: normals,
     isShared: corners.isShared,
     leafCentre,
     leafArea,
+    orientation: volume < 0 ? -1 : 1,
     centre,
     radius,
   };
@@ -93,6 +100,8 @@ function faceSums(model: Model, representative: Uint32Array | null) {
   const normals = new Float32Array(p.length);
   const leafCentre = new Float64Array(3 * leaves);
   const leafArea = new Float64Array(leaves);
+  const [ox, oy, oz] = [p[0] ?? 0, p[1] ?? 0, p[2] ?? 0];
+  let volume = 0; // six times that which the faces enclose, seen from the first vertex
   for (let leaf = 0; leaf < leaves; leaf++) {
     let total = 0;
     let cx = 0;
@@ -113,6 +122,7 @@ function faceSums(model: Model, representative: Uint32Array | null) {
       const nz = ux * vy - uy * vx;
       const doubled = Math.sqrt(nx * nx + ny * ny + nz * nz);
       total += doubled;
+      volume += nx * (p[a]! - ox) + ny * (p[a + 1]! - oy) + nz * (p[a + 2]! - oz);
       cx += doubled * (p[a]! + p[b]! + p[c]!);
       cy += doubled * (p[a + 1]! + p[b + 1]! + p[c + 1]!);
       cz += doubled * (p[a + 2]! + p[b + 2]! + p[c + 2]!);
@@ -128,7 +138,7 @@ function faceSums(model: Model, representative: Uint32Array | null) {
     leafCentre.set([cx * scale, cy * scale, cz * scale], 3 * leaf);
     leafArea[leaf] = total / 2;
   }
-  return { normals, leafCentre, leafArea };
+  return { normals, leafCentre, leafArea, volume };
 }
 
 /** A vertex for every pair of a leaf and a vertex of the file that it uses. */
@@ -185,16 +195,23 @@ function encode(
   const result = new Int16Array(4 * source.length);
   source.forEach((vertex, i) => {
     const v = 3 * (representative === null ? vertex : representative[vertex]!);
-    const x = normals[v]!;
-    const y = normals[v + 1]!;
-    const z = normals[v + 2]!;
-    const scale = UNIT / Math.max(Math.hypot(x, y, z), Number.MIN_VALUE);
-    result[4 * i] = x * scale;
-    result[4 * i + 1] = y * scale;
-    result[4 * i + 2] = z * scale;
+    result[4 * i] = UNIT * normals[v]!;
+    result[4 * i + 1] = UNIT * normals[v + 1]!;
+    result[4 * i + 2] = UNIT * normals[v + 2]!;
     result[4 * i + 3] = leaf[i]!;
   });
   return result;
+}
+
+/** Make vectors unit vectors; those of no length stay. */
+function normalize(vectors: Float32Array): void {
+  for (let i = 0; i < vectors.length; i += 3) {
+    const length = Math.sqrt(vectors[i]! ** 2 + vectors[i + 1]! ** 2 + vectors[i + 2]! ** 2);
+    const scale = length > 0 ? 1 / length : 0;
+    vectors[i]! *= scale;
+    vectors[i + 1]! *= scale;
+    vectors[i + 2]! *= scale;
+  }
 }
 
 function bounds(p: Float32Array, index: Uint32Array) {
