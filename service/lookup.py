@@ -2,7 +2,6 @@
 
 from collections.abc import Sequence
 
-from segcore.hierarchy import Hierarchy
 from segcore.io.result import Segmentation
 from service.access import Caller
 from service.context import Context
@@ -28,17 +27,6 @@ def known_job(context: Context, caller: Caller, job_id: str) -> Job:
     if context.store.was_deleted(job_id, caller.owner):
         raise Problem("job_deleted", "This job was deleted with its files: submit the mesh again.")
     raise UnknownJob(job_id)
-
-
-def level_of(hierarchy: Hierarchy, segments: int | None) -> int:
-    """The number of segments that is meant.
-
-    Raises
-    ------
-    InvalidParameters
-        Where the hierarchy has no such level.
-    """
-    return len(hierarchy.segment_nodes(segments))
 
 
 def describe(context: Context, job: Job) -> JobDocument:

@@ -17,8 +17,9 @@ from segcore.picture import draw
 from service.access import Caller, CallerOf
 from service.answers import Rendition, answer_rendition, rendition_responses
 from service.context import Context, ContextOf
-from service.lookup import known_job, level_of, result_of
-from service.result_routes import LEVEL_PROBLEMS, Segments
+from service.levels import Level, LevelOf
+from service.lookup import known_job, result_of
+from service.result_routes import LEVEL_PROBLEMS
 from service.routes import JobId
 
 router = APIRouter(prefix="/v1/jobs/{job_id}", tags=["models"])
@@ -41,7 +42,7 @@ def get_glb(
     request: Request,
     context: ContextOf,
     caller: CallerOf,
-    segments: Segments = None,
+    level: LevelOf,
     levels: Annotated[
         Literal["all"] | None,
         Query(description="Every level in one file: a node per node of the hierarchy, a material variant per level."),
@@ -52,23 +53,19 @@ def get_glb(
     def write(target: BinaryIO, result: Segmentation, count: int) -> None:
         write_glb(target, result.mesh, result.hierarchy, count, all_levels=levels == "all")
 
-    return _model(request, context, caller, job_id, "glb", segments, write, f"levels={levels or 'one'}")
+    return _model(request, context, caller, job_id, "glb", level, write, f"levels={levels or 'one'}")
 
 
 @router.get("/model.ply", response_class=Response, responses=_responses("ply"))
-def get_ply(
-    job_id: JobId, request: Request, context: ContextOf, caller: CallerOf, segments: Segments = None
-) -> Response:
+def get_ply(job_id: JobId, request: Request, context: ContextOf, caller: CallerOf, level: LevelOf) -> Response:
     """The mesh as binary PLY with a colour and a label for every face."""
-    return _model(request, context, caller, job_id, "ply", segments, _plain("ply"))
+    return _model(request, context, caller, job_id, "ply", level, _plain("ply"))
 
 
 @router.get("/model.obj", response_class=Response, responses=_responses("obj"))
-def get_obj(
-    job_id: JobId, request: Request, context: ContextOf, caller: CallerOf, segments: Segments = None
-) -> Response:
+def get_obj(job_id: JobId, request: Request, context: ContextOf, caller: CallerOf, level: LevelOf) -> Response:
     """The mesh as OBJ with a group for every segment."""
-    return _model(request, context, caller, job_id, "obj", segments, _plain("obj"))
+    return _model(request, context, caller, job_id, "obj", level, _plain("obj"))
 
 
 @router.get("/model.3mf", response_class=Response, responses=_responses("3mf"))
@@ -77,7 +74,7 @@ def get_3mf(
     request: Request,
     context: ContextOf,
     caller: CallerOf,
-    segments: Segments = None,
+    level: LevelOf,
     capped: Capped = False,
 ) -> Response:
     """The mesh as 3MF with an object for every segment."""
@@ -85,7 +82,7 @@ def get_3mf(
     def write(target: BinaryIO, result: Segmentation, count: int) -> None:
         write_3mf(target, result.mesh, result.hierarchy, count, capped=capped)
 
-    return _model(request, context, caller, job_id, "3mf", segments, write, f"capped={capped}")
+    return _model(request, context, caller, job_id, "3mf", level, write, f"capped={capped}")
 
 
 @router.get("/parts.zip", response_class=Response, responses=_responses("zip"))
@@ -94,7 +91,7 @@ def get_parts(
     request: Request,
     context: ContextOf,
     caller: CallerOf,
-    segments: Segments = None,
+    level: LevelOf,
     part_format: Annotated[Literal["stl", "obj"], Query(description="The format of the files in it.")] = "stl",
     capped: Capped = False,
 ) -> Response:
@@ -103,9 +100,7 @@ def get_parts(
     def write(target: BinaryIO, result: Segmentation, count: int) -> None:
         write_parts(target, result.mesh, result.hierarchy, count, part_format=part_format, capped=capped)
 
-    return _model(
-        request, context, caller, job_id, "zip", segments, write, f"part_format={part_format}&capped={capped}"
-    )
+    return _model(request, context, caller, job_id, "zip", level, write, f"part_format={part_format}&capped={capped}")
 
 
 @router.get(
@@ -118,19 +113,18 @@ def get_preview(
     request: Request,
     context: ContextOf,
     caller: CallerOf,
-    segments: Segments = None,
+    level: LevelOf,
     size: Annotated[int, Query(ge=16, le=1024, description="Width and height in pixels.")] = 256,
 ) -> Response:
     """A picture of the mesh in the colours of its segments, on a transparent ground."""
     job = known_job(context, caller, job_id)
-    result = result_of(context, job)
-    count = level_of(result.hierarchy, segments)
+    cut = level.of(result_of(context, job))
 
     def render() -> bytes:
-        pixels = draw(result.mesh, result.hierarchy.labels(count), size)
+        pixels = draw(cut.result.mesh, cut.result.hierarchy.labels(cut.segments), size)
         return _written(lambda target: write_png(target, pixels))
 
-    identity = f"{job.id}/preview.png?segments={count}&size={size}"
+    identity = f"{job.id}/preview.png?{cut.name}&size={size}"
     return answer_rendition(
         request,
         Rendition(
@@ -145,17 +139,16 @@ def _model(
     caller: Caller,
     job_id: str,
     name: str,
-    segments: int | None,
+    level: Level,
     write: Write,
     options: str = "",
 ) -> Response:
     job = known_job(context, caller, job_id)
-    result = result_of(context, job)
-    count = level_of(result.hierarchy, segments)
-    identity = f"{job.id}/{name}?segments={count}&{options}"
+    cut = level.of(result_of(context, job))
+    identity = f"{job.id}/{name}?{cut.name}&{options}"
 
     def render() -> bytes:
-        return _written(lambda target: write(target, result, count))
+        return _written(lambda target: write(target, cut.result, cut.segments))
 
     return answer_rendition(
         request,

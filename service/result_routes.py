@@ -5,22 +5,18 @@ from typing import Annotated, Any
 from fastapi import APIRouter, Header, Query, Request
 from starlette.responses import Response
 
-from segcore.io.labels import hierarchy_document
-from segcore.io.result import Segmentation
 from service.access import CallerOf
 from service.answers import Rendition, answer_rendition, rendition_responses
 from service.context import ContextOf
 from service.documents import HierarchyDocument, LabelsDocument, RunsDocument
 from service.labels import LABELS, LabelsFormat, compact_json, negotiate
-from service.lookup import known_job, level_of, result_of
+from service.levels import LevelOf
+from service.lookup import known_job, result_of
 from service.problems import documented
+from service.result_documents import hierarchy_of
 from service.routes import JobId
 
 router = APIRouter(prefix="/v1/jobs/{job_id}", tags=["results"])
-
-Segments = Annotated[
-    int | None, Query(ge=1, description="The number of segments, 1 to max_segments; by default automatic_segments.")
-]
 
 RESULT_PROBLEMS = documented(
     "unauthorized",
@@ -52,7 +48,7 @@ def get_labels(
     request: Request,
     context: ContextOf,
     caller: CallerOf,
-    segments: Segments = None,
+    level: LevelOf,
     format: Annotated[  # noqa: A002
         LabelsFormat | None, Query(description="The form of the labels; by default the Accept header chooses.")
     ] = None,
@@ -60,16 +56,15 @@ def get_labels(
 ) -> Response:
     """The segment of every face, in the order of the file, at any number of segments."""
     job = known_job(context, caller, job_id)
-    hierarchy = result_of(context, job).hierarchy
-    count = level_of(hierarchy, segments)
+    cut = level.of(result_of(context, job))
     chosen = format or negotiate(accept)
     form = LABELS[chosen]
     return answer_rendition(
         request,
         Rendition(
-            identity=f"{job.id}/labels?segments={count}&format={chosen}",
+            identity=f"{job.id}/labels?{cut.name}&format={chosen}",
             media_type=form.media_type,
-            render=lambda: form.render(hierarchy, count),
+            render=lambda: form.render(cut.result.hierarchy, cut.segments),
             file_name=None if chosen in ("json", "runs", "seg") else f"{job.id}{form.extension}",
             vary=None if format else "Accept",
         ),
@@ -91,16 +86,6 @@ def get_hierarchy(job_id: JobId, request: Request, context: ContextOf, caller: C
         Rendition(
             identity=f"{job.id}/hierarchy",
             media_type="application/json",
-            render=lambda: compact_json(_hierarchy(result)),
+            render=lambda: compact_json(hierarchy_of(result)),
         ),
     )
-
-
-def _hierarchy(result: Segmentation) -> dict[str, Any]:
-    document = hierarchy_document(result.hierarchy)
-    nodes = result.hierarchy.split_node.tolist()
-    curve = [
-        {"segments": split + 2, "cut_value": value, "node": node}
-        for split, (value, node) in enumerate(zip(document["cut_values"], nodes, strict=True))
-    ]
-    return document | {"curve": curve}

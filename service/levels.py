@@ -1,0 +1,68 @@
+"""Which cut through the tree a result is asked for: a number of segments, or splits chosen by hand."""
+
+from dataclasses import dataclass, replace
+from typing import Annotated
+
+from fastapi import Depends, Query
+
+from segcore.errors import InvalidParameters
+from segcore.io.result import Segmentation
+from segcore.recut import keep_splits
+
+_MOST_SPLITS = 10_000  # of any hierarchy
+
+
+@dataclass(frozen=True, slots=True)
+class ChosenCut:
+    """A result at one cut."""
+
+    result: Segmentation
+    segments: int
+    name: str  # the same for the same cut of the same job, as a part of an address
+
+
+@dataclass(frozen=True, slots=True)
+class Level:
+    """What a request says; at most one of the two."""
+
+    segments: int | None
+    splits: str | None
+
+    def of(self, result: Segmentation) -> ChosenCut:
+        """The cut that is meant.
+
+        Raises
+        ------
+        InvalidParameters
+            Where the hierarchy has no such cut.
+        """
+        if self.splits is None:
+            count = len(result.hierarchy.segment_nodes(self.segments))
+            return ChosenCut(result, count, f"segments={count}")
+        if self.segments is not None:
+            raise InvalidParameters("Give either segments or splits, not both.")
+        chosen = sorted({int(split) for split in self.splits.split(",") if split})
+        hierarchy = keep_splits(result.hierarchy, chosen)
+        name = ",".join(map(str, chosen))
+        return ChosenCut(replace(result, hierarchy=hierarchy), len(chosen) + 1, f"splits={name}")
+
+
+async def _level(
+    segments: Annotated[
+        int | None, Query(ge=1, description="The number of segments, 1 to max_segments; by default automatic_segments.")
+    ] = None,
+    splits: Annotated[
+        str | None,
+        Query(
+            pattern=r"^([0-9]{1,5}(,[0-9]{1,5})*)?$",
+            max_length=6 * _MOST_SPLITS,
+            description="In place of segments: the splits that are made, with commas between them. Split s makes the "
+            "nodes 2 s + 1 and 2 s + 2 of the hierarchy.",
+            examples=["0,1,4"],
+        ),
+    ] = None,
+) -> Level:
+    return Level(segments, splits)
+
+
+LevelOf = Annotated[Level, Depends(_level)]

@@ -1,0 +1,67 @@
+"""Results at a cut made by hand: the splits are named in place of a number of segments."""
+
+from collections.abc import Callable
+
+import httpx
+import numpy as np
+import pytest
+from asking import problem
+
+from segcore.io.result import read_result
+from worker.store import LocalStore
+
+FORMS = ("labels", "model.glb", "model.ply", "model.obj", "model.3mf", "parts.zip", "preview.png")
+
+
+@pytest.fixture
+def job(finished_job: Callable[..., str]) -> str:
+    return finished_job()
+
+
+def test_the_first_splits_give_the_level(client: httpx.Client, job: str) -> None:
+    for segments in (1, 2, 5):
+        splits = ",".join(map(str, range(segments - 1)))
+        by_hand = client.get(f"{job}/labels", params={"splits": splits})
+        assert by_hand.json() == client.get(f"{job}/labels", params={"segments": segments}).json()
+
+
+def test_a_cut_that_is_no_level_parts_faces_where_its_splits_do(
+    client: httpx.Client, job: str, store: LocalStore
+) -> None:
+    with store.open_result(job.rpartition("/")[2]) as file:
+        hierarchy = read_result(file).hierarchy
+    last = next(s for s in range(2, hierarchy.max_segments - 1) if hierarchy.split_node[s] in (1, 2))
+    document = client.get(f"{job}/labels", params={"splits": f"{last},0"}).json()
+    assert document["segments"] == 3
+    cut_node = int(hierarchy.split_node[last])
+    below = hierarchy.labels(last + 2)
+    above = hierarchy.labels(2)
+    inside = above == int(hierarchy.label[cut_node])
+    labels = np.array(document["labels"])
+    assert len(set(labels[inside])) == 2
+    assert len(set(labels[~inside])) == 1
+    own = int(hierarchy.label[2 * last + 2])
+    assert len(set(labels[inside & (below == own)])) == 1
+    assert not set(labels[inside & (below == own)]) & set(labels[inside & (below != own)])
+
+
+@pytest.mark.parametrize("form", FORMS)
+def test_every_form_of_the_result_takes_splits(client: httpx.Client, job: str, form: str) -> None:
+    answer = client.get(f"{job}/{form}", params={"splits": "0"})
+    assert answer.status_code == 200
+    assert answer.content
+    assert answer.headers["ETag"] != client.get(f"{job}/{form}", params={"splits": ""}).headers["ETag"]
+
+
+@pytest.mark.parametrize("splits", ["1", "0,9999", "99999"])
+def test_splits_that_cannot_be_made_are_refused(client: httpx.Client, job: str, splits: str) -> None:
+    problem(client.get(f"{job}/labels", params={"splits": splits}), 422, "invalid_parameters")
+
+
+def test_a_number_and_splits_together_are_refused(client: httpx.Client, job: str) -> None:
+    answer = client.get(f"{job}/labels", params={"splits": "0", "segments": 2})
+    problem(answer, 422, "invalid_parameters")
+
+
+def test_text_that_names_no_splits_is_refused(client: httpx.Client, job: str) -> None:
+    problem(client.get(f"{job}/labels", params={"splits": "0;1"}), 422, "invalid_request")
