@@ -11,6 +11,15 @@ LongArray: TypeAlias = NDArray[np.int64]
 BoolArray: TypeAlias = NDArray[np.bool_]
 
 
+_VANISHES = 1e-100  # squares of anything smaller leave the range of floating point numbers
+
+
+def at_least(values: FloatArray, share: float) -> FloatArray:
+    """Values raised to a share of their mean; all 1 where they vanish."""
+    mean = float(values.mean()) if len(values) else 0.0
+    return np.maximum(values, share * mean) if mean > _VANISHES else np.ones_like(values)
+
+
 def group_sums(group: NDArray[np.integer], values: FloatArray, count: int = 0) -> FloatArray:
     """(max(count, groups),): the sum of the values of each group 0, 1, ...; zero for empty groups."""
     sums: FloatArray = np.bincount(group, values, minlength=count).astype(np.float64, copy=False)

@@ -4,10 +4,10 @@ from dataclasses import replace
 
 import numpy as np
 
-from segcore.affinity import edge_lengths
 from segcore.arrays import IntArray, group_sums
 from segcore.clusters import Clusters
 from segcore.components import largest, nearest_hosts
+from segcore.edge_geometry import edge_lengths
 from segcore.graph import SurfaceGraph, connected_components
 from segcore.mesh_graph import MeshGraph
 from segcore.proximity import POINTS, Links, find_contacts, spread_points
@@ -30,14 +30,14 @@ def assemble(surface: Surface, nodes: MeshGraph, clusters: Clusters, most: int) 
         return clusters, Links.none()
     of_face = clusters.of_node[nodes.corners[:, 0]]
     links = link_components(surface, component[of_face], most)
-    weight = CONTACT * _border_per_length(surface, nodes) * links.length
-    return replace(clusters, graph=clusters.graph.with_edges(of_face[links.faces], weight)), links
+    border = _border_per_length(surface, nodes) * links.length
+    return replace(clusters, graph=clusters.graph.with_edges(of_face[links.faces], CONTACT * border, border)), links
 
 
 def _border_per_length(surface: Surface, nodes: MeshGraph) -> float:
     """How much border, in the unit of a graph, an edge of length 1 is: 1 on faces, the number of edges on vertices."""
     length = float(edge_lengths(surface).sum())
-    return float((nodes.graph.weight / nodes.affinity).sum()) / length if length > 0.0 else 1.0
+    return float(nodes.graph.length.sum()) / length if length > 0.0 else 1.0
 
 
 def link_components(surface: Surface, component: IntArray, most: int) -> Links:

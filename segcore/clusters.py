@@ -1,6 +1,6 @@
 """The coarse graph that is cut in place of the mesh."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -32,17 +32,14 @@ def cluster_nodes(mesh_graph: MeshGraph, target: int, rng: np.random.Generator) 
     component = connected_components(graph)
     is_host = largest(component, graph.volume, MOST_COMPONENTS)
     if is_host.all():
-        coarse, of_node = coarsen(graph, mesh_graph.affinity, target or graph.node_count, rng)
+        coarse, of_node = coarsen(graph, target or graph.node_count, rng)
     else:
         host_nodes = np.flatnonzero(is_host[component]).astype(np.int32)
-        kept = is_host[component[graph.edges[:, 0]]]  # an edge has both ends in one component
-        coarse, of_host = coarsen(
-            graph.subgraph(host_nodes), mesh_graph.affinity[kept], target or graph.node_count, rng
-        )
+        coarse, of_host = coarsen(graph.subgraph(host_nodes), target or graph.node_count, rng)
         of_node = _with_followers(of_host, host_nodes, component, nearest_hosts(component, is_host, points))
     volume = group_sums(of_node, graph.volume)
     centres = np.stack([group_sums(of_node, graph.volume * points[:, axis]) / volume for axis in range(3)], axis=1)
-    return Clusters(SurfaceGraph(coarse.edges, coarse.weight, volume), of_node, centres)
+    return Clusters(replace(coarse, volume=volume), of_node, centres)
 
 
 def _with_followers(of_host: IntArray, host_nodes: IntArray, component: IntArray, pairs: IntArray) -> IntArray:

@@ -15,31 +15,36 @@ _RELAXATION = 0.6  # factor on the guard whenever a level removes too few cluste
 _STALLED = 0.10  # share of clusters removed below which the guard is relaxed
 _LEAST_GUARD = 0.02
 _GIVEN_UP = 0.03  # share of clusters removed below which coarsening ends once the guard is at its least
-_LARGEST_SHARE = 10.0  # largest cluster, in mean cluster volumes of the target
+LARGEST_SHARE = 10.0  # largest cluster, in mean cluster volumes of the target
 _NOISE = 0.3  # standard deviation of the logarithm of the random factor in the order of visits
 
 
 def coarsen(
-    graph: SurfaceGraph, affinity: FloatArray, target: int, rng: np.random.Generator
+    graph: SurfaceGraph,
+    target: int,
+    rng: np.random.Generator,
+    *,
+    largest_share: float = LARGEST_SHARE,
 ) -> tuple[SurfaceGraph, IntArray]:
     """Merge the nodes of a graph into about ``target`` connected clusters.
 
     Parameters
     ----------
-    affinity : (E,) the affinity g of every edge; weight / g is the length of the border that it stands for.
     target : number of clusters at which to stop; a graph that has no more nodes is returned as it is.
+    largest_share : volume of the largest cluster, in mean volumes of the target.
     rng : breaks up the regular patterns that visiting nodes in the order of their volumes leaves on regular meshes.
 
     Returns
     -------
-    The graph of the clusters (weights summed over parallel edges, volumes summed), and (N,) the cluster of every node.
+    The graph of the clusters (weights and lengths summed over parallel edges, volumes summed), and (N,) the cluster of
+    every node.
     """
     cluster = np.arange(graph.node_count, dtype=np.int32)
     rows = graph.rows()
-    start, neighbour, weight = rows.start, rows.neighbour, graph.weight[rows.edge]
-    border = weight / affinity[rows.edge]
+    start, neighbour = rows.start, rows.neighbour
+    weight, border = graph.weight[rows.edge], graph.length[rows.edge]
     volume = graph.volume
-    largest = _LARGEST_SHARE * float(volume.sum()) / target
+    largest = largest_share * float(volume.sum()) / target
     guard = _GUARD
     while len(volume) > target:
         order = np.argsort(volume * rng.lognormal(sigma=_NOISE, size=len(volume)), kind="stable")
@@ -57,7 +62,7 @@ def coarsen(
     row = np.repeat(np.arange(len(volume), dtype=np.int32), np.diff(start))
     once = row < neighbour
     edges = np.stack([row[once], neighbour[once]], axis=1)
-    return SurfaceGraph(edges=edges, weight=weight[once], volume=volume), cluster
+    return SurfaceGraph(edges, weight[once], volume, border[once]), cluster
 
 
 @njit(cache=True)

@@ -1,6 +1,6 @@
 """A weighted graph whose nodes have volumes: what every cut is made on."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from typing import Any, TypeAlias
 
 import numpy as np
@@ -30,8 +30,13 @@ class SurfaceGraph:
     """
 
     edges: IntArray  # (E, 2) node pairs, edges[:, 0] < edges[:, 1]
-    weight: FloatArray  # (E,) affinity, > 0
+    weight: FloatArray  # (E,) length times affinity, > 0
     volume: FloatArray  # (N,) node volume, > 0
+    length: FloatArray = field(default=None)  # type: ignore[arg-type]  # (E,) of the border of an edge
+
+    def __post_init__(self) -> None:
+        if self.length is None:  # affinity 1 everywhere
+            object.__setattr__(self, "length", self.weight)
 
     @property
     def node_count(self) -> int:
@@ -63,10 +68,10 @@ class SurfaceGraph:
         nodes : (M,) distinct indices; node i of the result is node nodes[i] of this graph.
         """
         edges, kept = _induced_edges(self.edges, nodes, self.node_count)
-        return SurfaceGraph(edges, self.weight[kept], self.volume[nodes])
+        return SurfaceGraph(edges, self.weight[kept], self.volume[nodes], self.length[kept])
 
-    def with_edges(self, pairs: IntArray, weight: FloatArray) -> "SurfaceGraph":
-        """More edges (M, 2) with their weights (M,), between nodes that no edge joins yet; parallel ones are summed."""
+    def with_edges(self, pairs: IntArray, weight: FloatArray, length: FloatArray) -> "SurfaceGraph":
+        """More edges (M, 2), weights and lengths (M,), between nodes not joined yet; parallel ones are summed."""
         key = pairs.min(axis=1).astype(np.int64) * self.node_count + pairs.max(axis=1)
         different, which = np.unique(key, return_inverse=True)
         added = np.stack([different // self.node_count, different % self.node_count], axis=1).astype(np.int32)
@@ -74,6 +79,7 @@ class SurfaceGraph:
             np.concatenate([self.edges, added]),
             np.concatenate([self.weight, group_sums(which, weight, len(different))]),
             self.volume,
+            np.concatenate([self.length, group_sums(which, length, len(different))]),
         )
 
 

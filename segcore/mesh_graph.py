@@ -4,8 +4,9 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from segcore.affinity import FACE_AFFINITIES, VERTEX_AFFINITIES, edge_lengths
-from segcore.arrays import FloatArray, IntArray
+from segcore.affinity import FACE_AFFINITIES, VERTEX_AFFINITIES
+from segcore.arrays import FloatArray, IntArray, at_least
+from segcore.edge_geometry import edge_lengths
 from segcore.graph import SurfaceGraph, connected_components
 from segcore.parameters import SegmentationParameters
 from segcore.surface import Surface
@@ -20,7 +21,6 @@ class MeshGraph:
     """A graph of the faces or vertices of a surface."""
 
     graph: SurfaceGraph
-    affinity: FloatArray  # (E,) g in (0, 1]; weight / g is the length of the border that an edge stands for
     points: FloatArray  # (N, 3) where the nodes are
     corners: IntArray  # (F, C) the nodes of every face: itself, or its three vertices
 
@@ -37,10 +37,10 @@ def face_dual_graph(surface: Surface, parameters: SegmentationParameters) -> Mes
     ones do not vanish from the sums.
     """
     affinity = FACE_AFFINITIES[parameters.affinity](surface, parameters)
-    weight = _at_least(edge_lengths(surface), _SHORTEST_EDGE) * affinity
-    graph = SurfaceGraph(surface.edge_faces, weight, _at_least(surface.areas, _SMALLEST_FACE))
+    length = at_least(edge_lengths(surface), _SHORTEST_EDGE)
+    graph = SurfaceGraph(surface.edge_faces, length * affinity, at_least(surface.areas, _SMALLEST_FACE), length)
     centroids = surface.vertices[surface.faces].mean(axis=1)
-    return MeshGraph(graph, affinity, centroids, np.arange(len(surface.faces), dtype=np.int32)[:, None])
+    return MeshGraph(graph, centroids, np.arange(len(surface.faces), dtype=np.int32)[:, None])
 
 
 def vertex_graph(surface: Surface, parameters: SegmentationParameters) -> MeshGraph:
@@ -51,17 +51,11 @@ def vertex_graph(surface: Surface, parameters: SegmentationParameters) -> MeshGr
     corners, vertex = _vertices_of_components(surface)
     edges = mesh_edges(corners)
     affinity = VERTEX_AFFINITIES[parameters.affinity](surface, vertex[edges], parameters)
-    graph = SurfaceGraph(edges, affinity, np.ones(len(vertex)))
-    return MeshGraph(SurfaceGraph(edges, affinity, graph.degrees()), affinity, surface.vertices[vertex], corners)
+    degrees = SurfaceGraph(edges, affinity, np.ones(len(vertex))).degrees()
+    return MeshGraph(SurfaceGraph(edges, affinity, degrees, np.ones(len(edges))), surface.vertices[vertex], corners)
 
 
 _GRAPHS = {"faces": face_dual_graph, "vertices": vertex_graph}
-
-
-def _at_least(values: FloatArray, share: float) -> FloatArray:
-    """Values raised to a share of their mean; all 1 where they vanish."""
-    mean = float(values.mean()) if len(values) else 0.0
-    return np.maximum(values, share * mean) if mean > np.finfo(float).tiny else np.ones_like(values)
 
 
 def _vertices_of_components(surface: Surface) -> tuple[IntArray, IntArray]:

@@ -8,7 +8,7 @@ from typing import Any, Literal, TypeAlias, get_args, get_origin, get_type_hints
 from segcore.errors import InvalidParameters
 
 Graph: TypeAlias = Literal["faces", "vertices"]
-Affinity: TypeAlias = Literal["concavity", "minima_rule", "adjacency"]
+Affinity: TypeAlias = Literal["learned", "concavity", "minima_rule", "adjacency"]
 Thinning: TypeAlias = Literal["walk", "revisit", "none"]
 Solver: TypeAlias = Literal["flow", "fiedler", "inverse_power", "split_bregman", "p_laplacian"]
 Order: TypeAlias = Literal["ncut", "ncc", "volume"]
@@ -31,7 +31,8 @@ class SegmentationParameters:
 
     graph: Graph = field(default="faces", metadata=_about("The nodes of the graph that is cut."))
     affinity: Affinity = field(
-        default="concavity", metadata=_about("The weights of its edges; concavity needs the graph of the faces.")
+        default="concavity",
+        metadata=_about("The weights of its edges; learned, concavity: on faces only."),
     )
     thinning: Thinning = field(
         default="none", metadata=_about("How concave regions are thinned, for affinity minima_rule.")
@@ -74,8 +75,8 @@ class SegmentationParameters:
     def __post_init__(self) -> None:
         for name, schema in _schemas().items():
             _check(name, getattr(self, name), schema)
-        if self.graph == "vertices" and self.affinity == "concavity":
-            raise InvalidParameters("affinity 'concavity' needs the graph of the faces: choose graph 'faces'.")
+        if self.graph == "vertices" and self.affinity in ("learned", "concavity"):
+            raise InvalidParameters(f"affinity {self.affinity!r} needs the graph of the faces: choose graph 'faces'.")
 
     @classmethod
     def preset(cls, name: str) -> "SegmentationParameters":

@@ -14,7 +14,7 @@ from segcore.parameters import SegmentationParameters
 from segcore.solvers import SOLVERS
 
 # The normalized cut times sqrt(total area) from which people no longer cut, on the odd-numbered benchmark models.
-AUTOMATIC_NCUT = 1.485
+AUTOMATIC_NCUT = 1.47
 _SMALLEST_SIDE = 0.002  # share of the total area below which a part is cut off only after everything else
 
 

@@ -1,0 +1,1 @@
+"""What ``python -m bench train`` learns from the people of the benchmark."""

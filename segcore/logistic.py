@@ -1,0 +1,57 @@
+"""Logistic regression on standardised features with their squares and hinges: small, smooth, quick to evaluate."""
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+from segcore.arrays import FloatArray
+
+_CLIP = 4.0  # standard deviations: nothing is extrapolated further than that
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class LogisticModel:
+    """p = 1 / (1 + exp(-(bias + w . basis((x - mean) / scale))))."""
+
+    names: tuple[str, ...]  # of the M features
+    mean: FloatArray  # (M,)
+    scale: FloatArray  # (M,) > 0
+    weight: FloatArray  # (4 M,) of the functions in ``basis``
+    bias: float
+
+    @classmethod
+    def from_document(cls, document: Mapping[str, Any]) -> "LogisticModel":
+        """The inverse of ``document``."""
+        names = tuple(document["features"])
+        mean, scale, weight = (np.array(document[key], dtype=np.float64) for key in ("mean", "scale", "weight"))
+        return cls(names, mean, scale, weight, float(document["bias"]))
+
+    def document(self) -> dict[str, Any]:
+        """The model as plain values for JSON."""
+        return {
+            "features": list(self.names),
+            "mean": self.mean.tolist(),
+            "scale": self.scale.tolist(),
+            "weight": self.weight.tolist(),
+            "bias": self.bias,
+        }
+
+    def probability(self, features: FloatArray) -> FloatArray:
+        """(N,) in (0, 1) for features (N, M)."""
+        score = np.einsum("ij,j->i", basis((features - self.mean) / self.scale), self.weight) + self.bias
+        chance: FloatArray = 1.0 / (1.0 + np.exp(-score))
+        return chance
+
+
+def basis(standardised: FloatArray) -> FloatArray:
+    """(N, 4 M): z, z^2 and the hinges beyond one standard deviation on either side, z clipped at +-4."""
+    z = np.clip(standardised, -_CLIP, _CLIP)
+    return np.concatenate([z, z * z, np.maximum(z - 1.0, 0.0), np.maximum(-z - 1.0, 0.0)], axis=1)
+
+
+def signed_log(x: FloatArray) -> FloatArray:
+    """sign(x) log(1 + |x|): linear near 0, slow in the tails."""
+    squeezed: FloatArray = np.sign(x) * np.log1p(np.abs(x))
+    return squeezed
