@@ -21,6 +21,7 @@ from segcore.surface import Surface
 
 BAND = 0.03  # of sqrt(total area), to either side of a boundary
 STIFFNESS = 0.1  # added to the affinity in the cost of a boundary: makes it shorter where concavities say little
+_MOST_FACES = 16384  # in one band: of very fine meshes it is narrower, because flows take longer on wide ones
 _ATTEMPTS = 3  # at a cut that leaves all parts of the hierarchy in one piece
 
 
@@ -86,6 +87,9 @@ class _Drawing:
         faces, distance = grow_band(
             edges, self._graph.edges, self._place, bounds, self._rows, *self._geometry, self._width, self._local
         )
+        if len(faces) > _MOST_FACES:
+            near = distance < np.partition(distance, _MOST_FACES)[_MOST_FACES]
+            faces, distance = faces[near], distance[near]
         pinned = np.zeros(len(self._size), dtype=bool)
         for _ in range(_ATTEMPTS):
             free = free_faces(faces, distance, self._place, self._size, pinned)

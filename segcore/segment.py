@@ -1,7 +1,7 @@
 """The whole method on one screen."""
 
-from collections.abc import Callable
 from dataclasses import replace
+from functools import partial
 
 import numpy as np
 
@@ -13,16 +13,15 @@ from segcore.hierarchy import Hierarchy
 from segcore.mesh import Mesh
 from segcore.mesh_graph import MeshGraph, mesh_graph
 from segcore.parameters import SegmentationParameters
+from segcore.progress import OnProgress, Progress
 from segcore.projection import project
 from segcore.proximity import Links
 from segcore.recursion import Tree, bisect
 from segcore.surface import Surface, build_surface
 
-Progress = Callable[[str, float], None]
-
 
 def segment(
-    mesh: Mesh, parameters: SegmentationParameters | None = None, on_progress: Progress = lambda *_: None
+    mesh: Mesh, parameters: SegmentationParameters | None = None, on_progress: OnProgress = lambda *_: None
 ) -> Hierarchy:
     """Cut a mesh into a hierarchy of parts.
 
@@ -31,7 +30,8 @@ def segment(
     mesh : any triangle mesh; open borders, non-manifold edges, duplicate and degenerate faces and several components
         are segmented too.
     parameters : choices of the method, by default ``SegmentationParameters()``.
-    on_progress : called with the name of a stage and the fraction of the whole work that is done, 0 to 1.
+    on_progress : called with the name of a stage and the fraction of the whole work that is done, 0 to 1; what it
+        raises ends the work and is passed on.
 
     Returns
     -------
@@ -40,19 +40,20 @@ def segment(
     """
     chosen = parameters or SegmentationParameters()
     rng = np.random.default_rng(chosen.seed)
-    on_progress("clean", 0.0)
+    progress = Progress(on_progress, len(mesh.faces))
+    progress("clean")
     surface = build_surface(mesh)
-    on_progress("affinity", 0.25)
+    progress("affinity")
     nodes = mesh_graph(surface, chosen)
-    on_progress("coarsen", 0.45)
+    progress("coarsen")
     clusters = cluster_nodes(nodes, chosen.clusters, rng)
     clusters, links = assemble(surface, nodes, clusters, chosen.max_segments)
-    on_progress("cut", 0.6)
-    tree = bisect(clusters.graph, clusters.points, chosen, rng, lambda done: on_progress("cut", 0.6 + 0.35 * done))
-    on_progress("label", 0.95)
+    progress("cut")
+    tree = bisect(clusters.graph, clusters.points, chosen, rng, partial(progress.after_splits, chosen.max_segments))
+    progress("label")
     tree = _over_faces(tree, clusters, nodes, links, surface)
     hierarchy = _of_input(surface, tree)
-    on_progress("label", 1.0)
+    progress("label", 1.0)
     return hierarchy
 
 

@@ -10,13 +10,13 @@ from dataclasses import dataclass
 import numpy as np
 from scipy.spatial import KDTree
 
-from segcore.arrays import BoolArray, FloatArray, IntArray, group_sums
+from segcore.arrays import BoolArray, FloatArray, IntArray
 from segcore.graph import SurfaceGraph, rows_of
-from segcore.mesh import Mesh, face_normals_and_areas
+from segcore.mesh import Mesh
+from segcore.orientation import patch_volumes, reliable_normals, turned_round
 from segcore.topology import consistent_orientation, dual_edges, first_equal_row
 from segcore.welding import weld
 
-_SLIVER = 1e-6  # area over squared longest edge below which the direction of a face is rounding noise
 _CLEARLY_INSIDE_OUT = 0.01  # enclosed volume over area**1.5 from which an open patch is turned round
 
 
@@ -46,7 +46,7 @@ def build_surface(mesh: Mesh) -> Surface:
     vertices, faces = _compacted(scaled, corners[kept])
     edge_faces, edge_vertices, manifold, disagree = dual_edges(faces, len(vertices))
     faces = _oriented(vertices, faces, edge_faces, manifold, disagree)
-    normals, areas = _reliable_normals(vertices[faces])
+    normals, areas = reliable_normals(vertices, faces)
     follow_neighbours(stands_for, corners, scaled)
     return Surface(vertices, faces, normals, areas, edge_faces, edge_vertices, stands_for, unit)
 
@@ -111,24 +111,6 @@ def _oriented(
     """Faces turned so that each patch agrees within itself and encloses a positive volume."""
     rows = rows_of(edge_faces, len(faces))
     patch, turned = consistent_orientation(rows.start, rows.neighbour, rows.edge, manifold, disagree)
-    corners = vertices[faces]
-    cross = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
-    cross[turned] *= -1
-    area = 0.5 * np.linalg.norm(cross, axis=1)
-    centroid = corners.mean(axis=1)
-    patch_area = np.maximum(group_sums(patch, area), np.finfo(float).tiny)
-    weighted = [group_sums(patch, area * centroid[:, axis]) / patch_area for axis in range(3)]
-    middle = np.stack(weighted, axis=1)
-    volume = group_sums(patch, np.einsum("ij,ij->i", centroid - middle[patch], cross) / 6)
-    inside_out = volume < -_CLEARLY_INSIDE_OUT * patch_area**1.5
-    turn = turned != inside_out[patch]
-    oriented = faces.copy()
-    oriented[turn] = faces[turn][:, [0, 2, 1]]
-    return oriented
-
-
-def _reliable_normals(corners: FloatArray) -> tuple[FloatArray, FloatArray]:
-    normals, areas = face_normals_and_areas(corners)
-    longest = np.max(np.sum((corners - np.roll(corners, 1, axis=1)) ** 2, axis=2), axis=1)
-    normals[areas <= _SLIVER * longest] = 0.0
-    return normals, areas
+    area, volume = patch_volumes(vertices, faces, patch, turned, int(patch.max()) + 1)
+    inside_out = volume < -_CLEARLY_INSIDE_OUT * np.maximum(area, np.finfo(float).tiny) ** 1.5
+    return turned_round(faces, turned != inside_out[patch])

@@ -8,7 +8,8 @@ from hypothesis.extra import numpy as npst
 
 from meshes import exploded
 from segcore import shapes
-from segcore.mesh import Mesh
+from segcore.mesh import Mesh, face_normals_and_areas
+from segcore.orientation import patch_volumes, reliable_normals, turned_round
 from segcore.surface import build_surface
 from segcore.topology import dual_edges, first_equal_row
 
@@ -81,3 +82,21 @@ def test_any_faces_make_a_surface_that_stands_for_all_of_them(faces, data):
     assert surface.face_of_input.max() < len(surface.faces)
     assert np.isfinite(surface.normals).all()
     assert np.isfinite(surface.areas).all()
+
+
+def test_normals_and_areas_agree_with_numpy():
+    mesh = shapes.burr(3).mesh
+    normals, areas = reliable_normals(mesh.vertices, mesh.faces)
+    expected_normals, expected_areas = face_normals_and_areas(mesh.corners)
+    np.testing.assert_allclose(normals, expected_normals, atol=1e-12)
+    np.testing.assert_allclose(areas, expected_areas)
+
+
+def test_a_patch_encloses_its_volume_wherever_it_is_and_minus_that_when_turned_round():
+    mesh = shapes.box((1, 2, 3), (50, -20, 7))
+    patch, turned = np.zeros(12, np.int32), np.zeros(12, bool)
+    area, volume = patch_volumes(mesh.vertices, mesh.faces, patch, turned, 1)
+    np.testing.assert_allclose(area, 22)
+    np.testing.assert_allclose(volume, 6)
+    np.testing.assert_allclose(patch_volumes(mesh.vertices, mesh.faces, patch, ~turned, 1)[1], -6)
+    np.testing.assert_array_equal(turned_round(mesh.faces, ~turned), mesh.faces[:, [0, 2, 1]])

@@ -1,0 +1,86 @@
+"""Compiled kernels for which way faces look. Arrays in, arrays out, nothing in between."""
+
+import numpy as np
+from numba import njit
+
+from segcore.arrays import BoolArray, FloatArray, IntArray
+
+_SLIVER = 1e-6  # area over squared longest edge below which the direction of a face is rounding noise
+
+
+@njit(cache=True)
+def patch_volumes(
+    vertices: FloatArray, faces: IntArray, patch: IntArray, turned: BoolArray, count: int
+) -> tuple[FloatArray, FloatArray]:
+    """Areas and enclosed volumes (P,) of patches, positive where the faces look outward.
+
+    The volume of an open patch is that of the cone to its centroid.
+
+    Parameters
+    ----------
+    patch : (F,) the patch 0..P - 1 of every face.
+    turned : (F,) True for faces that are to be turned round.
+    """
+    area = np.zeros(count)
+    moment = np.zeros((count, 3))
+    direction = np.zeros((count, 3))
+    volume = np.zeros(count)
+    for f in range(len(faces)):
+        (cx, cy, cz), (nx, ny, nz) = _centroid_and_cross(vertices, faces[f])
+        p = patch[f]
+        doubled = np.sqrt(nx * nx + ny * ny + nz * nz)
+        sign = -1.0 if turned[f] else 1.0
+        area[p] += 0.5 * doubled
+        moment[p, 0] += 0.5 * doubled * cx
+        moment[p, 1] += 0.5 * doubled * cy
+        moment[p, 2] += 0.5 * doubled * cz
+        direction[p, 0] += sign * nx
+        direction[p, 1] += sign * ny
+        direction[p, 2] += sign * nz
+        volume[p] += sign * (cx * nx + cy * ny + cz * nz) / 6.0
+    for p in range(count):
+        if area[p] > 0.0:
+            for axis in range(3):
+                volume[p] -= moment[p, axis] / area[p] * direction[p, axis] / 6.0
+    return area, volume
+
+
+@njit(cache=True)
+def turned_round(faces: IntArray, turn: BoolArray) -> IntArray:
+    """(F, 3): the faces, some of them with their last two corners exchanged."""
+    oriented = faces.copy()
+    for f in range(len(faces)):
+        if turn[f]:
+            oriented[f, 1], oriented[f, 2] = faces[f, 2], faces[f, 1]
+    return oriented
+
+
+@njit(cache=True)
+def reliable_normals(vertices: FloatArray, faces: IntArray) -> tuple[FloatArray, FloatArray]:
+    """Unit normals (F, 3), zero for slivers without a reliable direction, and areas (F,)."""
+    normals = np.zeros((len(faces), 3))
+    areas = np.empty(len(faces))
+    for f in range(len(faces)):
+        _, (nx, ny, nz) = _centroid_and_cross(vertices, faces[f])
+        doubled = np.sqrt(nx * nx + ny * ny + nz * nz)
+        areas[f] = 0.5 * doubled
+        longest = 0.0
+        for k in range(3):
+            a, b = faces[f, k], faces[f, (k + 1) % 3]
+            squared = 0.0
+            for axis in range(3):
+                squared += (vertices[a, axis] - vertices[b, axis]) ** 2
+            longest = max(longest, squared)
+        if areas[f] > _SLIVER * longest:
+            normals[f, 0], normals[f, 1], normals[f, 2] = nx / doubled, ny / doubled, nz / doubled
+    return normals, areas
+
+
+@njit(cache=True)
+def _centroid_and_cross(vertices, face):  # type: ignore[no-untyped-def]
+    """The centroid of a face, and the cross product of two of its edges."""
+    a, b, c = vertices[face[0]], vertices[face[1]], vertices[face[2]]
+    ux, uy, uz = b[0] - a[0], b[1] - a[1], b[2] - a[2]
+    vx, vy, vz = c[0] - a[0], c[1] - a[1], c[2] - a[2]
+    centroid = ((a[0] + b[0] + c[0]) / 3.0, (a[1] + b[1] + c[1]) / 3.0, (a[2] + b[2] + c[2]) / 3.0)
+    return centroid, (uy * vz - uz * vy, uz * vx - ux * vz, ux * vy - uy * vx)
