@@ -6,7 +6,17 @@ from typing import Any
 from fastapi import FastAPI
 from starlette.middleware.cors import CORSMiddleware
 
-from service import about_routes, health, home, model_routes, result_routes, routes, submission_routes, webhook_routes
+from service import (
+    about_routes,
+    batch_routes,
+    health,
+    home,
+    model_routes,
+    result_routes,
+    routes,
+    submission_routes,
+    webhook_routes,
+)
 from service.access import ForeignSites
 from service.api_keys import key_ring
 from service.context import Context, QueueView
@@ -14,6 +24,7 @@ from service.headers import SecurityHeaders
 from service.metrics import MeasuredRequests, Metrics
 from service.problems import MEDIA_TYPE, handle_problems
 from service.results import ResultCache
+from worker.batches import BatchStore
 from worker.installation_secret import InstallationSecret
 from worker.queue import JobQueue, connect_impatiently
 from worker.quota import UploadQuota
@@ -30,7 +41,17 @@ _EXPOSED_HEADERS = (
     "RateLimit",
     "RateLimit-Policy",
 )
-_ROUTES = (home, health, submission_routes, routes, result_routes, model_routes, about_routes, webhook_routes)
+_ROUTES = (
+    home,
+    health,
+    submission_routes,
+    routes,
+    result_routes,
+    model_routes,
+    batch_routes,
+    about_routes,
+    webhook_routes,
+)
 
 
 def create_app(settings: Settings) -> FastAPI:
@@ -59,6 +80,7 @@ def create_app(settings: Settings) -> FastAPI:
         secret=InstallationSecret(settings.data_dir),
         keys=keys,
         metrics=metrics,
+        batches=BatchStore(settings.data_dir),
         keys_required=settings.auth == "required" or (settings.auth == "auto" and bool(keys.all())),
     )
     for module in _ROUTES:

@@ -10,7 +10,9 @@ from service.api_keys import KeyRing
 from service.metrics import Metrics
 from service.results import ResultCache
 from worker.admission import admit
+from worker.batches import BatchStore
 from worker.installation_secret import InstallationSecret
+from worker.jobs import Canceled, Job, now
 from worker.queue import Activity, JobQueue, QueueError
 from worker.quota import UploadQuota
 from worker.settings import Settings
@@ -53,9 +55,25 @@ class Context:
     keys: KeyRing
     keys_required: bool
     metrics: Metrics
+    batches: BatchStore
 
     def admit(self, owner: str | None, job_id: str | None = None) -> None:
         admit(self.store, self.queue, owner, self.settings.key_max_running_jobs, job_id)
+
+    def discard(self, job: Job) -> None:
+        """Remove a job with its files; one that has not finished is canceled first."""
+        self.store.finish(job.id, Canceled(finished_at=now()))
+        self.store.delete(job.id)
+        self.results.drop(job.id)
+        self.withdraw(job)
+
+    def withdraw(self, job: Job) -> None:
+        """Take a job that is no longer wanted out of the queue; where that fails, the worker drops it that takes it."""
+        try:
+            self.queue.forget(job.id)
+            self.admit(job.owner)
+        except QueueError:
+            return
 
 
 async def _context(request: Request) -> Context:

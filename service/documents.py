@@ -73,6 +73,35 @@ class SubmittedJobDocument(JobDocument):
     labels: list[int] | None = Field(description="For every face, in the order of the file, its segment.")
 
 
+class BatchJobs(BaseModel):
+    """Jobs that are to be a batch."""
+
+    jobs: list[str] = Field(min_length=1, description="Ids of jobs.")
+
+
+class BatchedJob(BaseModel):
+    id: str
+    file_name: str | None
+    status: Status | Literal["deleted"]
+    progress: float
+    error: JobError | None
+    self: str = Field(description="The path of the job.")
+
+
+class BatchLinks(BaseModel):
+    self: str
+    results: str = Field(description="A ZIP archive, when the batch is finished.")
+
+
+class BatchDocument(BaseModel):
+    id: str
+    status: Literal["running", "finished"] = Field(description="Finished when every job has ended, however.")
+    created_at: datetime
+    counts: dict[str, int] = Field(description="Jobs by status.", examples=[{"succeeded": 98, "running": 2}])
+    jobs: list[BatchedJob] = Field(description="In the order in which they were sent.")
+    links: BatchLinks
+
+
 class LabelsDocument(BaseModel):
     segments: int
     labels: list[int] = Field(description="For every face, in the order of the file, its segment 0..segments-1.")

@@ -28,6 +28,7 @@ STATUS = {
     "foreign_site": 403,
     "not_found": 404,
     "job_not_found": 404,
+    "batch_not_found": 404,
     "method_not_allowed": 405,
     "not_acceptable": 406,
     "too_slow": 408,

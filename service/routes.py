@@ -8,15 +8,14 @@ from starlette.responses import Response, StreamingResponse
 
 from service.access import CallerOf
 from service.answers import NOT_MODIFIED, answer_json
-from service.context import Context, ContextOf
+from service.context import ContextOf
 from service.documents import JobDocument, JobPageDocument, Status
 from service.events import has_seen_the_end, job_events
 from service.lookup import describe, describe_all, known_job
 from service.problems import Problem, documented
 from service.waiting import wait_for_end
 from worker.index import CURSOR
-from worker.jobs import Canceled, Job, now
-from worker.queue import QueueError
+from worker.jobs import Canceled, now
 
 router = APIRouter(prefix="/v1/jobs", tags=["jobs"])
 
@@ -107,7 +106,7 @@ def cancel_job(job_id: JobId, context: ContextOf, caller: CallerOf) -> JobDocume
     outcome = context.store.finish(job.id, Canceled(finished_at=now()))
     if not isinstance(outcome, Canceled):
         raise Problem("already_finished", f"The job has {outcome.status} already: delete it to remove its files.")
-    _forget(context, job)
+    context.withdraw(job)
     return describe(context, job)
 
 
@@ -120,15 +119,4 @@ def cancel_job(job_id: JobId, context: ContextOf, caller: CallerOf) -> JobDocume
 def delete_job(job_id: JobId, context: ContextOf, caller: CallerOf) -> None:
     """Remove a job with its files; one that has not finished is canceled first."""
     job = known_job(context, caller, job_id)
-    context.store.finish(job.id, Canceled(finished_at=now()))
-    context.store.delete(job.id)
-    context.results.drop(job.id)
-    _forget(context, job)
-
-
-def _forget(context: Context, job: Job) -> None:
-    try:
-        context.queue.forget(job.id)
-        context.admit(job.owner)
-    except QueueError:
-        return  # the worker that takes the entry drops it
+    context.discard(job)

@@ -7,7 +7,7 @@ import hashlib
 import json
 from pathlib import Path
 
-from worker.durable import replace_file
+from worker.durable import TEMPORARY_SUFFIX
 from worker.jobs import Job, is_job_id
 
 _NOBODY = "_"  # not the name of an owner
@@ -23,7 +23,9 @@ class ComputedIndex:
     def note(self, job: Job) -> None:
         path = self._path(job)
         path.parent.mkdir(mode=0o700, exist_ok=True)
-        replace_file(path, lambda target: target.write(job.id.encode()))
+        temporary = path.with_name(f".{job.id}{TEMPORARY_SUFFIX}")
+        temporary.write_text(job.id)
+        temporary.replace(path)  # not synced: a hint may be lost
 
     def find(self, job: Job) -> str | None:
         """The id of a job of the same owner that was given the same to do."""

@@ -53,6 +53,7 @@ class Settings(BaseSettings):
         default=False, description="Whether webhooks may go to private, link-local and loopback addresses."
     )
     max_upload_bytes: int = Field(default=512 * 2**20, gt=0, description="Largest mesh file that is accepted.")
+    max_batch_bytes: int = Field(default=4 * 2**30, gt=0, description="Largest batch, packed and unpacked.")
     upload_idle_s: float = Field(default=30.0, gt=0, description="Silence after which an upload is given up.")
     upload_bytes_per_s: int = Field(
         default=1024, ge=0, description="Least speed of an upload, on average after its first upload_idle_s."
