@@ -78,5 +78,31 @@ def unit_normals(values: NDArray[Any]) -> NDArray[np.float32] | None:
     return (values / lengths[:, None]).astype(np.float32)
 
 
+def texture_coordinates(values: NDArray[Any]) -> NDArray[np.float32] | None:
+    """(A, 2) as float32; None where one of them is not finite there."""
+    uvs = values.astype(np.float32)
+    return uvs if np.isfinite(uvs).all() else None
+
+
+def color_bytes(values: NDArray[Any]) -> NDArray[np.uint8] | None:
+    """(A, 4) of three or four columns: whole numbers of 0..255 or of 0..65535, or fractions of 0..1; else None."""
+    kind, top = values.dtype.kind, values.max(initial=0)
+    if not 3 <= values.shape[1] <= 4 or not (values >= 0).all():
+        return None
+    if kind == "f" and top > 1 and (values != np.floor(values)).any():
+        return None
+    full = 1.0 if kind == "f" and top <= 1 else 255.0 if top <= 255 and values.dtype.itemsize != 2 else 65535.0
+    if top > full:
+        return None
+    colors = np.full((len(values), 4), 255, dtype=np.uint8)
+    colors[:, : values.shape[1]] = np.round(values * (255.0 / full))
+    return colors
+
+
+def appearance_or_none(appearance: Appearance) -> Appearance | None:
+    """None where there is nothing in it."""
+    return appearance if appearance.row_arrays or appearance.face_group is not None else None
+
+
 def _are_entries(values: IntArray, count: int) -> bool:
     return values.size == 0 or bool(values.min() >= 0 and values.max() < count)

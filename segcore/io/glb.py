@@ -6,8 +6,10 @@ from typing import Any, BinaryIO
 
 from numpy.typing import NDArray
 
+from segcore.appearance import Appearance
 from segcore.errors import LimitExceeded
 from segcore.hierarchy import Hierarchy
+from segcore.io.glb_appearance import add_attributes, name_groups
 from segcore.io.glb_geometry import group, place
 from segcore.io.glb_scene import all_levels_drawing, level_drawing, scene_document
 from segcore.mesh import Mesh
@@ -31,6 +33,11 @@ def write_glb(
     are those of this level, and KHR_materials_variants has the ones of every other: variant k - 1 is called
     ``k segments`` (``1 segment`` for one). Material k is that of label k in every variant.
 
+    Where the mesh has an appearance, NORMAL and TEXCOORD_0 are written, and the colours of the vertices as ``_COLOR_0``
+    (sRGB and opacity, normalized bytes), as COLOR_0 would tint the materials. Vertices that look different in
+    different faces have further entries after the V of the input. ``extras.groups`` of a node with faces has the names
+    of the input's groups that reach into it.
+
     Way back to the input: ``extras.input_faces`` of the scene names a buffer view of little-endian uint32; triangle t
     of a node is input face ``input_faces[first_face + t]``.
 
@@ -50,10 +57,14 @@ def write_glb(
         Where the file would be larger than the 4 GiB of the format.
     """
     drawing = all_levels_drawing(hierarchy, segments) if all_levels else level_drawing(hierarchy, segments)
+    look = mesh.appearance or Appearance()
     placement = place(mesh)
     slices = group(drawing.of_face, len(drawing.nodes))
-    blobs = [placement.positions, mesh.faces[slices.faces].astype("<u4"), slices.faces.astype("<u4")]
+    corners = mesh.faces if look.corners is None else look.corners
+    blobs = [placement.positions, corners[slices.faces].astype("<u4"), slices.faces.astype("<u4")]
     document = scene_document(hierarchy, drawing, placement, slices, [blob.nbytes for blob in blobs])
+    add_attributes(document, blobs, look)
+    name_groups(document, look, slices)
     _write_container(target, document, blobs)
 
 

@@ -16,7 +16,7 @@ _PLAIN_EXTENT = (1e-15, 1e15)  # extents whose squares and cubes float32 still h
 class Placement:
     """vertices[i] = translation + scale * positions[i] for every vertex that a face uses."""
 
-    positions: NDArray[np.float32]  # (V, 3)
+    positions: NDArray[np.float32]  # (A, 3) of the vertices, then of the further rows of the appearance
     translation: list[float]
     scale: float
 
@@ -42,7 +42,10 @@ def place(mesh: Mesh) -> Placement:
     else:
         positions, translation = (np.clip(mesh.vertices, low, high) - centre) / scale, centre
     inside = np.where(used[:, None], positions, (centre - translation) / scale)
-    return Placement(inside.astype("<f4"), translation.tolist(), scale)
+    rows = inside.astype("<f4")
+    if mesh.appearance is not None and len(mesh.appearance.extra_vertex):
+        rows = np.concatenate([rows, rows[mesh.appearance.extra_vertex]])
+    return Placement(rows, translation.tolist(), scale)
 
 
 def group(part_of_face: IntArray, count: int) -> Slices:

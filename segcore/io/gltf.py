@@ -1,43 +1,27 @@
 """The glTF 2.0 reader, for GLB files and for JSON with embedded buffers."""
 
-from dataclasses import dataclass
-
 import numpy as np
 
 from segcore.arrays import FloatArray, LongArray
 from segcore.errors import InvalidMesh
 from segcore.io.gltf_accessors import Accessors
+from segcore.io.gltf_appearance import gltf_appearance
 from segcore.io.gltf_document import Document, Item, integer, member, read_document
 from segcore.io.gltf_draco import DRACO, decode_draco
+from segcore.io.gltf_primitive import FAN, STRIP, TRIANGLES, Primitive
 from segcore.io.gltf_scene import Instance, mesh_instances
 from segcore.io.limits import ReadLimits
 from segcore.io.polygons import strip_faces
 from segcore.mesh import Mesh
 
-_TRIANGLES, _STRIP, _FAN = 4, 5, 6
 
-
-@dataclass(frozen=True, slots=True, eq=False)
-class _Primitive:
-    """Triangles of a mesh of the asset."""
-
-    where: str
-    mode: int
-    positions: int  # accessor
-    indices: int | None  # accessor
-    corners: int  # how many vertices it goes through
-
-    @property
-    def face_count(self) -> int:
-        return self.corners // 3 if self.mode == _TRIANGLES else max(self.corners - 2, 0)
-
-
-def read_gltf(data: bytes, limits: ReadLimits) -> Mesh:
+def read_gltf(data: bytes, limits: ReadLimits, with_appearance: bool = False) -> Mesh:
     """Read all triangles of the default scene, in the coordinates of the scene.
 
     Face order: the nodes of the scene depth first, the primitives of each mesh, the triangles of each primitive. A mesh
     that stands at several places is there several times. Points and lines are passed over. Where a transform mirrors a
-    mesh, its faces are turned, as glTF wants it, so that their outside stays outside.
+    mesh, its faces are turned, as glTF wants it, so that their outside stays outside. The appearance is NORMAL,
+    TEXCOORD_0 and COLOR_0, each where all primitives have it, and the names of the nodes or else of their meshes.
 
     Raises
     ------
@@ -49,17 +33,17 @@ def read_gltf(data: bytes, limits: ReadLimits) -> Mesh:
     primitives = {mesh: _primitives(document, accessors, mesh) for mesh in {at.mesh for at in instances}}
     parts = [(instance, primitive) for instance in instances for primitive in primitives[instance.mesh]]
     limits.check_faces(sum(primitive.face_count for _, primitive in parts))
-    return _assemble(parts, accessors, limits)
+    return _assemble(parts, accessors, limits, with_appearance)
 
 
-def _primitives(document: Document, accessors: Accessors, mesh: int) -> list[_Primitive]:
+def _primitives(document: Document, accessors: Accessors, mesh: int) -> list[Primitive]:
     entries = document.item("meshes", mesh).get("primitives")
     if not isinstance(entries, list) or not all(isinstance(entry, dict) for entry in entries):
         raise InvalidMesh(f"meshes[{mesh}].primitives of the glTF file must be a list of objects.")
     for i, entry in enumerate(entries):
         _decompress(document, accessors, entry, f"meshes[{mesh}].primitives[{i}]")
     described = (_primitive(entry, accessors, f"meshes[{mesh}].primitives[{i}]") for i, entry in enumerate(entries))
-    return [primitive for primitive in described if primitive.mode in (_TRIANGLES, _STRIP, _FAN)]
+    return [primitive for primitive in described if primitive.mode in (TRIANGLES, STRIP, FAN)]
 
 
 def _decompress(document: Document, accessors: Accessors, entry: Item, where: str) -> None:
@@ -75,17 +59,19 @@ def _decompress(document: Document, accessors: Accessors, entry: Item, where: st
     accessors.supply(integer(entry, "indices", where), decoded.corners, where)
 
 
-def _primitive(entry: Item, accessors: Accessors, where: str) -> _Primitive:
-    mode = integer(entry, "mode", where, _TRIANGLES)
+def _primitive(entry: Item, accessors: Accessors, where: str) -> Primitive:
+    mode = integer(entry, "mode", where, TRIANGLES)
     positions = integer(member(entry, "attributes", where), "POSITION", f"{where}.attributes")
     indices = integer(entry, "indices", where) if "indices" in entry else None
     corners = accessors.count(positions if indices is None else indices)
-    if mode == _TRIANGLES and corners % 3:
+    if mode == TRIANGLES and corners % 3:
         raise InvalidMesh(f"{where} of the glTF file has {corners} corners, which are not whole triangles.")
-    return _Primitive(where, mode, positions, indices, corners)
+    return Primitive(where, mode, positions, indices, corners, member(entry, "attributes", where))
 
 
-def _assemble(parts: list[tuple[Instance, _Primitive]], accessors: Accessors, limits: ReadLimits) -> Mesh:
+def _assemble(
+    parts: list[tuple[Instance, Primitive]], accessors: Accessors, limits: ReadLimits, with_appearance: bool
+) -> Mesh:
     """The mesh; an accessor that several primitives share at one place gives its vertices once."""
     blocks: dict[tuple[int, bytes], int] = {}
     vertex_count = 0
@@ -101,7 +87,11 @@ def _assemble(parts: list[tuple[Instance, _Primitive]], accessors: Accessors, li
         for instance, primitive in parts
     ]
     no_faces = np.zeros((0, 3), dtype=np.int64)
-    return Mesh(np.concatenate([np.zeros((0, 3)), *vertices]), np.concatenate([no_faces, *faces]))
+    return Mesh(
+        np.concatenate([np.zeros((0, 3)), *vertices]),
+        np.concatenate([no_faces, *faces]),
+        appearance=gltf_appearance(parts, accessors) if with_appearance else None,
+    )
 
 
 def _place(accessors: Accessors, positions: int, transform: FloatArray) -> FloatArray:
@@ -111,12 +101,12 @@ def _place(accessors: Accessors, positions: int, transform: FloatArray) -> Float
     return values if (matrix == np.eye(4)).all() else values @ matrix[:3, :3].T + matrix[:3, 3]
 
 
-def _faces(primitive: _Primitive, accessors: Accessors, instance: Instance) -> LongArray:
+def _faces(primitive: Primitive, accessors: Accessors, instance: Instance) -> LongArray:
     """(F, 3) indices into the positions of the primitive."""
     corners = _corners(primitive, accessors)
-    if primitive.mode == _TRIANGLES:
+    if primitive.mode == TRIANGLES:
         faces = corners.reshape(-1, 3)
-    elif primitive.mode == _STRIP:
+    elif primitive.mode == STRIP:
         faces = strip_faces(corners, np.arange(len(corners)) == 0)
     else:
         faces = np.stack([corners[1:-1], corners[2:], np.full(primitive.face_count, corners[0])], axis=1)
@@ -124,7 +114,7 @@ def _faces(primitive: _Primitive, accessors: Accessors, instance: Instance) -> L
     return faces[:, [0, 2, 1]] if mirrored else faces
 
 
-def _corners(primitive: _Primitive, accessors: Accessors) -> LongArray:
+def _corners(primitive: Primitive, accessors: Accessors) -> LongArray:
     if primitive.indices is None:
         return np.arange(primitive.corners)
     corners = accessors.read(primitive.indices, "SCALAR")[:, 0]

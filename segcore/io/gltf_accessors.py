@@ -11,7 +11,7 @@ from segcore.io.gltf_meshopt import MESHOPT, decode_view
 from segcore.io.limits import ReadLimits
 
 _COMPONENTS = {5120: "<i1", 5121: "<u1", 5122: "<i2", 5123: "<u2", 5125: "<u4", 5126: "<f4"}
-_WIDTHS = {"SCALAR": 1, "VEC3": 3}
+_WIDTHS = {"SCALAR": 1, "VEC2": 2, "VEC3": 3, "VEC4": 4}
 _SMALL = 65536  # elements that an accessor without data may have in any case
 
 
@@ -45,7 +45,7 @@ class Accessors:
 
         Parameters
         ----------
-        kind : ``SCALAR`` or ``VEC3``.
+        kind : ``SCALAR``, ``VEC2``, ``VEC3`` or ``VEC4``.
 
         Raises
         ------

@@ -17,6 +17,7 @@ class Instance:
 
     mesh: int
     transform: FloatArray  # (4, 4) from the mesh to the scene, for column vectors
+    name: str  # of the node, else of the mesh, else empty
 
 
 def mesh_instances(document: Document) -> list[Instance]:
@@ -41,9 +42,16 @@ def mesh_instances(document: Document) -> list[Instance]:
         entry, where = document.item("nodes", node), f"nodes[{node}]"
         transform = parent @ _local_transform(entry, where)
         if "mesh" in entry:
-            instances.append(Instance(integer(entry, "mesh", where), _IDENTITY if "skin" in entry else transform))
+            mesh = integer(entry, "mesh", where)
+            place = _IDENTITY if "skin" in entry else transform
+            instances.append(Instance(mesh, place, _name(entry) or _name(document.item("meshes", mesh))))
         waiting.extend((child, transform) for child in reversed(indices(entry, "children", where)))
     return instances
+
+
+def _name(entry: Item) -> str:
+    name = entry.get("name")
+    return name if isinstance(name, str) else ""
 
 
 def _roots(document: Document) -> list[int]:

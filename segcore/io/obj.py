@@ -9,6 +9,7 @@ from numpy.typing import NDArray
 from segcore.arrays import BoolArray, FloatArray, LongArray
 from segcore.errors import InvalidMesh
 from segcore.io.limits import ReadLimits
+from segcore.io.obj_appearance import obj_appearance
 from segcore.io.polygons import Polygons, mesh_of_polygons
 from segcore.io.text import Words, find_words, first_bad, parse_numbers, plain_text, without_comments
 from segcore.mesh import Mesh
@@ -21,11 +22,12 @@ _BLOCK = 2**20  # bytes that are looked at together, so that the helper arrays s
 _IN_SUFFIX = np.isin(np.arange(256), list(b"/-0123456789"))
 
 
-def read_obj(data: bytes, limits: ReadLimits) -> Mesh:
+def read_obj(data: bytes, limits: ReadLimits, with_appearance: bool = False) -> Mesh:
     """Read the vertices and polygons of an OBJ file.
 
-    Texture coordinates, normals, colours, groups, materials, points and lines are passed over, and no file that is
-    named in it is ever opened. A negative index counts back from the last vertex before its line.
+    Materials, points and lines are passed over, and no file that is named in it is ever opened. A negative index counts
+    back from the last vertex before its line. The appearance is the texture coordinates and normals of the corners, the
+    colours of the vertices and the names of groups and objects.
 
     An OBJ file does not say how long it is: one that is cut short between two lines cannot be told from a whole one.
 
@@ -37,16 +39,13 @@ def read_obj(data: bytes, limits: ReadLimits) -> Mesh:
     if b"\\" in text:
         text = _CONTINUATION.sub(lambda end: b" " * len(end[0]), text)
     words = find_words(text)
-    is_vertex, is_face = _lines_with(words, b"v"), _lines_with(words, b"f")
+    is_vertex, is_face = words.lines_with(b"v"), words.lines_with(b"f")
     limits.check_vertices(int(is_vertex.sum()))
     limits.check_faces(int(is_face.sum()))
     vertices = _vertices(words, is_vertex)
     polygons = _polygons(words, is_vertex, is_face)
-    return mesh_of_polygons(vertices, polygons, limits)
-
-
-def _lines_with(words: Words, keyword: bytes) -> BoolArray:
-    return words.equal(words.line_start[:-1], keyword)
+    appearance = obj_appearance(words, is_vertex, is_face, polygons) if with_appearance else None
+    return mesh_of_polygons(vertices, polygons, limits, appearance)
 
 
 def _values_per_line(words: Words, lines: LongArray, what: str) -> LongArray:

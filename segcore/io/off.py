@@ -7,6 +7,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from segcore.appearance import Appearance, appearance_or_none, color_bytes, texture_coordinates, unit_normals
 from segcore.arrays import FloatArray, LongArray
 from segcore.errors import InvalidMesh, UnsupportedFormat
 from segcore.io.limits import ReadLimits
@@ -17,8 +18,8 @@ from segcore.mesh import Mesh
 _KEYWORD = re.compile(rb"\s*+(ST)?(C)?(N)?(4)?(n)?OFF(\s+BINARY)?")
 
 
-def read_off(data: bytes, limits: ReadLimits) -> Mesh:
-    """Read an OFF file, also with the prefixes ST, C and N, whose texture, colours and normals are passed over.
+def read_off(data: bytes, limits: ReadLimits, with_appearance: bool = False) -> Mesh:
+    """Read an OFF file, also with the prefixes ST, C and N, whose texture, colours and normals are the appearance.
 
     A vertex has as many numbers as the prefixes say, in whatever lines; where the file makes no sense so, each vertex
     is a line, and what follows its coordinates there is passed over. A face ends with its line: what follows its
@@ -47,7 +48,10 @@ def read_off(data: bytes, limits: ReadLimits) -> Mesh:
         try:
             if first is not None:
                 polygons = _polygons(words, int(first[-1]), face_count)
-                return mesh_of_polygons(_vertices(words, first), polygons, limits)
+                appearance = None
+                if with_appearance:
+                    appearance = _appearance(words, first, bool(normal), bool(color), bool(texture))
+                return mesh_of_polygons(_vertices(words, first), polygons, limits, appearance)
         except InvalidMesh as error:
             problem = error
     raise problem
@@ -88,6 +92,22 @@ def _vertex_lines(words: Words, count: int) -> LongArray | None:
 def _vertices(words: Words, first: LongArray) -> FloatArray:
     values = words.floats(int(first[0]), int(first[-1]))
     return values[first[:-1, None] - first[0] + np.arange(3)]
+
+
+def _appearance(words: Words, first: LongArray, normal: bool, color: bool, texture: bool) -> Appearance | None:
+    """What follows the coordinates where it is the same for every vertex: normal, colour, texture coordinates."""
+    width = int(first[1] - first[0]) if len(first) > 1 else 0
+    if (np.diff(first) != width).any():
+        return None
+    table = words.floats(int(first[0]), int(first[-1])).reshape(-1, width)
+    begin, end = 3 + 3 * normal, width - 2 * texture
+    return appearance_or_none(
+        Appearance(
+            normals=unit_normals(table[:, 3:6]) if normal and begin <= end else None,
+            uvs=texture_coordinates(table[:, end:]) if texture and begin <= end else None,
+            colors=color_bytes(table[:, begin:end]) if color and begin <= end else None,
+        )
+    )
 
 
 def _polygons(words: Words, first: int, count: int) -> Polygons:

@@ -60,6 +60,11 @@ def linear_rgb(srgb: FloatArray) -> FloatArray:
     return np.where(srgb <= 0.04045, srgb / 12.92, ((srgb + 0.055) / 1.055) ** 2.4)
 
 
+def srgb(linear: FloatArray) -> FloatArray:
+    """sRGB from linear light, both in 0..1: the inverse of :func:`linear_rgb`."""
+    return np.where(linear <= 0.0031308, linear * 12.92, 1.055 * np.maximum(linear, 0.0031308) ** (1 / 2.4) - 0.055)
+
+
 @cache
 def _sequence() -> FloatArray:
     candidates = np.concatenate([_first_colors(), _candidates()])

@@ -1,7 +1,11 @@
 """The PLY reader (Stanford's polygon file format), in text and in binary of both byte orders."""
 
-import numpy as np
+from typing import Any
 
+import numpy as np
+from numpy.typing import NDArray
+
+from segcore.appearance import Appearance, appearance_or_none, color_bytes, texture_coordinates, unit_normals
 from segcore.arrays import FloatArray, LongArray
 from segcore.errors import InvalidMesh
 from segcore.io.limits import ReadLimits
@@ -15,11 +19,15 @@ from segcore.mesh import Mesh
 _VERTICES, _FACES, _STRIPS = "vertex", "face", "tristrips"
 _INDICES = ("vertex_indices", "vertex_index")
 _LIMITS = {_VERTICES: "vertices", _FACES: "faces"}
+_UVS = (("s", "t"), ("u", "v"), ("texture_u", "texture_v"))  # from the lower left of the image
 _RESTART = -1  # ends a strip within a list of strips
 
 
-def read_ply(data: bytes, limits: ReadLimits) -> Mesh:
+def read_ply(data: bytes, limits: ReadLimits, with_appearance: bool = False) -> Mesh:
     """Read the vertices, polygons and triangle strips of a PLY file; all other elements and properties are passed over.
+
+    The appearance is the normals (``nx``, ``ny``, ``nz``), texture coordinates (``s``, ``t``; ``u``, ``v``;
+    ``texture_u``, ``texture_v``) and colours (``red``, ``green``, ``blue``, perhaps ``alpha``) of the vertices.
 
     Every triangle of a strip counts as a polygon of its own. In binary, bytes after the last element are passed over.
 
@@ -35,7 +43,8 @@ def read_ply(data: bytes, limits: ReadLimits) -> Mesh:
     parts = [_polygons(name, rows[name]) for name in rows if name in (_FACES, _STRIPS)]
     corners = np.concatenate([np.zeros(0, dtype=np.int64), *(part.corners for part in parts)])
     sizes = np.concatenate([np.zeros(0, dtype=np.int64), *(part.sizes for part in parts)])
-    return mesh_of_polygons(vertices, Polygons(corners, sizes), limits)
+    appearance = _appearance(rows[_VERTICES]) if with_appearance else None
+    return mesh_of_polygons(vertices, Polygons(corners, sizes), limits, appearance)
 
 
 def _read_elements(data: bytes, header: Header, limits: ReadLimits) -> dict[str, Rows]:
@@ -53,6 +62,25 @@ def _vertices(rows: Rows) -> FloatArray:
     if missing:
         raise InvalidMesh(f"The element 'vertex' of the PLY file has no property {missing[0]!r}.")
     return np.stack([rows.numbers[axis].astype(np.float64) for axis in "xyz"], axis=1)
+
+
+def _appearance(rows: Rows) -> Appearance | None:
+    normals, colors = _columns(rows, "nx", "ny", "nz"), _columns(rows, "red", "green", "blue", "alpha")
+    colors = _columns(rows, "red", "green", "blue") if colors is None else colors
+    uvs = next((found for names in _UVS if (found := _columns(rows, *names)) is not None), None)
+    return appearance_or_none(
+        Appearance(
+            normals=None if normals is None else unit_normals(normals),
+            uvs=None if uvs is None else texture_coordinates(uvs * [1, -1] + [0, 1]),
+            colors=None if colors is None else color_bytes(colors),
+        )
+    )
+
+
+def _columns(rows: Rows, *names: str) -> NDArray[Any] | None:
+    """(V, N) the properties of these names, or None where one is missing."""
+    columns = [rows.numbers[name] for name in names if name in rows.numbers]
+    return np.stack(columns, axis=1) if len(columns) == len(names) else None
 
 
 def _polygons(name: str, rows: Rows) -> Polygons:

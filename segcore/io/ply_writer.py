@@ -60,6 +60,8 @@ def _vertex_columns(mesh: Mesh) -> list[tuple[str, str, NDArray[Any]]]:
     if len(appearance.extra_vertex) == 0:
         for kind, values in appearance.row_arrays.items():
             names, dtype = _APPEARANCE[kind]
+            if kind == "uvs":  # PLY counts from the lower left of the image
+                values = values * np.array([1, -1], np.float32) + np.array([0, 1], np.float32)
             columns += [(name, dtype, values[:, i]) for i, name in enumerate(names)]
     return columns
 

@@ -4,7 +4,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from segcore.arrays import BoolArray, FloatArray, IntArray, LongArray
+from segcore.appearance import Appearance
+from segcore.arrays import BoolArray, FloatArray, LongArray
 from segcore.io.limits import ReadLimits
 from segcore.mesh import Mesh
 
@@ -17,7 +18,9 @@ class Polygons:
     sizes: LongArray  # (P,) the number of corners of every polygon, >= 0
 
 
-def mesh_of_polygons(vertices: FloatArray, polygons: Polygons, limits: ReadLimits) -> Mesh:
+def mesh_of_polygons(
+    vertices: FloatArray, polygons: Polygons, limits: ReadLimits, appearance: Appearance | None = None
+) -> Mesh:
     """A mesh whose faces are the fans of polygons, in their order.
 
     A polygon with corners c0, c1, ... gives the faces (c0, c1, c2), (c0, c2, c3), ...; with fewer than three corners it
@@ -34,9 +37,10 @@ def mesh_of_polygons(vertices: FloatArray, polygons: Polygons, limits: ReadLimit
     limits.check_vertices(len(vertices))
     limits.check_faces(int(np.maximum(polygons.sizes - 2, 0).sum()))
     if (polygons.sizes == 3).all():
-        return Mesh(vertices, polygons.corners.reshape(-1, 3))
-    faces, source_polygon = _fans(polygons)
-    return Mesh(vertices, faces, source_polygon)
+        return Mesh(vertices, polygons.corners.reshape(-1, 3), appearance=appearance)
+    triangles = np.maximum(polygons.sizes - 2, 0)
+    source_polygon = np.repeat(np.arange(len(triangles), dtype=np.int32), triangles)
+    return Mesh(vertices, polygons.corners[fan_corners(polygons.sizes)], source_polygon, appearance)
 
 
 def ragged_range(start: LongArray, length: LongArray) -> LongArray:
@@ -45,12 +49,12 @@ def ragged_range(start: LongArray, length: LongArray) -> LongArray:
     return np.repeat(start - before, length) + np.arange(int(length.sum()))
 
 
-def _fans(polygons: Polygons) -> tuple[LongArray, IntArray]:
-    triangles = np.maximum(polygons.sizes - 2, 0)
-    source_polygon = np.repeat(np.arange(len(triangles), dtype=np.int32), triangles)
-    first = np.repeat(np.cumsum(polygons.sizes) - polygons.sizes, triangles)
-    second = ragged_range(np.cumsum(polygons.sizes) - polygons.sizes + 1, triangles)
-    return polygons.corners[np.stack([first, second, second + 1], axis=1)], source_polygon
+def fan_corners(sizes: LongArray) -> LongArray:
+    """(F, 3): the entries of ``Polygons.corners`` that the corners of every face are."""
+    triangles = np.maximum(sizes - 2, 0)
+    begin = np.cumsum(sizes) - sizes
+    first, second = np.repeat(begin, triangles), ragged_range(begin + 1, triangles)
+    return np.stack([first, second, second + 1], axis=1)
 
 
 def strip_faces(indices: LongArray, starts: BoolArray) -> LongArray:

@@ -17,7 +17,7 @@ from segcore.io.stl import read_stl
 from segcore.io.threemf import read_3mf
 from segcore.mesh import Mesh
 
-_READERS: dict[str, Callable[[bytes, ReadLimits], Mesh]] = {
+_READERS: dict[str, Callable[[bytes, ReadLimits, bool], Mesh]] = {
     "off": read_off,
     "stl": read_stl,
     "ply": read_ply,
@@ -33,6 +33,7 @@ def read_mesh(
     format: str | None = None,  # noqa: A002
     *,
     limits: ReadLimits | None = None,
+    appearance: bool = False,
 ) -> Mesh:
     """Read a mesh file, also one that is compressed with gzip.
 
@@ -46,6 +47,8 @@ def read_mesh(
     format : a name, extension or media type of FORMATS. The content decides what is read; where it is clearly of
         another format than this one, or than the name of the file, the file is refused.
     limits : the largest input that is read, by default ``ReadLimits()``.
+    appearance : keep normals, texture coordinates, colours of vertices and names of groups for the outputs, where the
+        file has them in a form that is understood; without it they cost nothing.
 
     Raises
     ------
@@ -63,4 +66,4 @@ def read_mesh(
     data = read_source(source, limits)
     reader = _READERS[detect_format(data, declared)]
     with np.errstate(all="ignore"):  # what leaves the range of floating point numbers is refused as not finite
-        return reader(data, limits)
+        return reader(data, limits, appearance)

@@ -10,8 +10,16 @@ that equal results are equal bytes:
     area.npy              (2 S + 1,) float64
     face_count.npy        (2 S + 1,) int32  face_leaf.npy    (F,) int32
 
+Then, each only where the mesh has an appearance with it (A rows, of the vertices and of further looks of them):
+
+    normals.npy           (A, 3) float32    uvs.npy          (A, 2) float32
+    colors.npy            (A, 4) uint8      corners.npy      (F, 3) int32
+    extra_vertex.npy      (A - V,) int32    face_group.npy   (F,) int32
+    group_names.json      [str, ...]
+
 The arrays are little-endian, in C order, in NumPy's ``.npy`` format 1.0, and mean what the attributes of the same names
-of Mesh and Hierarchy mean. Nothing in the file is ever unpickled.
+of Mesh, Hierarchy and Appearance mean. A program may pass over members that it does not know. Nothing in the file is
+ever unpickled.
 """
 
 import json
@@ -25,6 +33,7 @@ from typing import Any, BinaryIO
 import numpy as np
 from numpy.typing import NDArray
 
+from segcore.appearance import Appearance
 from segcore.errors import InvalidMesh, InvalidParameters
 from segcore.hierarchy import Hierarchy
 from segcore.io.archive import member, write_array
@@ -40,6 +49,10 @@ _NPY_HEADER = re.compile(
 )
 _MESH_ARRAYS = {"vertices": "<f8", "faces": "<i4", "source_polygon": "<i4"}
 _TREE_ARRAYS = {"split_node": "<i4", "cut_value": "<f8", "area": "<f8", "face_count": "<i4", "face_leaf": "<i4"}
+_LOOK_ARRAYS = {
+    "normals": "<f4", "uvs": "<f4", "colors": "|u1", "corners": "<i4", "extra_vertex": "<i4", "face_group": "<i4",
+}  # fmt: skip
+_GROUP_NAMES = "group_names.json"
 _OPTIONAL = "source_polygon"
 
 
@@ -76,6 +89,8 @@ def write_result(target: BinaryIO, mesh: Mesh, hierarchy: Hierarchy) -> None:
                 write_array(archive, name, array, dtype)
         for name, dtype in _TREE_ARRAYS.items():
             write_array(archive, name, getattr(hierarchy, name), dtype)
+        if mesh.appearance is not None:
+            _write_appearance(archive, mesh.appearance)
 
 
 def read_result(source: str | os.PathLike[str] | BinaryIO) -> Segmentation:
@@ -96,6 +111,14 @@ def read_result(source: str | os.PathLike[str] | BinaryIO) -> Segmentation:
         with open(source, "rb") as file:
             return _read(file)
     return _read(source)
+
+
+def _write_appearance(archive: zipfile.ZipFile, look: Appearance) -> None:
+    for name, dtype in _LOOK_ARRAYS.items():
+        if (array := getattr(look, name)) is not None and len(array):
+            write_array(archive, name, array, dtype)
+    if look.face_group is not None:
+        archive.writestr(member(_GROUP_NAMES), json.dumps(look.group_names))
 
 
 def _read(file: BinaryIO) -> Segmentation:
@@ -124,17 +147,27 @@ def _unpack(archive: zipfile.ZipFile) -> Segmentation:
         if name != _OPTIONAL or f"{name}.npy" in present
     }
     tree_arrays = {name: _read_array(archive, name, dtype) for name, dtype in _TREE_ARRAYS.items()}
-    mesh = Mesh(mesh_arrays["vertices"], mesh_arrays["faces"], mesh_arrays.get(_OPTIONAL))
+    look = _read_appearance(archive, present)
+    mesh = Mesh(mesh_arrays["vertices"], mesh_arrays["faces"], mesh_arrays.get(_OPTIONAL), look)
     hierarchy = Hierarchy(**tree_arrays, automatic_segments=header["automatic_segments"])
     _check_tree(hierarchy, len(mesh.faces))
     return Segmentation(mesh, hierarchy)
 
 
+def _read_appearance(archive: zipfile.ZipFile, present: set[str]) -> Appearance | None:
+    arrays = {
+        name: _read_array(archive, name, dtype) for name, dtype in _LOOK_ARRAYS.items() if f"{name}.npy" in present
+    }
+    if not arrays:
+        return None
+    names = _read_json(archive, _GROUP_NAMES) if "face_group" in arrays else []
+    if not isinstance(names, list) or not all(isinstance(name, str) for name in names):
+        raise InvalidMesh("The names of groups in the .cleave file are damaged: make the file again.")
+    return Appearance(**arrays, group_names=tuple(names))
+
+
 def _read_header(archive: zipfile.ZipFile) -> dict[str, int]:
-    try:
-        header = json.loads(_read_member(archive, _HEADER)[:_LARGEST_HEADER])
-    except (ValueError, RecursionError) as error:
-        raise InvalidMesh("The header of the .cleave file is damaged: make the file again.") from error
+    header = _read_json(archive, _HEADER, _LARGEST_HEADER)
     if not isinstance(header, dict) or header.get("format") != _FORMAT:
         raise InvalidMesh("This ZIP archive is not a .cleave file: its header does not say so.")
     if header.get("version") != _VERSION:
@@ -145,6 +178,13 @@ def _read_header(archive: zipfile.ZipFile) -> dict[str, int]:
     if type(header.get("automatic_segments")) is not int:
         raise InvalidMesh("The header of the .cleave file has no automatic_segments: make the file again.")
     return header
+
+
+def _read_json(archive: zipfile.ZipFile, name: str, most: int | None = None) -> Any:
+    try:
+        return json.loads(_read_member(archive, name)[:most])
+    except (ValueError, RecursionError) as error:
+        raise InvalidMesh(f"Member {name!r} of the .cleave file is damaged: make the file again.") from error
 
 
 def _read_member(archive: zipfile.ZipFile, name: str) -> bytes:

@@ -14,16 +14,17 @@ _HEADER = 84  # bytes: 80 for anything, 4 for the number of faces
 _FACE = np.dtype([("normal", "<f4", 3), ("corners", "<f4", (3, 3)), ("attribute", "<u2")])
 
 
-def read_stl(data: bytes, limits: ReadLimits) -> Mesh:
+def read_stl(data: bytes, limits: ReadLimits, with_appearance: bool = False) -> Mesh:
     """Read an STL file; face i has the vertices 3 i, 3 i + 1 and 3 i + 2, as nothing in the format joins faces.
 
-    What follows the faces that a binary file announces is passed over.
+    What follows the faces that a binary file announces is passed over. The appearance is the names of the solids of a
+    file in text.
 
     Raises
     ------
     InvalidMesh, LimitExceeded
     """
-    return read_ascii_stl(data, limits) if is_ascii_stl(data) else _read_binary(data, limits)
+    return read_ascii_stl(data, limits, with_appearance) if is_ascii_stl(data) else _read_binary(data, limits)
 
 
 def _read_binary(data: bytes, limits: ReadLimits) -> Mesh:

@@ -4,6 +4,7 @@ import re
 
 import numpy as np
 
+from segcore.appearance import Appearance, group_appearance
 from segcore.arrays import BoolArray, FloatArray, LongArray
 from segcore.errors import InvalidMesh
 from segcore.io.limits import ReadLimits
@@ -15,6 +16,8 @@ from segcore.mesh import Mesh
 _KEYWORDS = (b"facet", b"outer", b"vertex", b"vertex", b"vertex", b"endloop", b"endfacet")
 _WORDS = (5, 2, 4, 4, 4, 1, 1)
 _SOLID = re.compile(rb"^[ \t]*(?:end)?solid(?!\S)[^\n]*", re.MULTILINE)
+_NAME = re.compile(rb"^[ \t]*solid(?!\S)([^\n]*)", re.MULTILINE | re.IGNORECASE)
+_FACET = re.compile(rb"^[ \t]*facet(?!\S)", re.MULTILINE | re.IGNORECASE)
 _END = re.compile(rb"\s*+endsolid(?!\S)[^\n]*+\s*+\Z")
 _FACE = re.compile(
     rb"\s*+facet(?:\s++normal(?:\s++\S++){3})?\s++outer\s++loop"
@@ -22,7 +25,7 @@ _FACE = re.compile(
 )
 
 
-def read_ascii_stl(data: bytes, limits: ReadLimits) -> Mesh:
+def read_ascii_stl(data: bytes, limits: ReadLimits, with_appearance: bool = False) -> Mesh:
     """Read an STL file in text: one or more solids; loops of more than three vertices are cut into fans.
 
     Raises
@@ -35,7 +38,9 @@ def read_ascii_stl(data: bytes, limits: ReadLimits) -> Mesh:
         raise InvalidMesh("The STL file does not end with 'endsolid': it is cut short.")
     vertices = _regular_vertices(find_words(text))
     if vertices is not None:
-        return _mesh(vertices, np.full(len(vertices) // 3, 3), limits)
+        appearance = _solids(plain_text(data), len(vertices) // 3) if with_appearance else None
+        polygons = Polygons(np.arange(len(vertices)), np.full(len(vertices) // 3, 3))
+        return mesh_of_polygons(vertices, polygons, limits, appearance)
     return _read_any_layout(_SOLID.sub(lambda line: b" " * len(line[0]), text), limits)
 
 
@@ -70,6 +75,15 @@ def _solid_lines(words: Words) -> BoolArray:
     is_solid = np.zeros(len(first_words), dtype=bool)
     is_solid[lines] = words.equal(first_words[lines], b"solid") | words.equal(first_words[lines], b"endsolid")
     return is_solid
+
+
+def _solids(text: bytes, faces: int) -> Appearance | None:
+    """The names of the solids, as groups of faces; every face has a line that begins with ``facet``."""
+    solids = list(_NAME.finditer(text))
+    facets = [facet.start() for facet in _FACET.finditer(text)]
+    sizes = np.diff(np.searchsorted(facets, [solid.start() for solid in solids]), append=len(facets)).tolist()
+    names = [solid[1].strip().decode("utf-8", "replace") for solid in solids]
+    return group_appearance(names, sizes) if sum(sizes) == faces else None
 
 
 def _has_keywords(words: Words, lines: LongArray) -> bool:

@@ -77,6 +77,10 @@ class Words:
         is_end = np.frombuffer(self.text, np.uint8).take(end, mode="clip") <= _SPACE
         return same & (is_end | (end == len(self.text)))
 
+    def lines_with(self, keyword: bytes) -> BoolArray:
+        """(L,): the lines whose first word is ``keyword``."""
+        return self.equal(self.line_start[:-1], keyword)
+
     def text_of_lines(self, selected: BoolArray) -> bytes:
         """The text of the lines for which ``selected``, (L,), is true, one after the other."""
         bounds = np.append(self.start[self.line_start[:-1]], len(self.text))

@@ -252,4 +252,5 @@ def test_ply_keeps_what_the_vertices_had() -> None:
     rows = trimesh.load(io.BytesIO(data), file_type="ply", process=False).metadata["_ply_raw"]["vertex"]["data"]
     names = {"normals": ("nx", "ny", "nz"), "uvs": ("s", "t"), "colors": ("red", "green", "blue", "alpha")}
     for kind, values in plain.row_arrays.items():
-        assert np.stack([rows[name].ravel() for name in names[kind]], axis=1).tolist() == values.tolist()
+        expected = [0, 1] + values * [1, -1] if kind == "uvs" else values  # PLY counts from the lower left
+        assert np.stack([rows[name].ravel() for name in names[kind]], axis=1).tolist() == expected.tolist()

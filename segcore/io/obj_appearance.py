@@ -1,0 +1,121 @@
+"""What an OBJ file says beside the shape; what is not understood is left out, never refused."""
+
+import numpy as np
+from numpy.typing import NDArray
+
+from segcore.appearance import Appearance, appearance_or_none, color_bytes, texture_coordinates, unit_normals
+from segcore.arrays import BoolArray, IntArray, LongArray
+from segcore.io.corner_rows import CornerRows, rows_of_corners
+from segcore.io.polygons import Polygons, fan_corners
+from segcore.io.text import Words, parse_numbers
+
+_UV, _NORMAL = 1, 2  # places in a corner such as 7/8/9
+
+
+def obj_appearance(words: Words, is_vertex: BoolArray, is_face: BoolArray, polygons: Polygons) -> Appearance | None:
+    """The appearance of the faces that the polygons are cut into."""
+    fans = fan_corners(polygons.sizes)
+    tables = {place: _table(words, key, width) for place, key, width in ((_UV, b"vt", 2), (_NORMAL, b"vn", 3))}
+    picks = _picks(words, is_face, polygons, {place: table for place, table in tables.items() if table is not None})
+    vertex_count = int(is_vertex.sum())
+    rows = rows_of_corners(polygons.corners, list(picks.values()), vertex_count)
+    face_group, names = _groups(words, is_face, polygons.sizes)
+    colors = _colors(words, is_vertex)
+    return appearance_or_none(
+        Appearance(
+            normals=_normals(tables[_NORMAL], picks.get(_NORMAL), rows),
+            uvs=_uvs(tables[_UV], picks.get(_UV), rows),
+            colors=None if colors is None else np.vstack([colors, colors[rows.extra_vertex]]),
+            extra_vertex=rows.extra_vertex,
+            corners=rows.of_corner[fans] if len(rows.extra_vertex) else None,
+            face_group=face_group,
+            group_names=names,
+        )
+    )
+
+
+def _table(words: Words, keyword: bytes, width: int) -> NDArray[np.float64] | None:
+    """(N, width) the numbers on the lines with a keyword, further ones left out; None where they make no table."""
+    selected = words.lines_with(keyword)
+    counts = np.diff(words.line_start)[selected] - 1
+    if len(counts) == 0 or (counts != counts[0]).any() or counts[0] < width:
+        return None
+    try:
+        text = words.text_of_lines(selected).replace(keyword, b"  ")
+        return parse_numbers(text, int(counts.sum()), np.float64).reshape(len(counts), -1)[:, :width]
+    except ValueError:
+        return None
+
+
+def _picks(
+    words: Words, is_face: BoolArray, polygons: Polygons, tables: dict[int, NDArray[np.float64]]
+) -> dict[int, LongArray]:
+    """For each table the row of every corner; nothing where the corners do not all have the same form."""
+    text = words.text_of_lines(is_face).replace(b"f", b" ")
+    slashes = text.count(b"/")
+    corners = len(polygons.corners)
+    if corners == 0 or slashes == 0 or slashes % corners or slashes // corners > _NORMAL:
+        return {}
+    places = slashes // corners + 1
+    without_uv = text.count(b"//") == corners
+    columns = [0, _NORMAL] if without_uv else list(range(places))
+    try:
+        numbers = parse_numbers(text.replace(b"/", b" "), corners * len(columns), np.int64)
+    except ValueError:
+        return {}
+    table = dict(zip(columns, numbers.reshape(corners, -1).T, strict=True))
+    lines = np.repeat(np.flatnonzero(is_face), polygons.sizes)
+    if (_resolved(words, table[0], lines, b"v") != polygons.corners).any():
+        return {}  # the corners differ in their form, and the numbers stand for something else
+    keywords = {_UV: b"vt", _NORMAL: b"vn"}
+    picks = {place: _resolved(words, table[place], lines, keywords[place]) for place in tables if place in table}
+    return {place: rows for place, rows in picks.items() if (rows >= 0).all() and (rows < len(tables[place])).all()}
+
+
+def _resolved(words: Words, indices: LongArray, lines: LongArray, keyword: bytes) -> LongArray:
+    """Indices counted from 0; negative ones count back from the line that they are on."""
+    before = np.cumsum(words.lines_with(keyword))[lines]
+    return np.where(indices < 0, indices + before, indices - 1)
+
+
+def _normals(table: NDArray[np.float64] | None, pick: LongArray | None, rows: CornerRows) -> NDArray[np.float32] | None:
+    if table is None or pick is None:
+        return None
+    values = np.tile([0.0, 0.0, 1.0], (len(rows.corner), 1))  # for vertices that no face uses
+    used = rows.corner >= 0
+    values[used] = table[pick[rows.corner[used]]]
+    return unit_normals(values)
+
+
+def _uvs(table: NDArray[np.float64] | None, pick: LongArray | None, rows: CornerRows) -> NDArray[np.float32] | None:
+    if table is None or pick is None:
+        return None
+    values = np.zeros((len(rows.corner), 2))
+    used = rows.corner >= 0
+    values[used] = table[pick[rows.corner[used]]] * [1, -1] + [0, 1]  # OBJ counts from the lower left of the image
+    return texture_coordinates(values)
+
+
+def _colors(words: Words, is_vertex: BoolArray) -> NDArray[np.uint8] | None:
+    """(V, 4) where every vertex has red, green and blue after its coordinates."""
+    table = _table(words, b"v", 6)
+    counts = np.diff(words.line_start)[is_vertex]
+    return None if table is None or counts[0] != 7 else color_bytes(table[:, 3:])
+
+
+def _groups(words: Words, is_face: BoolArray, sizes: LongArray) -> tuple[IntArray | None, tuple[str, ...]]:
+    """(F,) the group or object line that every face comes after, and the names; a face before all has no name."""
+    marks = np.flatnonzero(words.lines_with(b"g") | words.lines_with(b"o"))
+    if len(marks) == 0:
+        return None, ()
+    names = ["", *(_name(words, int(line)) for line in marks)]
+    entry = {name: i for i, name in enumerate(dict.fromkeys(names))}
+    of_mark = np.array([entry[name] for name in names], dtype=np.int32)
+    of_polygon = of_mark[np.searchsorted(marks, np.flatnonzero(is_face))]
+    return np.repeat(of_polygon, np.maximum(sizes - 2, 0)), tuple(entry)
+
+
+def _name(words: Words, line: int) -> str:
+    first, last = int(words.line_start[line]), int(words.line_start[line + 1])
+    text: bytes = words.text[words.start[first] : words.start[last] if last < words.count else None]
+    return text.split(b"\n", 1)[0][1:].strip().decode("utf-8", "replace")
