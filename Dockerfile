@@ -2,6 +2,7 @@
 FROM python:3.13-slim-bookworm AS build
 WORKDIR /src
 COPY pyproject.toml README.md LICENSE ./
+COPY cleave cleave
 COPY segcore segcore
 COPY worker worker
 COPY service service

@@ -7,6 +7,8 @@ from contextlib import suppress
 from pathlib import Path
 from typing import NoReturn
 
+from service.cli_submit import add_submit
+from service.file_commands import add_convert, add_inspect, add_outputs
 from worker.logs import configure_logging
 from worker.settings import InvalidSettings, Settings, load_settings
 
@@ -15,6 +17,9 @@ Cuts a 3D mesh into the parts that a person would name.
 
   cleave serve                          an HTTP service with its workers, on http://127.0.0.1:8000
   cleave segment hand.off -o parts.glb  one mesh, without a server
+  cleave convert hand.cleave -o a.ply   a stored result in another format
+  cleave inspect hand.off               what is in a mesh file
+  cleave submit *.off -o results        many meshes, on a server
 """
 
 
@@ -22,13 +27,12 @@ def main(arguments: Sequence[str] | None = None) -> int:
     """Run a command; what was expected to go wrong is one line and exit status 2."""
     choices = _parser().parse_args(arguments)
     try:
-        choices.run(choices)
+        return choices.run(choices) or 0
     except KeyboardInterrupt:
         return 130
     except _expected_errors() as error:
         print(f"cleave: {_sentence(error)}", file=sys.stderr)
         return 2
-    return 0
 
 
 class _Parser(argparse.ArgumentParser):
@@ -43,6 +47,9 @@ def _parser() -> argparse.ArgumentParser:
     _add_serve(commands)
     _add_worker(commands)
     _add_segment(commands)
+    add_convert(commands, _say)
+    add_inspect(commands, _say)
+    _add_submit(commands)
     _add_key(commands)
     return parser
 
@@ -98,11 +105,22 @@ def _add_segment(commands: "argparse._SubParsersAction[_Parser]") -> None:
         metavar="NAME=VALUE",
         help="a parameter of the method, such as solver=inverse_power; may be given again",
     )
-    segment.add_argument("-o", "--output", type=_glb, metavar="PARTS.glb", help="the mesh with a colour per segment")
+    add_outputs(segment)
     segment.add_argument("--labels", type=Path, metavar="LABELS.seg", help="the segment of every face, one per line")
     segment.add_argument("--hierarchy", type=Path, metavar="TREE.json", help="the tree of cuts")
     segment.add_argument("--result", type=Path, metavar="MESH.cleave", help="mesh and tree, to be opened again")
     segment.set_defaults(run=_segment)
+
+
+def _add_submit(commands: "argparse._SubParsersAction[_Parser]") -> None:
+    submit = commands.add_parser(
+        "submit",
+        help="segment many meshes on a server",
+        description="Submit mesh files to a service and save their results. A second run goes on where the first broke "
+        "off. The environment variable CLEAVE_API_KEY has the API key, where the service requires one.",
+        epilog="exit status: 0 all done, 1 some files failed, 2 nothing was tried, 130 interrupted",
+    )
+    add_submit(submit, _parameter)
 
 
 def _add_key(commands: "argparse._SubParsersAction[_Parser]") -> None:
@@ -133,6 +151,7 @@ def _work(choices: argparse.Namespace) -> None:
 
 
 def _segment(choices: argparse.Namespace) -> None:
+    from service.outputs import output_options
     from service.segment_command import SegmentRequest, segment_file
 
     summary = segment_file(
@@ -142,7 +161,8 @@ def _segment(choices: argparse.Namespace) -> None:
             parameters=dict(choices.parameters)
             | ({} if choices.preset is None else {"preset": choices.preset})
             | ({} if choices.max_segments is None else {"max_segments": choices.max_segments}),
-            model=choices.output,
+            outputs=tuple(choices.output),
+            options=output_options(choices),
             labels=choices.labels,
             hierarchy=choices.hierarchy,
             result=choices.result,
@@ -220,12 +240,6 @@ def _at_least(least: int) -> Callable[[str], int]:
         return value
 
     return number
-
-
-def _glb(text: str) -> Path:
-    if Path(text).suffix.lower() != ".glb":
-        raise argparse.ArgumentTypeError(f"{text!r} must end in .glb, the one format that is written here")
-    return Path(text)
 
 
 if __name__ == "__main__":

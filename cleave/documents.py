@@ -1,0 +1,72 @@
+"""What a server says, as values."""
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from datetime import datetime
+from typing import Any, Literal, TypeAlias
+
+import numpy as np
+from numpy.typing import NDArray
+
+Status: TypeAlias = Literal["queued", "running", "succeeded", "failed", "canceled"]
+Labels: TypeAlias = NDArray[np.int32]  # (F,) the segment of every face, in the order of the file
+
+
+@dataclass(frozen=True, slots=True)
+class JobError:
+    """Why a job failed."""
+
+    code: str
+    message: str
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Job:
+    """A job as the server described it at some moment."""
+
+    id: str
+    status: Status
+    stage: str | None
+    progress: float  # 0..1
+    queue_position: int | None
+    created_at: datetime
+    finished_at: datetime | None
+    file_name: str | None
+    faces: int | None
+    max_segments: int | None
+    automatic_segments: int | None
+    error: JobError | None
+    document: Mapping[str, Any]  # all that the server said
+
+    @property
+    def has_ended(self) -> bool:
+        return self.finished_at is not None
+
+
+@dataclass(frozen=True, slots=True)
+class Segmentation:
+    """Labels of a job at a number of segments."""
+
+    job: Job
+    segments: int
+    labels: Labels
+
+
+def job_from(document: Mapping[str, Any]) -> Job:
+    error, mesh = document["error"], document["mesh"]
+    finished = document["finished_at"]
+    return Job(
+        id=document["id"],
+        status=document["status"],
+        stage=document["stage"],
+        progress=document["progress"],
+        queue_position=document["queue_position"],
+        created_at=datetime.fromisoformat(document["created_at"]),
+        finished_at=None if finished is None else datetime.fromisoformat(finished),
+        file_name=document["input"]["file_name"],
+        faces=None if mesh is None else mesh["faces"],
+        max_segments=document["max_segments"],
+        automatic_segments=document["automatic_segments"],
+        error=None if error is None else JobError(error["code"], error["message"]),
+        document=document,
+    )

@@ -1,0 +1,114 @@
+"""The client: both kinds do the same, what the server refuses is an error with its code, and patience has an end."""
+
+import asyncio
+from collections.abc import Callable
+from pathlib import Path
+
+import httpx
+import numpy as np
+import pytest
+
+from cleave.client import AsyncClient, Client
+from cleave.errors import JobEnded, RequestRefused, ServerUnreachable
+from support import sphere
+
+
+@pytest.fixture
+def mesh(tmp_path: Path) -> Path:
+    path = tmp_path / "ball.off"
+    path.write_bytes(sphere(12))
+    return path
+
+
+def test_a_mesh_becomes_labels_in_one_call(url: str, mesh: Path) -> None:
+    with Client(url) as client:
+        parts = client.segment(mesh, segments=4)
+        assert (parts.segments, len(parts.labels), parts.labels.dtype) == (4, parts.job.faces, np.int32)
+        assert set(parts.labels.tolist()) == {0, 1, 2, 3}
+        assert np.array_equal(client.labels(parts.job, 4).labels, parts.labels)
+        automatic = client.labels(parts.job)
+        assert automatic.segments == parts.job.automatic_segments
+        assert client.segment(mesh.read_bytes(), format="off").segments == automatic.segments
+
+
+def test_a_job_can_be_followed_fetched_and_deleted(url: str, mesh: Path, tmp_path: Path) -> None:
+    with Client(url) as client:
+        job = client.submit(mesh, parameters={"max_segments": 5}, idempotency_key="one")
+        assert client.submit(mesh, parameters={"max_segments": 5}, idempotency_key="one").id == job.id
+        job = client.wait(job.id)
+        assert (job.status, job.file_name, job.max_segments) == ("succeeded", "ball.off", 5)
+        assert [other.id for other in client.jobs("succeeded")] == [job.id]
+        assert client.hierarchy(job.id)["max_segments"] == 5
+        client.download(job.id, "model.glb", tmp_path / "parts.glb", segments=3)
+        assert (tmp_path / "parts.glb").read_bytes().startswith(b"glTF")
+        client.delete(job.id)
+        with pytest.raises(RequestRefused, match="deleted") as refused:
+            client.job(job.id)
+        assert (refused.value.status, refused.value.code) == (410, "job_deleted")
+        with pytest.raises(RequestRefused):
+            client.download(job.id, "model.glb", tmp_path / "other.glb")
+    assert {path.name for path in tmp_path.iterdir() if path.is_file()} == {"ball.off", "parts.glb"}
+
+
+def test_asyncio_does_the_same(url: str, mesh: Path, tmp_path: Path) -> None:
+    async def story() -> None:
+        async with AsyncClient(url) as client:
+            parts, job = await asyncio.gather(client.segment(mesh, segments=4), client.submit(mesh))
+            job = await client.wait(job.id)
+            assert np.array_equal((await client.labels(job, 4)).labels, parts.labels)
+            assert {other.id async for other in client.jobs()} == {job.id, parts.job.id}
+            await client.download(job.id, "labels", tmp_path / "labels.npy", format="npy", segments=4)
+            assert np.array_equal(np.load(tmp_path / "labels.npy"), parts.labels)
+            assert (await client.hierarchy(job.id))["max_segments"] == job.max_segments
+            await client.delete(job.id)
+            with pytest.raises(RequestRefused):
+                await client.cancel(job.id)
+
+    asyncio.run(story())
+
+
+def test_a_job_without_a_result_says_why(url: str) -> None:
+    with Client(url) as client, pytest.raises(JobEnded, match="convert it") as ended:
+        client.segment(b"PK\3\4 this is no mesh")
+    assert ended.value.job.status == "failed"
+
+
+def busy(times: int, status: int = 503) -> tuple[Callable[[httpx.Request], httpx.Response], list[httpx.Request]]:
+    """A server that is busy for some time and then says that there is no such job."""
+    seen: list[httpx.Request] = []
+
+    def answer(request: httpx.Request) -> httpx.Response:
+        seen.append(request)
+        if len(seen) <= times:
+            return httpx.Response(status, headers={"Retry-After": "0"}, json={"code": "busy", "detail": "Busy."})
+        return httpx.Response(404, json={"code": "job_not_found", "detail": "There is none."})
+
+    return answer, seen
+
+
+@pytest.mark.parametrize(("times", "tries", "code"), [(0, 1, "job_not_found"), (2, 3, "job_not_found"), (9, 3, "busy")])
+def test_a_busy_server_is_asked_again_a_few_times(mesh: Path, times: int, tries: int, code: str) -> None:
+    answer, seen = busy(times)
+    with Client(retries=2, transport=httpx.MockTransport(answer)) as client, pytest.raises(RequestRefused) as refused:
+        client.submit(mesh)
+    assert refused.value.code == code
+    assert len(seen) == tries
+    assert len({request.headers["Idempotency-Key"] for request in seen}) == 1
+
+
+def test_a_server_that_is_none_of_ours_is_said_so() -> None:
+    transport = httpx.MockTransport(lambda _: httpx.Response(404, text="<html>"))
+    with Client(transport=transport) as client, pytest.raises(RequestRefused, match="is this a Cleave server"):
+        client.job("1")
+
+
+def test_nobody_at_the_other_end_is_an_error_of_its_own() -> None:
+    with Client("http://127.0.0.1:1", retries=1) as client, pytest.raises(ServerUnreachable, match="is the server"):
+        client.job("1")
+
+
+def test_the_api_key_is_sent() -> None:
+    answer, seen = busy(0)
+    with Client(api_key="k", transport=httpx.MockTransport(answer)) as client, pytest.raises(RequestRefused):
+        client.job("1")
+    assert seen[0].headers["Authorization"] == "Bearer k"

@@ -1,0 +1,86 @@
+"""`cleave submit`: results in a folder, nothing done twice, and an exit status for scripts."""
+
+import os
+from pathlib import Path
+
+import pytest
+
+from cleave.client import Client
+from service.cli import main
+from support import sphere
+
+
+@pytest.fixture
+def meshes(tmp_path: Path) -> list[Path]:
+    paths = [tmp_path / f"ball{rows}.off" for rows in (10, 11)]
+    for path in paths:
+        path.write_bytes(sphere(int(path.stem[4:])))
+    return paths
+
+
+def submit(url: str, files: list[Path], folder: Path, *options: str) -> int:
+    return main(["submit", *map(str, files), "--server", url, "-o", str(folder), *options])
+
+
+def test_every_file_gets_its_results(
+    url: str, meshes: list[Path], tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    assert submit(url, meshes, tmp_path / "out", "--segments", "3") == 0
+    names = sorted(path.name for path in (tmp_path / "out").iterdir())
+    assert names == [f"{mesh.stem}.{ending}" for mesh in meshes for ending in ("glb", "json", "seg")]
+    assert set((tmp_path / "out" / "ball10.seg").read_text().split()) == {"0", "1", "2"}
+    printed = capsys.readouterr()
+    assert "2 of 2 files" in printed.out
+    assert "ball10.off: 3 segments" in printed.err
+
+
+def test_a_second_run_goes_on_where_the_first_broke_off(url: str, meshes: list[Path], tmp_path: Path) -> None:
+    assert submit(url, meshes, tmp_path, "--results", "seg,png") == 0
+    (tmp_path / "ball11.png").unlink()
+    kept = (tmp_path / "ball10.seg").stat()
+    with Client(url) as client:
+        before = {job.id for job in client.jobs()}
+        assert submit(url, meshes, tmp_path, "--results", "seg,png") == 0
+        assert {job.id for job in client.jobs()} == before
+        assert (tmp_path / "ball10.seg").stat().st_mtime_ns == kept.st_mtime_ns
+        assert (tmp_path / "ball11.png").exists()
+        assert submit(url, meshes, tmp_path, "--results", "seg", "--again") == 0
+        assert len(list(client.jobs())) == 4
+
+
+def test_jobs_that_were_deleted_are_made_again(url: str, meshes: list[Path], tmp_path: Path) -> None:
+    assert submit(url, meshes, tmp_path / "first") == 0
+    with Client(url) as client:
+        for job in list(client.jobs()):
+            client.delete(job.id)
+    assert submit(url, meshes, tmp_path / "second") == 0
+
+
+def test_some_that_fail_do_not_hold_up_the_others(
+    url: str, meshes: list[Path], tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    bad = tmp_path / "bad.off"
+    bad.write_bytes(b"OFF\n1 1")
+    assert submit(url, [bad, *meshes], tmp_path / "out") == 1
+    error = capsys.readouterr().err
+    assert "2 of 3 files" in error
+    assert "bad.off: The job has no result" in error
+    assert (tmp_path / "out" / "ball11.glb").exists()
+
+
+def test_what_cannot_be_tried_is_told_at_once(
+    url: str, meshes: list[Path], tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    assert submit(url, [tmp_path / "missing.off"], tmp_path) == 2
+    assert "missing.off" in capsys.readouterr().err
+    with pytest.raises(SystemExit) as stopped:
+        submit(url, meshes, tmp_path, "--results", "mp3")
+    assert stopped.value.code == 2
+    assert os.listdir(tmp_path / "data" / "jobs") == []
+
+
+def test_files_of_the_same_stem_do_not_overwrite_each_other(url: str, meshes: list[Path], tmp_path: Path) -> None:
+    other = tmp_path / "ball10.txt"
+    other.write_bytes(meshes[1].read_bytes())
+    assert submit(url, [meshes[0], other], tmp_path / "out", "--results", "seg") == 0
+    assert sorted(path.name for path in (tmp_path / "out").iterdir()) == ["ball10.off.seg", "ball10.txt.seg"]
