@@ -8,11 +8,10 @@ from pathlib import Path
 from typing import BinaryIO
 
 import segcore
-from segcore.io.glb import write_glb
 from segcore.io.labels import hierarchy_document, write_seg
 from segcore.io.result import write_result
+from service.outputs import OutputOptions, check_outputs, write_file, write_model
 from service.progress_bar import ProgressBar
-from worker.durable import replace_file
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -22,7 +21,8 @@ class SegmentRequest:
     mesh: Path
     segments: int | None
     parameters: dict[str, object]
-    model: Path | None
+    outputs: tuple[Path, ...]  # in the formats that their extensions name
+    options: OutputOptions
     labels: Path | None
     hierarchy: Path | None
     result: Path | None
@@ -39,12 +39,12 @@ def segment_file(request: SegmentRequest) -> list[str]:
         Where a file cannot be read or written.
     """
     parameters = _parameters(request)
-    _check_folders(request)
+    check_outputs([*request.outputs, *_named_outputs(request)])
     with ProgressBar(sys.stderr) as bar:
         bar("prepare", 0.0)
         segcore.warm_up()
         bar("read", 0.0)
-        mesh = segcore.read_mesh(request.mesh)
+        mesh = segcore.read_mesh(request.mesh, appearance=True)
         hierarchy = segcore.segment(mesh, parameters, bar)
         labels = hierarchy.labels(request.segments)
         written = _write(request, mesh, hierarchy)
@@ -66,31 +66,20 @@ def _parameters(request: SegmentRequest) -> segcore.SegmentationParameters:
     return replace(parameters, max_segments=max(parameters.max_segments, request.segments))
 
 
-def _check_folders(request: SegmentRequest) -> None:
-    """Say before the work, not after it, that a file could not be written."""
-    for path in (request.model, request.labels, request.hierarchy, request.result):
-        if path is not None and not path.parent.is_dir():
-            raise NotADirectoryError(20, "There is no such folder", str(path.parent))
+def _named_outputs(request: SegmentRequest) -> list[Path]:
+    return [path for path in (request.labels, request.hierarchy, request.result) if path is not None]
 
 
 def _write(request: SegmentRequest, mesh: segcore.Mesh, hierarchy: segcore.Hierarchy) -> list[Path]:
+    for model in request.outputs:
+        write_model(model, mesh, hierarchy, request.segments, request.options)
     document = hierarchy_document(hierarchy)
     writers: list[tuple[Path | None, Callable[[BinaryIO], object]]] = [
-        (request.model, lambda target: write_glb(target, mesh, hierarchy, request.segments)),
         (request.labels, lambda target: write_seg(target, hierarchy.labels(request.segments))),
         (request.hierarchy, lambda target: target.write(json.dumps(document, allow_nan=False).encode())),
         (request.result, lambda target: write_result(target, mesh, hierarchy)),
     ]
     for path, write in writers:
         if path is not None:
-            _write_file(path, write)
-    return [path for path, _ in writers if path is not None]
-
-
-def _write_file(path: Path, write: Callable[[BinaryIO], object]) -> None:
-    """Write a file whole or not at all; what is not a file, a pipe for instance, is written as it is."""
-    if path.exists() and not path.is_file():
-        with path.open("wb") as target:
-            write(target)
-    else:
-        replace_file(path.resolve(), write)
+            write_file(path, write)
+    return [*request.outputs, *_named_outputs(request)]

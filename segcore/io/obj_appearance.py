@@ -108,11 +108,11 @@ def _groups(words: Words, is_face: BoolArray, sizes: LongArray) -> tuple[IntArra
     marks = np.flatnonzero(words.lines_with(b"g") | words.lines_with(b"o"))
     if len(marks) == 0:
         return None, ()
-    names = ["", *(_name(words, int(line)) for line in marks)]
+    used, of_polygon = np.unique(np.searchsorted(marks, np.flatnonzero(is_face)), return_inverse=True)
+    names = [_name(words, int(marks[mark - 1])) if mark else "" for mark in used]
     entry = {name: i for i, name in enumerate(dict.fromkeys(names))}
-    of_mark = np.array([entry[name] for name in names], dtype=np.int32)
-    of_polygon = of_mark[np.searchsorted(marks, np.flatnonzero(is_face))]
-    return np.repeat(of_polygon, np.maximum(sizes - 2, 0)), tuple(entry)
+    of_used = np.array([entry[name] for name in names], dtype=np.int32)
+    return np.repeat(of_used[of_polygon], np.maximum(sizes - 2, 0)), tuple(entry)
 
 
 def _name(words: Words, line: int) -> str:

@@ -72,7 +72,7 @@ def test_a_preset_and_parameters_change_the_method(mesh: Path, tmp_path: Path) -
         (["segment", "MESH", "--segments", "9999"], "The number of segments must be from 1 to"),
         (["segment", "MESH", "--max-segments", "0"], "max_segments must be an integer"),
         (["segment", "MESH", "--labels", "no/such/folder"], "no/such: There is no such folder."),
-        (["segment", "MESH", "-o", "parts.obj"], "must end in .glb"),
+        (["segment", "MESH", "-o", "parts.dae"], "must end in one of .glb .ply"),
         (["segment", "EMPTY"], "."),
         (["segment"], "the following arguments are required: MESH"),
         (["serve", "--port", "70000"], "a port is a number from 0 to 65535"),

@@ -1,0 +1,74 @@
+"""The arguments of the commands that work on files alone: `cleave convert` and `cleave inspect`."""
+
+import argparse
+from collections.abc import Callable
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+if TYPE_CHECKING:
+    Commands = argparse._SubParsersAction[Any]
+
+OUTPUTS = ".glb .ply .obj .3mf .zip .seg .npy .json .cleave"
+
+# Each command imports what it needs when it runs, as in service.cli.
+
+
+def add_outputs(parser: argparse.ArgumentParser, required: bool = False) -> None:
+    """The arguments that :func:`service.outputs.output_options` reads, and ``output``."""
+    parser.add_argument(
+        "-o",
+        "--output",
+        type=_output,
+        action="append",
+        required=required,
+        default=None if required else [],
+        metavar="FILE",
+        help=f"what to write, by its extension: {OUTPUTS}; may be given again",
+    )
+    parser.add_argument("--all-levels", action="store_true", help="GLB: every number of segments in one file")
+    parser.add_argument("--capped", action="store_true", help="3MF and ZIP: close every part, for printing")
+    parser.add_argument("--parts", choices=("stl", "obj"), default="stl", help="ZIP: the files in it (%(default)s)")
+
+
+def add_convert(commands: "Commands", say: Callable[[str], None]) -> None:
+    convert = commands.add_parser(
+        "convert",
+        help="write a .cleave file in other formats",
+        description="Write the segmentation that a .cleave file holds in other formats, at any number of segments.",
+    )
+    convert.add_argument("result", type=Path, metavar="MESH.cleave", help="what cleave segment --result wrote")
+    convert.add_argument("--segments", type=int, metavar="K", help="number of segments (the automatic one)")
+    add_outputs(convert, required=True)
+    convert.set_defaults(run=lambda choices: _convert(choices, say))
+
+
+def add_inspect(commands: "Commands", say: Callable[[str], None]) -> None:
+    inspect = commands.add_parser(
+        "inspect",
+        help="say what is in a mesh file",
+        description="Say what is in a mesh file: components, borders, and whatever a segmentation has to put right.",
+    )
+    inspect.add_argument("mesh", type=Path, metavar="MESH", help="the mesh file")
+    inspect.add_argument("--json", action="store_true", help="as JSON")
+    inspect.set_defaults(run=lambda choices: _inspect(choices, say))
+
+
+def _convert(choices: argparse.Namespace, say: Callable[[str], None]) -> None:
+    from service.convert_command import convert_file
+    from service.outputs import output_options
+
+    written = convert_file(choices.result, choices.segments, choices.output, output_options(choices))
+    say("\n".join(written))
+
+
+def _inspect(choices: argparse.Namespace, say: Callable[[str], None]) -> None:
+    from service.inspect_command import describe, inspect_file, report_json
+
+    report = inspect_file(choices.mesh)
+    say(report_json(report) if choices.json else "\n".join(describe(choices.mesh.name, report)))
+
+
+def _output(text: str) -> Path:
+    if Path(text).suffix.lower() not in OUTPUTS.split():
+        raise argparse.ArgumentTypeError(f"{text!r} must end in one of {OUTPUTS}")
+    return Path(text)
