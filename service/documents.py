@@ -5,6 +5,7 @@ from typing import Any, Literal
 
 from pydantic import BaseModel, Field
 
+from segcore.report import MeshReport
 from service.problems import JobError
 from worker.jobs import Attempt, Canceled, Failed, Job, Outcome, Succeeded
 from worker.queue import Activity
@@ -24,6 +25,7 @@ class InputDocument(BaseModel):
 class MeshSummary(BaseModel):
     faces: int = Field(examples=[12_000])
     vertices: int = Field(examples=[6_002])
+    report: MeshReport | None = Field(description="What was found in the mesh; null in jobs of earlier versions.")
 
 
 class JobLinks(BaseModel):
@@ -213,8 +215,8 @@ def _is_running(attempts: list[Attempt], activity: Activity | None) -> bool:
 def _result_fields(outcome: Outcome | None) -> dict[str, Any]:
     fields: dict[str, Any] = {"mesh": None, "max_segments": None, "automatic_segments": None, "error": None}
     match outcome:
-        case Succeeded(faces=faces, vertices=vertices, max_segments=most, automatic_segments=automatic):
-            mesh = MeshSummary(faces=faces, vertices=vertices)
+        case Succeeded(faces=faces, vertices=vertices, max_segments=most, automatic_segments=automatic, report=report):
+            mesh = MeshSummary.model_validate({"faces": faces, "vertices": vertices, "report": report})
             return fields | {"mesh": mesh, "max_segments": most, "automatic_segments": automatic}
         case Failed(code=code, message=message):
             return fields | {"error": JobError(code=code, message=message)}

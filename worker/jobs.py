@@ -50,6 +50,7 @@ class Succeeded:
     vertices: int
     max_segments: int
     automatic_segments: int
+    report: dict[str, Any] | None = None  # a MeshReport as values of JSON; None in records of earlier versions
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

@@ -1,10 +1,12 @@
 """The work itself: a mesh from the store becomes a result file in the store, and the job gets its outcome."""
 
 from collections.abc import Callable
+from dataclasses import asdict
 
 import segcore
 from segcore.io import ReadLimits
 from segcore.io.result import write_result
+from segcore.report import mesh_report
 from worker.jobs import Failed, Job, Outcome, Succeeded, now
 from worker.settings import Settings
 from worker.store import LocalStore, UnknownJob
@@ -28,7 +30,7 @@ def segment_stored_mesh(store: LocalStore, job: Job, limits: ReadLimits, on_prog
     try:
         on_progress("reading", 0.0)
         with store.open_mesh(job.id) as source:
-            mesh = segcore.read_mesh(source, job.mesh_format, limits=limits)
+            mesh = segcore.read_mesh(source, job.mesh_format, limits=limits, appearance=True)
         hierarchy = segcore.segment(mesh, segcore.SegmentationParameters.from_mapping(job.parameters), on_progress)
     except segcore.CleaveError as error:
         return Failed(finished_at=now(), code=error.code, message=str(error))
@@ -43,6 +45,7 @@ def segment_stored_mesh(store: LocalStore, job: Job, limits: ReadLimits, on_prog
         vertices=len(mesh.vertices),
         max_segments=hierarchy.max_segments,
         automatic_segments=hierarchy.automatic_segments,
+        report=asdict(mesh_report(mesh)),
     )
 
 

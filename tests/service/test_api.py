@@ -43,7 +43,9 @@ def test_a_job_that_a_worker_holds_is_running_with_its_stage(client: httpx.Clien
 def test_a_finished_job_says_what_can_be_asked_for(client: httpx.Client, finished_job: Callable[..., str]) -> None:
     job = client.get(finished_job()).json()
     assert (job["status"], job["progress"], job["stage"]) == ("succeeded", 1.0, None)
+    report = job["mesh"].pop("report")
     assert job["mesh"] == {"faces": FACES, "vertices": FACES // 2 + 2}
+    assert (report["components"], report["is_closed"], report["border_edges"]) == (1, True, 0)
     assert 1 <= job["automatic_segments"] <= job["max_segments"]
     assert job["created_at"] <= job["finished_at"]
 

@@ -1,11 +1,14 @@
 """The work of a job, without a queue: a mesh in the store becomes a result, or a reason why there is none."""
 
+import json
+from dataclasses import asdict
 from pathlib import Path
 
 import pytest
 
 import segcore
 from segcore.io.result import read_result
+from segcore.report import mesh_report
 from support import accepted, sphere
 from worker.jobs import Canceled, Failed, Succeeded, now
 from worker.settings import Settings
@@ -37,6 +40,18 @@ def test_a_mesh_becomes_the_result_that_segcore_gives(store: LocalStore, setting
     assert (result.hierarchy.labels(5) == expected.labels(5)).all()
     assert (outcome.faces, outcome.vertices) == (4 * 20 * 19, len(result.mesh.vertices))
     assert (outcome.max_segments, outcome.automatic_segments) == (expected.max_segments, expected.automatic_segments)
+    report = mesh_report(result.mesh)
+    assert outcome.report is not None
+    assert json.loads(json.dumps(asdict(report))) == outcome.report
+
+
+def test_what_the_file_says_beside_the_shape_is_kept(store: LocalStore, settings: Settings) -> None:
+    job = accepted(store, b"NOFF\n3 1 0\n0 0 0 0 0 1\n1 0 0 0 0 1\n0 1 0 0 0 1\n3 0 1 2\n")
+    perform(store, settings, job.id, ignore)
+    with store.open_result(job.id) as file:
+        appearance = read_result(file).mesh.appearance
+    assert appearance is not None
+    assert appearance.normals.tolist() == [[0, 0, 1]] * 3
 
 
 def test_a_second_run_writes_the_same_bytes(store: LocalStore, settings: Settings) -> None:
