@@ -1,7 +1,6 @@
 """The application: routes, errors and the OpenAPI document around one context."""
 
 from importlib.metadata import PackageNotFoundError, version
-from typing import Any
 
 from fastapi import FastAPI
 from starlette.middleware.cors import CORSMiddleware
@@ -9,6 +8,7 @@ from starlette.middleware.cors import CORSMiddleware
 from service import (
     about_routes,
     batch_routes,
+    docs_page,
     health,
     home,
     model_routes,
@@ -22,7 +22,8 @@ from service.api_keys import key_ring
 from service.context import Context, QueueView
 from service.headers import SecurityHeaders
 from service.metrics import MeasuredRequests, Metrics
-from service.problems import MEDIA_TYPE, handle_problems
+from service.openapi import complete
+from service.problems import handle_problems
 from service.results import ResultCache
 from worker.batches import BatchStore
 from worker.installation_secret import InstallationSecret
@@ -43,6 +44,7 @@ _EXPOSED_HEADERS = (
 )
 _ROUTES = (
     home,
+    docs_page,
     health,
     submission_routes,
     routes,
@@ -63,6 +65,7 @@ def create_app(settings: Settings) -> FastAPI:
         version=installed_version(),
         generate_unique_id_function=lambda route: route.name,
         redirect_slashes=False,
+        docs_url=None,
         redoc_url=None,
     )
     store = LocalStore(settings.data_dir)
@@ -88,7 +91,7 @@ def create_app(settings: Settings) -> FastAPI:
     _add_middleware(app, settings)
     app.add_middleware(MeasuredRequests, metrics=metrics)
     handle_problems(app)
-    app.openapi = lambda: _with_problems_only(FastAPI.openapi(app))  # type: ignore[method-assign]
+    complete(app, keys_required=app.state.context.keys_required)
     return app
 
 
@@ -112,19 +115,3 @@ def installed_version() -> str:
         return version("cleave")
     except PackageNotFoundError:
         return "0+checkout"
-
-
-def _with_problems_only(document: dict[str, Any]) -> dict[str, Any]:
-    """Errors as they are answered here: FastAPI documents one media type for a route and a 422 body of its own."""
-    for path in document["paths"].values():
-        for responses in (operation["responses"] for operation in path.values()):
-            for status, response in list(responses.items()):
-                content = response.get("content", {})
-                schema = content.get("application/json", {}).get("schema", {}).get("$ref", "")
-                if schema.endswith("/ProblemDocument"):
-                    content[MEDIA_TYPE] = content.pop("application/json")
-                elif schema.endswith("/HTTPValidationError"):
-                    del responses[status]
-    for name in ("HTTPValidationError", "ValidationError"):
-        document["components"]["schemas"].pop(name, None)
-    return document

@@ -16,13 +16,21 @@ from service.answers import NOT_MODIFIED, answer_json
 from service.archiving import ZIP, batch_archive
 from service.context import Context, ContextOf
 from service.documents import BatchDocument, BatchedJob, BatchJobs, BatchLinks, JobDocument
-from service.form import MAX_PARAMETERS_BYTES, Form, write_capped
+from service.form import Form, write_capped
 from service.intake import Wish, take_in
 from service.limits import check_limits
 from service.lookup import describe_all, known_job
+from service.openapi import PARAMETERS, ref
 from service.problems import Problem, documented
 from service.receiving import declared_length, pieces
-from service.submission_routes import SUBMISSION_PROBLEMS, check_webhook
+from service.submission_routes import (
+    MESH_SCHEMA,
+    PARAMETERS_IN_QUERY,
+    SUBMISSION_PROBLEMS,
+    ParametersInQuery,
+    Webhook,
+    check_webhook,
+)
 from service.unpacking import unpack
 from service.upload import FORM_TYPE, parse_parameters, receive_form
 from service.waiting import wait_for_end
@@ -38,6 +46,7 @@ _JSON = "application/json"
 _MAX_JSON_BYTES = 128 * 1024
 _ZIPS = (ZIP, "application/x-zip-compressed")
 _BODY: dict[str, Any] = {
+    "parameters": [PARAMETERS_IN_QUERY],
     "requestBody": {
         "required": True,
         "content": {
@@ -45,22 +54,28 @@ _BODY: dict[str, Any] = {
                 "schema": {
                     "type": "object",
                     "required": ["mesh"],
+                    "additionalProperties": False,
                     "properties": {
-                        "mesh": {"type": "array", "items": {"type": "string", "format": "binary"}},
-                        "parameters": {"type": "string", "contentMediaType": _JSON, "example": '{"max_segments": 32}'},
+                        "mesh": {"type": "array", "minItems": 1, "items": MESH_SCHEMA},
+                        "parameters": PARAMETERS,
                     },
-                }
+                },
+                "encoding": {"parameters": {"contentType": _JSON}},
             },
             ZIP: {"schema": {"type": "string", "format": "binary", "description": "A ZIP archive of mesh files."}},
-            _JSON: {"schema": BatchJobs.model_json_schema()},
+            _JSON: {"schema": ref(BatchJobs)},
         },
-    }
+    },
 }
 _ACCEPTED: dict[int | str, dict[str, Any]] = {
     202: {
         "model": BatchDocument,
         "description": "All of its jobs are accepted.",
         "headers": {"Location": {"schema": {"type": "string"}, "description": "The path of the batch."}},
+        "links": {
+            name: {"operationId": name, "parameters": {"batch_id": "$response.body#/id"}}
+            for name in ("get_batch", "get_batch_results", "delete_batch")
+        },
     }
 }
 
@@ -76,11 +91,8 @@ async def create_batch(
     request: Request,
     context: ContextOf,
     caller: CallerOf,
-    parameters: Annotated[
-        str | None,
-        Query(max_length=MAX_PARAMETERS_BYTES, description="Of all jobs, as JSON, where the body is an archive."),
-    ] = None,
-    webhook: Annotated[str | None, Query(max_length=2000, description="Told when a job has ended, for each.")] = None,
+    parameters: ParametersInQuery = None,
+    webhook: Webhook = None,
 ) -> Response:
     """Submit many meshes with the same parameters, or put jobs together that there are already. All or none."""
     await run_in_threadpool(context.queue.connection.ping)

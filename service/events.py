@@ -25,7 +25,8 @@ async def job_events(context: Context, job: Job, last_id: int) -> AsyncIterator[
     """
     yield f"retry: {_RETRY_MS}\n\n"
     said, said_at = "", time.monotonic()
-    while True:
+    ends_at = said_at + context.settings.max_stream_s
+    while time.monotonic() < ends_at:
         last_id = max(_milliseconds(now() - job.created_at), last_id + 1)
         try:
             document = await run_in_threadpool(describe, context, job)

@@ -22,37 +22,43 @@ log = logging.getLogger("cleave.service")
 
 MEDIA_TYPE = "application/problem+json"
 
-STATUS = {
-    "malformed_request": 400,
-    "unauthorized": 401,
-    "foreign_site": 403,
-    "not_found": 404,
-    "job_not_found": 404,
-    "batch_not_found": 404,
-    "method_not_allowed": 405,
-    "not_acceptable": 406,
-    "too_slow": 408,
-    "not_finished": 409,
-    "already_finished": 409,
-    "job_failed": 409,
-    "job_canceled": 409,
-    "idempotency_key_spent": 409,
-    "job_deleted": 410,
-    "length_required": 411,
-    "too_large": 413,
-    "unsupported_media_type": 415,
-    "range_not_satisfiable": 416,
-    "invalid_mesh": 422,
-    "invalid_parameters": 422,
-    "invalid_request": 422,
-    "idempotency_key_reused": 422,
-    "queue_full": 429,
-    "too_many_jobs": 429,
-    "too_many_bytes": 429,
-    "internal_error": 500,
-    "queue_unavailable": 503,
-    "storage_full": 507,
+# What each code stands for: its status, and what to do.
+_CODES: dict[str, tuple[int, str]] = {
+    "malformed_request": (400, "The request cannot be read: send it again, well-formed and whole."),
+    "unauthorized": (401, "This installation requires an API key: send it in the header Authorization: Bearer KEY."),
+    "foreign_site": (403, "A page of another site sent this: the operator can allow it in CLEAVE_CORS_ORIGINS."),
+    "not_found": (404, "There is nothing at this path: GET /openapi.json lists what there is."),
+    "job_not_found": (404, "There is no job of this id, or it is somebody else's."),
+    "batch_not_found": (404, "There is no batch of this id, or it is somebody else's."),
+    "method_not_allowed": (405, "This path does not take this method: see the Allow header."),
+    "not_acceptable": (406, "Labels are not sent in that form: accept another, or ask with ?format=."),
+    "too_slow": (408, "The upload came to a halt or is too slow: send it again over a better connection."),
+    "not_finished": (409, "There is no result yet: poll the job until its status is succeeded."),
+    "already_finished": (409, "The job has ended: delete it to remove its files."),
+    "job_failed": (409, "The job failed and has no result; error says why."),
+    "job_canceled": (409, "The job was canceled and has no result: submit the mesh again."),
+    "idempotency_key_spent": (409, "The job of this Idempotency-Key was deleted: use another key."),
+    "job_deleted": (410, "The job was deleted with its files: submit the mesh again."),
+    "length_required": (411, "There is no body: send the mesh, with its Content-Length or in chunks."),
+    "too_large": (413, "The mesh, the batch or a field is larger than this installation takes."),
+    "unsupported_media_type": (415, "The body is in no format that is read here: see GET /v1/formats."),
+    "range_not_satisfiable": (416, "The range lies outside the result."),
+    "invalid_mesh": (422, "The mesh file is empty: send one with faces."),
+    "invalid_parameters": (422, "A parameter is outside its range: see GET /v1/methods."),
+    "invalid_request": (422, "A value in the path, the query or a header is not valid; detail names it."),
+    "idempotency_key_reused": (
+        422,
+        "This Idempotency-Key was sent with another mesh or parameters: use a new one.",
+    ),
+    "queue_full": (429, "Too many jobs wait here: submit again after Retry-After."),
+    "too_many_jobs": (429, "The caller has too many unfinished jobs: submit again when some have ended."),
+    "too_many_bytes": (429, "The caller has uploaded too much in this hour: go on after Retry-After."),
+    "internal_error": (500, "The server stopped at an internal error: its log has the details."),
+    "queue_unavailable": (503, "The queue does not answer at the moment: try again after Retry-After."),
+    "storage_full": (507, "The disk of the server is full: try again later or tell the operator."),
 }
+STATUS = {code: status for code, (status, _) in _CODES.items()}
+MEANING = {code: sentence for code, (_, sentence) in _CODES.items()}
 _RETRY_AFTER_S = {"not_finished": 1, "queue_unavailable": 5, "storage_full": 60}
 _DISK_FULL = {errno.ENOSPC, errno.EDQUOT}
 
@@ -157,9 +163,32 @@ def documented(*codes: str) -> dict[int | str, dict[str, Any]]:
     grouped: dict[int | str, dict[str, Any]] = {}
     for code in codes:
         status = STATUS[code]
-        entry = grouped.setdefault(status, {"model": ProblemDocument, "description": _phrase(status) + ":"})
+        entry = grouped.setdefault(status, _described(status))
         entry["description"] += f" `{code}`"
+        entry["content"][MEDIA_TYPE]["examples"][code] = {"value": example(code)}
+        if code in _RETRY_AFTER_S or status == 429:
+            entry["headers"] = {"Retry-After": {"schema": {"type": "integer"}, "description": "Seconds."}}
     return grouped
+
+
+def example(code: str) -> dict[str, Any]:
+    """A problem as it is sent."""
+    status = STATUS[code]
+    document = {
+        "type": "about:blank",
+        "title": _phrase(status),
+        "status": status,
+        "detail": MEANING[code],
+        "code": code,
+    }
+    if code == "job_failed":
+        document["error"] = {"code": "invalid_mesh", "message": "Face 3 refers to a vertex outside 0..7: [0, 1, 9]."}
+    return document
+
+
+def _described(status: int) -> dict[str, Any]:
+    schema = {"$ref": "#/components/schemas/ProblemDocument"}
+    return {"description": _phrase(status) + ":", "content": {MEDIA_TYPE: {"schema": schema, "examples": {}}}}
 
 
 def _phrase(status: int) -> str:

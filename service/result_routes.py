@@ -12,6 +12,7 @@ from service.documents import HierarchyDocument, LabelsDocument, RunsDocument
 from service.labels import LABELS, LabelsFormat, compact_json, negotiate
 from service.levels import LevelOf
 from service.lookup import known_job, result_of
+from service.openapi import ref
 from service.problems import documented
 from service.result_documents import hierarchy_of
 from service.routes import JobId
@@ -33,8 +34,8 @@ _LABELS_CONTENT: dict[str, Any] = {
     form.media_type.partition(";")[0]: {"schema": {"type": "string", "format": "binary"}} for form in LABELS.values()
 } | {
     "text/plain": {"schema": {"type": "string"}, "example": "0\n0\n1\n2\n"},
-    "application/json": {"schema": LabelsDocument.model_json_schema()},
-    "application/vnd.cleave.runs+json": {"schema": RunsDocument.model_json_schema()},
+    "application/json": {"schema": ref(LabelsDocument)},
+    "application/vnd.cleave.runs+json": {"schema": ref(RunsDocument)},
 }
 
 
@@ -74,7 +75,7 @@ def get_labels(
 @router.get(
     "/hierarchy",
     response_class=Response,
-    responses=rendition_responses({"application/json": {"schema": HierarchyDocument.model_json_schema()}}, "The tree.")
+    responses=rendition_responses({"application/json": {"schema": ref(HierarchyDocument)}}, "The tree.")
     | RESULT_PROBLEMS,
 )
 def get_hierarchy(job_id: JobId, request: Request, context: ContextOf, caller: CallerOf) -> Response:

@@ -19,6 +19,8 @@ from worker.jobs import Canceled, now
 
 router = APIRouter(prefix="/v1/jobs", tags=["jobs"])
 
+_CHANGE_PROBLEMS = documented("unauthorized", "foreign_site", "job_not_found", "job_deleted", "storage_full")
+
 JobId = Annotated[str, Path(description="As in the answer to POST /v1/jobs.")]
 
 
@@ -98,7 +100,9 @@ async def get_events(
 @router.post(
     "/{job_id}/cancel",
     response_model=JobDocument,
-    responses=documented("unauthorized", "job_not_found", "job_deleted", "already_finished", "storage_full"),
+    responses=documented(
+        "unauthorized", "foreign_site", "job_not_found", "job_deleted", "already_finished", "storage_full"
+    ),
 )
 def cancel_job(job_id: JobId, context: ContextOf, caller: CallerOf) -> JobDocument:
     """Cancel a job: one that waits at once, one that runs within seconds. A second time changes nothing."""
@@ -114,7 +118,7 @@ def cancel_job(job_id: JobId, context: ContextOf, caller: CallerOf) -> JobDocume
     "/{job_id}",
     status_code=204,
     response_class=Response,
-    responses=documented("unauthorized", "job_not_found", "job_deleted", "storage_full"),
+    responses=_CHANGE_PROBLEMS,
 )
 def delete_job(job_id: JobId, context: ContextOf, caller: CallerOf) -> None:
     """Remove a job with its files; one that has not finished is canceled first."""

@@ -20,6 +20,7 @@ from service.intake import Taken, Wish, take_in
 from service.labels import compact_json
 from service.limits import check_limits
 from service.lookup import describe, result_of
+from service.openapi import PARAMETERS
 from service.problems import documented
 from service.receiving import declared_length
 from service.upload import FORM_TYPE, parse_parameters, receive_mesh, requested_format
@@ -47,23 +48,38 @@ SUBMISSION_PROBLEMS = (
     "queue_unavailable",
     "storage_full",
 )
-_MESH = {"schema": {"type": "string", "format": "binary", "description": "The bytes of a mesh file."}}
+MESH_SCHEMA = {"type": "string", "format": "binary", "minLength": 1, "description": "The bytes of a mesh file."}
+_MESH = {"schema": MESH_SCHEMA}
 _FORM = {
     "schema": {
         "type": "object",
         "required": ["mesh"],
+        "additionalProperties": False,
         "properties": {
-            "mesh": {"type": "string", "format": "binary", "description": "A mesh file."},
-            "parameters": {
-                "type": "string",
-                "contentMediaType": "application/json",
-                "description": "A JSON object as in GET /v1/methods.",
-                "example": '{"max_segments": 32}',
-            },
+            "mesh": MESH_SCHEMA,
+            "parameters": PARAMETERS,
         },
-    }
+    },
+    "encoding": {"parameters": {"contentType": "application/json"}},
 }
+PARAMETERS_IN_QUERY = {
+    "name": "parameters",
+    "in": "query",
+    "description": "The parameters, where the body is not a form.",
+    "content": {"application/json": {"schema": PARAMETERS, "example": {"max_segments": 32}}},
+}
+ParametersInQuery = Annotated[str | None, Query(max_length=MAX_PARAMETERS_BYTES, include_in_schema=False)]
+Webhook = Annotated[
+    str | None,
+    Query(
+        max_length=2000,
+        description="The URL that is told when the job has ended, as in Standard Webhooks.",
+        json_schema_extra={"pattern": r"^https?://[A-Za-z0-9.-]+(:[0-9]{1,4})?(/[!-~]*)?$"},
+        examples=["https://example.com/hook"],
+    ),
+]
 _BODY: dict[str, Any] = {
+    "parameters": [PARAMETERS_IN_QUERY],
     "requestBody": {
         "required": True,
         "description": "The mesh file as it is, also compressed with gzip, or in a form.",
@@ -72,7 +88,7 @@ _BODY: dict[str, Any] = {
             "application/octet-stream": _MESH,
             FORM_TYPE: _FORM,
         },
-    }
+    },
 }
 _JOB_HEADERS: dict[str, Any] = {
     "Location": {"schema": {"type": "string"}, "description": "The path of the job."},
@@ -80,17 +96,33 @@ _JOB_HEADERS: dict[str, Any] = {
     "RateLimit-Policy": {"schema": {"type": "string"}, "description": "The caller's limits."},
     "Preference-Applied": {"schema": {"type": "string"}, "description": "The part of Prefer that was followed."},
 }
+_FOLLOWERS = (
+    "get_job",
+    "get_events",
+    "get_labels",
+    "get_hierarchy",
+    "get_glb",
+    "get_preview",
+    "cancel_job",
+    "delete_job",
+)
+_LINKS = {
+    name: {"operationId": name, "parameters": {"job_id": "$response.body#/id"}, "description": "Of this job."}
+    for name in _FOLLOWERS
+}
 _ANSWERS: dict[int | str, dict[str, Any]] = {
     200: {
         "model": SubmittedJobDocument,
         "description": "The job has ended: within the time of Prefer: wait, or before, with the same mesh and "
         "parameters.",
         "headers": _JOB_HEADERS,
+        "links": _LINKS,
     },
     202: {
         "model": JobDocument,
         "description": "The job is accepted and durable. Poll its Location, or listen to its events.",
         "headers": {**_JOB_HEADERS, "Retry-After": {"schema": {"type": "integer"}, "description": "Seconds."}},
+        "links": _LINKS,
     },
 }
 
@@ -116,23 +148,19 @@ async def create_job(
     caller: CallerOf,
     format: Annotated[  # noqa: A002
         str | None,
-        Query(max_length=100, description="The format of the mesh, as in GET /v1/formats.", examples=["stl"]),
-    ] = None,
-    parameters: Annotated[
-        str | None,
         Query(
-            max_length=MAX_PARAMETERS_BYTES,
-            description="The parameters as a JSON object, where the body is the mesh itself.",
-            examples=['{"max_segments": 32}'],
+            max_length=100,
+            description="The format of the mesh, where neither its name nor its type say it.",
+            json_schema_extra={"enum": list(FORMATS)},
+            examples=["stl"],
         ),
     ] = None,
+    parameters: ParametersInQuery = None,
     segments: Annotated[
         int | None, Query(ge=1, description="The number of segments of the labels in the answer.")
     ] = None,
     file_name: Annotated[str | None, Query(max_length=1000, description="What to call the mesh.")] = None,
-    webhook: Annotated[
-        str | None, Query(max_length=2000, description="The URL that is told when the job has ended.")
-    ] = None,
+    webhook: Webhook = None,
     prefer: Annotated[
         str | None, Header(description="wait=N: answer when the job has ended, or after N seconds.")
     ] = None,

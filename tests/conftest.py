@@ -22,6 +22,12 @@ _HYPOTHESIS = tempfile.TemporaryDirectory(prefix="hypothesis-")
 set_hypothesis_home_dir(_HYPOTHESIS.name)
 
 
+def pytest_addoption(parser: pytest.Parser) -> None:
+    parser.addoption(
+        "--contract-examples", type=int, default=20, help="requests that schemathesis makes up for every operation"
+    )
+
+
 def pytest_unconfigure() -> None:
     _HYPOTHESIS.cleanup()
 

@@ -48,6 +48,9 @@ class Settings(BaseSettings):
     )
     max_queued_jobs: int = Field(default=10_000, ge=1, description="Unfinished jobs that the installation may have.")
     max_wait_s: float = Field(default=60.0, ge=0, le=600, description="Longest time that an answer is held back.")
+    max_stream_s: float = Field(
+        default=3600.0, gt=0, description="Longest stream of events; a client that wants more comes back by itself."
+    )
     max_batch_jobs: int = Field(default=1000, ge=1, le=10_000, description="Most jobs in a batch.")
     webhook_private_targets: bool = Field(
         default=False, description="Whether webhooks may go to private, link-local and loopback addresses."

@@ -1,0 +1,75 @@
+"""The OpenAPI document: what FastAPI finds in the routes, and what it cannot know."""
+
+from copy import deepcopy
+from typing import Any
+
+from fastapi import FastAPI
+from pydantic import BaseModel
+from pydantic.json_schema import models_json_schema
+
+from segcore.parameters import parameters_schema
+from service.documents import BatchJobs, HierarchyDocument, LabelsDocument, RunsDocument
+from service.problems import ProblemDocument
+
+# Models that are answered or taken as bytes, so that FastAPI does not see them.
+_HIDDEN_MODELS: tuple[type[BaseModel], ...] = (
+    ProblemDocument,
+    LabelsDocument,
+    RunsDocument,
+    HierarchyDocument,
+    BatchJobs,
+)
+_PLACE = "#/components/schemas/{model}"
+_UNUSED = ("HTTPValidationError", "ValidationError")
+
+PARAMETERS = {"$ref": _PLACE.format(model="Parameters")}
+
+_ABOUT = """\
+Submit a mesh, poll the job or listen to it, fetch labels, the hierarchy of parts, and coloured models at any number of
+segments. Labels are per face, in the order of the file: face *i* is the *i*-th triangle, polygons being cut into fans.
+
+Every error is `application/problem+json` (RFC 9457): a stable `code` for programs and a `detail` that says what to do.
+"""
+
+
+def ref(model: type[BaseModel]) -> dict[str, str]:
+    """The schema of one of the hidden models."""
+    return {"$ref": _PLACE.format(model=model.__name__)}
+
+
+def complete(app: FastAPI, *, keys_required: bool) -> None:
+    """Have an application serve the whole document."""
+    app.description = _ABOUT
+    original = app.openapi
+
+    def document() -> dict[str, Any]:
+        if app.openapi_schema is None:
+            app.openapi_schema = _completed(original(), keys_required)
+        return app.openapi_schema
+
+    app.openapi = document  # type: ignore[method-assign]
+
+
+def _completed(document: dict[str, Any], keys_required: bool) -> dict[str, Any]:
+    schemas = document["components"]["schemas"]
+    _, hidden = models_json_schema([(model, "serialization") for model in _HIDDEN_MODELS], ref_template=_PLACE)
+    schemas.update(hidden["$defs"])
+    schemas["Parameters"] = deepcopy(parameters_schema())
+    for name in _UNUSED:
+        schemas.pop(name, None)
+    for operation in (operation for path in document["paths"].values() for operation in path.values()):
+        _correct(operation, keys_required)
+    if not keys_required:
+        document["components"].pop("securitySchemes", None)
+    return document
+
+
+def _correct(operation: dict[str, Any], keys_required: bool) -> None:
+    """Take out errors that are answered otherwise here, and keys where none are required."""
+    responses = operation["responses"]
+    for status, response in list(responses.items()):
+        schema = response.get("content", {}).get("application/json", {}).get("schema", {}).get("$ref", "")
+        if schema.endswith("/HTTPValidationError"):
+            del responses[status]
+    if not keys_required:
+        operation.pop("security", None)

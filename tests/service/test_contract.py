@@ -1,0 +1,93 @@
+"""The OpenAPI document is kept: by the service, as schemathesis finds out, and from one commit to the next."""
+
+import json
+import threading
+from collections.abc import Iterator
+from typing import Any
+
+import httpx
+import pytest
+import schemathesis
+from hypothesis import HealthCheck, given, settings
+from redis import Redis
+from schemathesis.config import SchemathesisConfig
+from servers import serving
+
+from service.api_keys import key_digest, new_key
+from service.contract import DOCS
+from worker.settings import Settings
+from worker.store import LocalStore
+from worker.tasks import perform
+
+
+@pytest.fixture(scope="module")
+def service(tmp_path_factory: pytest.TempPathFactory, queue_url: str) -> Iterator[httpx.Client]:
+    """A service with a worker, that waits for nobody for long."""
+    limits = Settings(
+        data_dir=tmp_path_factory.mktemp("contract"),
+        redis_url=queue_url,
+        max_upload_bytes=100_000,
+        max_wait_s=0.2,
+        max_stream_s=0.2,
+        upload_idle_s=5.0,
+        api_keys=f"tester:{key_digest(KEY)}",
+    )
+    with Redis.from_url(queue_url) as connection:
+        connection.flushall()
+        connection.sadd("rq:workers:cleave", "rq:worker:tester")  # so that it is ready
+        connection.hset("rq:worker:tester", "state", "idle")
+    store, stop = LocalStore(limits.data_dir), threading.Event()
+
+    def work() -> None:
+        while not stop.wait(0.02):
+            for job_id in store.unfinished():
+                perform(store, limits, job_id, lambda *_: None)
+
+    worker = threading.Thread(target=work)
+    worker.start()
+    with serving(limits) as client:
+        yield client
+    stop.set()
+    worker.join()
+
+
+KEY = new_key()
+COMMITTED = json.loads((DOCS / "openapi.json").read_text())
+OPERATIONS = [(method, path) for path, operations in COMMITTED["paths"].items() for method in operations]
+
+
+@pytest.fixture(scope="module")
+def schema(service: httpx.Client) -> Any:
+    # Which parameters go together, and which Idempotency-Key was sent before, is more than a schema can say.
+    accepting = {"positive_data_acceptance": {"expected-statuses": ["2xx", 401, 403, 404, 409, 410, 413, 422, 429]}}
+    config = SchemathesisConfig.from_dict(
+        {
+            "auth": {"openapi": {"ApiKey": {"bearer": KEY}}},
+            "operations": [
+                {"include-path": ["/v1/jobs", "/v1/batches"], "include-method": "POST", "checks": accepting}
+            ],
+        }
+    )
+    return schemathesis.openapi.from_url(f"{service.base_url}/openapi.json", config=config)
+
+
+@pytest.fixture(scope="module")
+def max_examples(request: pytest.FixtureRequest) -> int:
+    count: int = request.config.getoption("contract_examples")
+    return count
+
+
+@pytest.mark.parametrize(("method", "path"), OPERATIONS)
+def test_every_answer_is_as_documented(schema: Any, max_examples: int, method: str, path: str) -> None:
+    @settings(max_examples=max_examples, suppress_health_check=list(HealthCheck))
+    @given(case=schema[path][method].as_strategy())
+    def check(case: schemathesis.Case) -> None:
+        case.call_and_validate()
+
+    check()
+
+
+def test_every_answer_is_as_documented_in_any_order_of_requests(schema: Any, max_examples: int) -> None:
+    schema.as_state_machine().run(
+        settings=settings(max_examples=max_examples, stateful_step_count=8, suppress_health_check=list(HealthCheck))
+    )
