@@ -73,11 +73,13 @@ def _checked_vertices(values: ArrayLike) -> FloatArray:
     if vertices.dtype.kind not in "fiu":
         raise InvalidMesh(f"Vertices must be real numbers, not {vertices.dtype}.")
     vertices = np.ascontiguousarray(vertices, dtype=np.float64)
-    finite = np.isfinite(vertices).all(axis=1)
-    if not finite.all():
-        first = int(np.argmin(finite))
+    if len(vertices) == 0:
+        return vertices
+    low, high = float(vertices.min()), float(vertices.max())  # not a number where one of them is none
+    if not (np.isfinite(low) and np.isfinite(high)):
+        first = int(np.argmin(np.isfinite(vertices).all(axis=1)))
         raise InvalidMesh(f"Vertex {first} has a coordinate that is not finite: repair the mesh before sending it.")
-    if len(vertices) and np.abs(vertices).max() > _LARGEST_COORDINATE:
+    if max(-low, high) > _LARGEST_COORDINATE:
         raise InvalidMesh(f"A coordinate is larger than {_LARGEST_COORDINATE:g}: use a larger unit of length.")
     return vertices
 
@@ -90,9 +92,8 @@ def _checked_faces(values: ArrayLike, vertex_count: int) -> IntArray:
         raise InvalidMesh("The mesh has no faces: a point cloud or an empty file cannot be segmented.")
     if faces.dtype.kind not in "iu":
         raise InvalidMesh(f"Faces must be integers, not {faces.dtype}.")
-    outside = ((faces < 0) | (faces >= vertex_count)).any(axis=1)
-    if outside.any():
-        first = int(np.argmax(outside))
+    if not 0 <= faces.min() <= faces.max() < vertex_count:
+        first = int(np.argmax(((faces < 0) | (faces >= vertex_count)).any(axis=1)))
         raise InvalidMesh(f"Face {first} refers to a vertex outside 0..{vertex_count - 1}: {faces[first].tolist()}.")
     return np.ascontiguousarray(faces, dtype=np.int32)
 

@@ -16,7 +16,7 @@ class CornerRows:
     corner: LongArray  # (A,) a corner that looks like the row; -1 where no corner has the vertex
 
 
-def rows_of_corners(vertices: LongArray, picks: list[LongArray], vertex_count: int) -> CornerRows:
+def rows_of_corners(vertices: LongArray | IntArray, picks: list[LongArray], vertex_count: int) -> CornerRows:
     """Give corners of the same vertex and the same picks the same row.
 
     Parameters

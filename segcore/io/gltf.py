@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from segcore.arrays import FloatArray, LongArray
+from segcore.arrays import FloatArray, IntArray
 from segcore.errors import InvalidMesh
 from segcore.io.gltf_accessors import Accessors
 from segcore.io.gltf_appearance import gltf_appearance
@@ -82,14 +82,13 @@ def _assemble(
             vertex_count += accessors.count(primitive.positions)
     limits.check_vertices(vertex_count)
     vertices = [_place(accessors, positions, np.frombuffer(place)) for positions, place in blocks]
-    faces = [
-        _faces(primitive, accessors, instance) + blocks[primitive.positions, instance.transform.tobytes()]
-        for instance, primitive in parts
-    ]
-    no_faces = np.zeros((0, 3), dtype=np.int64)
+    faces = []
+    for instance, primitive in parts:
+        faces.append(_faces(primitive, accessors, instance))
+        faces[-1] += np.int32(blocks[primitive.positions, instance.transform.tobytes()])
     return Mesh(
-        np.concatenate([np.zeros((0, 3)), *vertices]),
-        np.concatenate([no_faces, *faces]),
+        np.concatenate([np.zeros((0, 3)), *vertices]) if len(vertices) != 1 else vertices[0],
+        np.concatenate([np.zeros((0, 3), dtype=np.int32), *faces]) if len(faces) != 1 else faces[0],
         appearance=gltf_appearance(parts, accessors) if with_appearance else None,
     )
 
@@ -101,26 +100,26 @@ def _place(accessors: Accessors, positions: int, transform: FloatArray) -> Float
     return values if (matrix == np.eye(4)).all() else values @ matrix[:3, :3].T + matrix[:3, 3]
 
 
-def _faces(primitive: Primitive, accessors: Accessors, instance: Instance) -> LongArray:
-    """(F, 3) indices into the positions of the primitive."""
+def _faces(primitive: Primitive, accessors: Accessors, instance: Instance) -> IntArray:
+    """(F, 3) indices into the positions of the primitive, as an array of its own."""
     corners = _corners(primitive, accessors)
     if primitive.mode == TRIANGLES:
         faces = corners.reshape(-1, 3)
     elif primitive.mode == STRIP:
-        faces = strip_faces(corners, np.arange(len(corners)) == 0)
+        faces = strip_faces(corners, np.arange(len(corners)) == 0).astype(np.int32)
     else:
         faces = np.stack([corners[1:-1], corners[2:], np.full(primitive.face_count, corners[0])], axis=1)
     mirrored = np.linalg.det(instance.transform[:3, :3]) < 0
     return faces[:, [0, 2, 1]] if mirrored else faces
 
 
-def _corners(primitive: Primitive, accessors: Accessors) -> LongArray:
+def _corners(primitive: Primitive, accessors: Accessors) -> IntArray:
     if primitive.indices is None:
-        return np.arange(primitive.corners)
+        return np.arange(primitive.corners, dtype=np.int32)
     corners = accessors.read(primitive.indices, "SCALAR")[:, 0]
     if corners.dtype.kind != "u":
         raise InvalidMesh(f"The indices of {primitive.where} of the glTF file must be unsigned whole numbers.")
     vertices = accessors.count(primitive.positions)
     if corners.size and corners.max() >= vertices:
         raise InvalidMesh(f"{primitive.where} of the glTF file has the index {corners.max()}, but {vertices} vertices.")
-    return corners.astype(np.int64)
+    return corners.astype(np.int32)

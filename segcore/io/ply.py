@@ -6,7 +6,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from segcore.appearance import Appearance, appearance_or_none, color_bytes, texture_coordinates, unit_normals
-from segcore.arrays import FloatArray, LongArray
+from segcore.arrays import FloatArray, IntArray, LongArray
 from segcore.errors import InvalidMesh
 from segcore.io.limits import ReadLimits
 from segcore.io.ply_binary import BinaryBody
@@ -41,10 +41,8 @@ def read_ply(data: bytes, limits: ReadLimits, with_appearance: bool = False) -> 
         raise InvalidMesh("The PLY file has no element 'vertex'.")
     vertices = _vertices(rows[_VERTICES])
     parts = [_polygons(name, rows[name]) for name in rows if name in (_FACES, _STRIPS)]
-    corners = np.concatenate([np.zeros(0, dtype=np.int64), *(part.corners for part in parts)])
-    sizes = np.concatenate([np.zeros(0, dtype=np.int64), *(part.sizes for part in parts)])
     appearance = _appearance(rows[_VERTICES]) if with_appearance else None
-    return mesh_of_polygons(vertices, Polygons(corners, sizes), limits, appearance)
+    return mesh_of_polygons(vertices, _joined(parts), limits, appearance)
 
 
 def _read_elements(data: bytes, header: Header, limits: ReadLimits) -> dict[str, Rows]:
@@ -61,7 +59,10 @@ def _vertices(rows: Rows) -> FloatArray:
     missing = [axis for axis in "xyz" if axis not in rows.numbers]
     if missing:
         raise InvalidMesh(f"The element 'vertex' of the PLY file has no property {missing[0]!r}.")
-    return np.stack([rows.numbers[axis].astype(np.float64) for axis in "xyz"], axis=1)
+    vertices = np.empty((len(rows.numbers["x"]), 3))
+    for i, axis in enumerate("xyz"):
+        vertices[:, i] = rows.numbers[axis]
+    return vertices
 
 
 def _appearance(rows: Rows) -> Appearance | None:
@@ -87,13 +88,23 @@ def _polygons(name: str, rows: Rows) -> Polygons:
     lists = next((rows.lists[key] for key in _INDICES if key in rows.lists), None)
     if lists is None:
         raise InvalidMesh(f"The element {name!r} of the PLY file has no list 'vertex_indices'.")
-    corners = whole_numbers(lists.values)
+    corners = lists.values if lists.values.dtype == np.int32 else whole_numbers(lists.values)
     if corners is None:
         raise InvalidMesh(f"The element {name!r} of the PLY file has a vertex index that is not a whole number.")
     return Polygons(corners, lists.sizes) if name == _FACES else _triangles_of_strips(corners, lists.sizes)
 
 
-def _triangles_of_strips(indices: LongArray, sizes: LongArray) -> Polygons:
+def _joined(parts: list[Polygons]) -> Polygons:
+    if len(parts) == 1:
+        return parts[0]
+    nothing = np.zeros(0, dtype=np.int64)
+    return Polygons(
+        np.concatenate([nothing, *(part.corners for part in parts)]),
+        np.concatenate([nothing, *(part.sizes for part in parts)]),
+    )
+
+
+def _triangles_of_strips(indices: LongArray | IntArray, sizes: LongArray) -> Polygons:
     starts = np.zeros(len(indices) + 1, dtype=bool)
     starts[np.cumsum(sizes) - sizes] = True
     restart = indices == _RESTART

@@ -51,7 +51,7 @@ class BinaryBody:
             if entry.count_type is None:
                 numbers[entry.name] = table[f"{i} values"]
             elif (table[f"{i} length"] == length).all():
-                sizes = np.full(element.count, length, dtype=np.int64)
+                sizes = np.broadcast_to(np.int64(length), element.count)
                 lists[entry.name] = Lists(table[f"{i} values"].reshape(-1), sizes)
             else:
                 return None

@@ -5,7 +5,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from segcore.appearance import Appearance
-from segcore.arrays import BoolArray, FloatArray, LongArray
+from segcore.arrays import BoolArray, FloatArray, IntArray, LongArray
 from segcore.io.limits import ReadLimits
 from segcore.mesh import Mesh
 
@@ -14,7 +14,7 @@ from segcore.mesh import Mesh
 class Polygons:
     """The polygons of a file in its order."""
 
-    corners: LongArray  # (sum of sizes,) the vertices of all polygons, one after the other
+    corners: LongArray | IntArray  # (sum of sizes,) the vertices of all polygons, one after the other
     sizes: LongArray  # (P,) the number of corners of every polygon, >= 0
 
 
@@ -35,10 +35,11 @@ def mesh_of_polygons(
     LimitExceeded, InvalidMesh
     """
     limits.check_vertices(len(vertices))
-    limits.check_faces(int(np.maximum(polygons.sizes - 2, 0).sum()))
     if (polygons.sizes == 3).all():
+        limits.check_faces(len(polygons.sizes))
         return Mesh(vertices, polygons.corners.reshape(-1, 3), appearance=appearance)
     triangles = np.maximum(polygons.sizes - 2, 0)
+    limits.check_faces(int(triangles.sum()))
     source_polygon = np.repeat(np.arange(len(triangles), dtype=np.int32), triangles)
     return Mesh(vertices, polygons.corners[fan_corners(polygons.sizes)], source_polygon, appearance)
 
@@ -57,7 +58,7 @@ def fan_corners(sizes: LongArray) -> LongArray:
     return np.stack([first, second, second + 1], axis=1)
 
 
-def strip_faces(indices: LongArray, starts: BoolArray) -> LongArray:
+def strip_faces(indices: LongArray | IntArray, starts: BoolArray) -> LongArray | IntArray:
     """(T, 3): the triangles of strips, every second one turned so that all face the same way, degenerate ones kept.
 
     Parameters

@@ -38,5 +38,6 @@ def _read_binary(data: bytes, limits: ReadLimits) -> Mesh:
             f"The STL file announces {count} faces, which take {_HEADER + count * _FACE.itemsize} bytes, but it has "
             f"{len(data)}: it is cut short or no STL file."
         )
-    corners = np.frombuffer(data, _FACE, count, _HEADER)["corners"]
+    corners = np.empty((count, 3, 3))
+    corners[:] = np.frombuffer(data, _FACE, count, _HEADER)["corners"]
     return Mesh(corners.reshape(-1, 3), np.arange(3 * count, dtype=np.int32).reshape(-1, 3))
