@@ -179,7 +179,8 @@ export class Stage {
 
   /** The picture as it is seen, without a background. */
   async picture(): Promise<Blob> {
-    this.draw();
+    this.#sharpness = 1;
+    this.resize();
     return new Promise((resolve, reject) => {
       this.canvas.toBlob((blob) => (blob ? resolve(blob) : reject(new Error("The picture could not be made."))));
     });

@@ -42,6 +42,8 @@ class Page {
   #opening: Address | null = null;
   #next: { segments: number | null; isBeside: boolean } = { segments: null, isBeside: false };
   #view: View | null = null;
+  /** Whether a person has turned the model. */
+  #isMoved = false;
   #saving = 0;
   #frame = 0;
 
@@ -71,9 +73,15 @@ class Page {
       this.#session?.setModes({ selected: parts });
       if (parts.length === 1) announce(`${this.#session?.nameOf(parts[0]!)} selected.`);
     });
-    viewer.addEventListener("pointerup", () => this.#keepView());
-    viewer.addEventListener("wheel", () => this.#keepView(), { passive: true });
-    viewer.addEventListener("keyup", () => this.#keepView());
+    // The camera comes to rest after the hand, so all moves count from the first one on.
+    for (const name of ["pointerdown", "wheel", "keydown"])
+      viewer.addEventListener(name, () => (this.#isMoved = true), { passive: true });
+    byId("reset-view").addEventListener("click", () => (this.#isMoved = true), { capture: true });
+    viewer.addEventListener("cleave-view", () => {
+      if (!this.#isMoved) return;
+      this.#view = viewer.view;
+      this.#save();
+    });
     byId("home").addEventListener("click", (event) => {
       event.preventDefault();
       history.pushState(null, "", location.pathname);
@@ -130,6 +138,7 @@ class Page {
     if (isSame) return this.#restore();
     this.#session = null;
     this.#view = null;
+    this.#isMoved = false;
     const source = jobPath(job.id, "/model.glb?levels=all");
     this.#viewer.requestHeaders = headers();
     if (this.#opening?.view) this.#viewer.clear();
@@ -198,11 +207,6 @@ class Page {
     this.#parts.update();
     this.#tools.update();
     this.#beside.upAxis = this.#session.modes.up;
-    this.#save();
-  }
-
-  #keepView(): void {
-    this.#view = this.#viewer.view;
     this.#save();
   }
 

@@ -21,7 +21,7 @@ export class PartsPanel {
     this.#session = session;
     this.#list.addEventListener("click", (event) => this.#click(event));
     this.#list.addEventListener("dblclick", (event) => {
-      if (rowOf(event.target) !== null) byId<HTMLInputElement>("part-name").select();
+      if (rowOf(event.target) !== null) this.#rename();
     });
     this.#list.addEventListener("pointerover", (event) => (viewer.hovered = this.#partAt(event.target)));
     this.#list.addEventListener("pointerleave", () => (viewer.hovered = -1));
@@ -77,14 +77,22 @@ export class PartsPanel {
         "data-id": id,
         "aria-level": depth + 1,
         "aria-selected": modes.selected.includes(id),
-        "aria-label": `${title}, ${share(node.area / tree.totalArea)} of the area${isHidden ? ", hidden" : ""}`,
         ...(canSplit ? { "aria-expanded": !isPart } : {}),
       },
-      h("span", { className: canSplit ? "twist" : "twist is-leaf", title: isPart ? "Split" : "Merge" }, canSplit && icon("chevron")),
+      h(
+        "span",
+        { className: canSplit ? "twist" : "twist is-leaf", title: isPart ? "Split" : "Merge", "aria-hidden": true },
+        canSplit && icon("chevron"),
+      ),
       swatch,
       h("span", { className: isPart ? "name" : "name is-group" }, title),
       h("span", { className: "share" }, share(node.area / tree.totalArea)),
-      h("span", { className: "eye", title: isHidden ? "Show" : "Hide" }, icon(isHidden ? "eye-off" : "eye")),
+      isHidden && h("span", { className: "unseen" }, "hidden"),
+      h(
+        "span",
+        { className: "eye", title: isHidden ? "Show" : "Hide", "aria-hidden": true },
+        icon(isHidden ? "eye-off" : "eye"),
+      ),
     );
     row.style.setProperty("--depth", String(Math.min(depth, DEEPEST_STEP)));
     return row;
@@ -119,6 +127,12 @@ export class PartsPanel {
     session.setHidden(parts, !parts.every((part) => session.work.hidden.has(part)));
   }
 
+  /** Have the name of the selected part typed. */
+  #rename(): void {
+    this.update(); // the field is shown with the selection
+    byId<HTMLInputElement>("part-name").select();
+  }
+
   /** As the ARIA Authoring Practices have it for trees. */
   #key(event: KeyboardEvent): void {
     const session = this.#session();
@@ -139,7 +153,7 @@ export class PartsPanel {
       h: () => this.#toggleHidden(session, id),
       F2: () => {
         this.#select(session, id, false);
-        byId<HTMLInputElement>("part-name").focus();
+        this.#rename();
       },
     };
     const action = actions[event.key];

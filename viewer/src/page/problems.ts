@@ -42,6 +42,7 @@ const KNOWN: Record<string, [title: string, next: string, remedy: Remedy]> = {
   malformed_request: ["The upload was cut short", "Send the file again.", "retry"],
   invalid_parameters: ["A parameter is out of range", "Change it and run again.", "parameters"],
   job_not_found: ["This job is gone", "It was deleted, or the link is not complete. Choose a mesh to begin again.", "choose"],
+  not_found: ["This job is gone", "The link is not complete. Choose a mesh to begin again.", "choose"],
   job_deleted: ["This job was deleted", "Choose a mesh to begin again.", "choose"],
   job_canceled: ["This job was stopped", "Send the mesh again to see its parts.", "retry"],
   canceled: ["Stopped", "Nothing was kept. Send the mesh again whenever you like.", "retry"],

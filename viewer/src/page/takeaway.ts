@@ -89,9 +89,6 @@ export class TakeAway {
       const document = (await (await request(address)).json()) as object;
       const text = JSON.stringify({ ...document, names: partNames(session) });
       save(new Blob([text], { type: "application/json" }), fileName);
-    } else if (apiKey.get() === "") {
-      await request(address, { method: "HEAD" }).catch(() => undefined);
-      h("a", { href: address, download: fileName }).click();
     } else {
       save(await getBlob(address), fileName);
     }

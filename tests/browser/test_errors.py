@@ -1,0 +1,100 @@
+"""Errors are sentences with a next step, and a server that comes back is used again."""
+
+import pytest
+from playwright.sync_api import Route
+
+from browser.conftest import MOST_BYTES
+from browser.meshes import small_burr
+from browser.visit import Visit
+from end_to_end.installation import Installation
+
+
+def problem(visit: Visit) -> tuple[str, str, str]:
+    """The code, the sentences and the name of the button."""
+    visit.page.wait_for_selector("#problem:not([hidden])")
+    code = visit.page.get_attribute("#problem", "data-code") or ""
+    return code, visit.page.inner_text("#problem"), visit.page.inner_text("#remedy")
+
+
+def test_a_truncated_file_is_explained_and_another_can_be_chosen(visit: Visit) -> None:
+    visit.open()
+    visit.drop("half.ply", small_burr()[:60_000])
+    code, text, button = problem(visit)
+    assert code == "invalid_mesh"
+    assert "Export it again" in text
+    assert button == "Choose another file"
+    with visit.page.expect_file_chooser() as chooser:
+        visit.page.click("#remedy")
+    chooser.value.set_files([{"name": "whole.ply", "mimeType": "model/ply", "buffer": small_burr() + b"   "}])
+    visit.wait_for_parts()
+
+
+def test_a_file_that_is_too_large_is_refused_before_it_is_sent(visit: Visit) -> None:
+    visit.open()
+    visit.page.wait_for_function("() => document.getElementById('formats').textContent.includes('up to')")
+    visit.drop("huge.stl", b"\0" * (MOST_BYTES + 1))
+    code, text, _ = problem(visit)
+    assert code == "too_large"
+    assert "1.91 MB" in text
+    assert not [url for url in visit.requests if url.endswith("/v1/jobs")]
+
+
+def test_a_file_of_another_kind_is_explained(visit: Visit) -> None:
+    visit.open()
+    visit.drop("letter.pdf", b"%PDF-1.7 and so on")
+    code, text, _ = problem(visit)
+    assert code in ("invalid_mesh", "unsupported_format")
+    assert text.count(".") >= 2
+
+
+def test_a_server_that_goes_while_a_job_runs_is_waited_for(visit: Visit) -> None:
+    def refuse(route: Route) -> None:
+        route.abort("connectionrefused")
+
+    visit.open()
+    visit.page.route("**/v1/jobs/*", refuse)
+    visit.page.route("**/v1/jobs/*/events", refuse)
+    visit.drop("patient.ply", small_burr() + b"    ")
+    visit.page.wait_for_selector("#offline:not([hidden])")
+    visit.page.unroute_all()
+    visit.wait_for_parts()
+    assert visit.page.locator("#offline").is_hidden()
+    visit.faults = [fault for fault in visit.faults if "ERR_CONNECTION_REFUSED" not in fault]
+
+
+def test_an_upload_that_finds_no_server_can_be_tried_again(visit: Visit) -> None:
+    visit.open()
+    visit.page.wait_for_function("() => document.getElementById('formats').textContent.includes('up to')")
+    visit.page.context.set_offline(True)
+    visit.drop("again.ply", small_burr() + b"     ")
+    code, _, button = problem(visit)
+    assert (code, button) == ("unreachable", "Try again")
+    visit.page.context.set_offline(False)
+    visit.page.click("#remedy")
+    visit.wait_for_parts()
+    visit.faults = [fault for fault in visit.faults if "ERR_INTERNET_DISCONNECTED" not in fault]
+
+
+@pytest.mark.parametrize("fragment", ["#job=" + "0" * 32, "#job=../../x"])
+def test_a_link_to_no_job_leads_to_the_start(visit: Visit, fragment: str) -> None:
+    visit.open(fragment)
+    code, _, button = problem(visit)
+    assert code in ("job_not_found", "not_found")
+    assert button == "Choose another file"
+    visit.page.click("#back")
+    visit.page.wait_for_selector("#start:not([hidden])")
+    visit.faults = [fault for fault in visit.faults if "404" not in fault]
+
+
+def test_a_running_job_can_be_stopped(visit: Visit, installation: Installation) -> None:
+    held: list[Route] = []  # answers that do not come
+    visit.open()
+    visit.page.route("**/v1/jobs/*/events", lambda route: held.append(route))
+    with visit.page.expect_response("**/v1/jobs") as submitted:
+        visit.drop("stopped.ply", small_burr() + b"      ")
+    visit.page.click("#stop")
+    visit.page.wait_for_selector("#start:not([hidden])")
+    job = installation.get(f"/v1/jobs/{submitted.value.json()['id']}").json()
+    assert job["status"] in ("canceled", "succeeded")  # where it had ended before it was stopped
+    for route in held:
+        route.abort()

@@ -1,0 +1,44 @@
+"""The files that the package ships: small, and without anything that the policy of the page forbids."""
+
+import gzip
+import re
+from importlib.resources import files
+
+import httpx
+import pytest
+
+from end_to_end.installation import Installation
+
+SCRIPTS = ("cleave-viewer.js", "page.js", "viewer.js")
+
+
+def test_the_scripts_are_small() -> None:
+    contents = [files("service").joinpath("viewer", name).read_bytes() for name in SCRIPTS]
+    assert sum(len(gzip.compress(content)) for content in contents) <= 250 * 1024
+
+
+def test_the_page_has_no_inline_script_style_or_handler() -> None:
+    page = files("service").joinpath("viewer", "index.html").read_text(encoding="utf-8")
+    assert not re.search(r"<script(?![^>]* src=)|<style| style=| on[a-z]+=|javascript:", page)
+    assert not re.search(r"(src|href)=\"(https?:)?//", page)
+
+
+def test_the_policy_allows_this_server_alone(installation: Installation) -> None:
+    policy = installation.get("/").headers["Content-Security-Policy"]
+    directives = dict(part.strip().split(" ", 1) for part in policy.split(";"))
+    assert directives["default-src"] == "'none'"
+    sources = {source for name, value in directives.items() for source in value.split()}
+    assert sources <= {"'none'", "'self'", "blob:"}
+    assert directives["script-src"] == "'self'"
+
+
+@pytest.mark.parametrize("name", [*SCRIPTS, "page.css", "icon.svg", "sample-jack.png"])
+def test_a_file_is_sent_again_only_when_it_has_changed(installation: Installation, name: str) -> None:
+    url = f"{installation.url}/viewer/{name}"
+    tag = httpx.get(url).raise_for_status().headers["ETag"]
+    assert httpx.get(url, headers={"If-None-Match": tag}).status_code == 304
+
+
+@pytest.mark.parametrize("path", ["/viewer/index.html", "/viewer/nothing.js", "/viewer/..%2fhome.py", "/samples/x.ply"])
+def test_nothing_else_is_there(installation: Installation, path: str) -> None:
+    assert installation.get(path).status_code == 404

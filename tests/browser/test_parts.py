@@ -1,0 +1,146 @@
+"""Parts are picked, hidden, split, merged and named; nothing is lost by undo, by a reload or in a link."""
+
+from browser.visit import Visit
+
+
+def test_the_picture_and_the_tree_are_linked_both_ways(visit: Visit, job: str) -> None:
+    visit.open_job(job)
+    part = visit.parts()[3]
+    visit.page.mouse.move(*visit.place_of(part))
+    visit.page.wait_for_function("(id) => document.querySelector(`[data-id='${id}'].is-hovered`)", arg=part)
+    visit.page.mouse.click(*visit.place_of(part))
+    assert visit.selected() == [part]
+    visit.settle()
+    assert visit.row(part).get_attribute("aria-selected") == "true"
+    other = visit.parts()[5]
+    visit.row(other).hover()
+    assert visit.viewer("v.hovered") == other
+    visit.row(other).click(modifiers=["Shift"])
+    assert visit.selected() == [part, other]
+
+
+def test_what_is_said_of_a_part_is_what_the_service_says(visit: Visit, job: str) -> None:
+    visit.open_job(job)
+    nodes = visit.page.evaluate("(path) => fetch(path).then((a) => a.json())", f"v1/jobs/{job}/hierarchy")["nodes"]
+    for part in visit.parts()[:3]:
+        visit.row(part).click()
+        visit.settle()
+        assert visit.page.input_value("#part-name") == f"Part {nodes[part]['label'] + 1}"
+        assert visit.page.inner_text("#detail-faces") == f"{nodes[part]['faces']:,}"
+        area = 100 * nodes[part]["area"] / nodes[0]["area"]
+        assert abs(float(visit.page.inner_text("#detail-area").rstrip("%")) - area) <= 0.051
+        made = float(visit.page.inner_text("#detail-made"))
+        assert abs(made / nodes[nodes[part]["parent"]]["cut_value"] - 1) < 0.006
+
+
+def test_split_merge_undo_and_redo_change_only_the_part(visit: Visit, job: str) -> None:
+    visit.open_job(job)
+    before = visit.parts()
+    part = next(p for p in before if visit.viewer(f"v.tree.node({p}).children.length"))
+    visit.row(part).click()
+    sent = len(visit.requests)
+    visit.page.click("#split")
+    children = visit.viewer(f"[...v.tree.node({part}).children]")
+    assert sorted(visit.parts()) == sorted({*before, *children} - {part})
+    assert sorted(visit.selected()) == sorted(children)
+    assert visit.page.inner_text("#level-number") == "8"
+    visit.page.click("#merge")
+    assert visit.parts() == before
+    visit.page.click("#undo")
+    visit.page.click("#undo")
+    assert visit.parts() == before
+    visit.page.keyboard.press("Control+Shift+Z")
+    assert sorted(visit.parts()) == sorted({*before, *children} - {part})
+    assert visit.requests[sent:] == []
+
+
+def test_merging_two_parts_makes_the_smallest_group_that_holds_them(visit: Visit, job: str) -> None:
+    visit.open_job(job)
+    first, second = visit.parts()[1], visit.parts()[2]
+    visit.row(first).click()
+    visit.row(second).click(modifiers=["Control"])
+    group = visit.viewer(f"v.tree.commonAncestor([{first}, {second}])")
+    below = visit.viewer(f"v.tree.partsBelow(v.cut, {group})")
+    visit.page.click("#merge")
+    assert sorted(visit.parts()) == sorted({*range(0)} | ({*visit.parts()} - {*below}) | {group})
+    assert len(visit.parts()) == 7 - len(below) + 1
+
+
+def test_hidden_parts_are_not_seen_and_isolated_ones_alone(visit: Visit, job: str) -> None:
+    visit.open_job(job)
+    part = visit.parts()[0]
+    place = visit.place_of(part)
+    visit.row(part).click()
+    visit.page.click("#hide")
+    assert visit.parts_at([place]) != [part]
+    visit.page.click("#show-all")
+    assert visit.parts_at([place]) == [part]
+    visit.page.click("#isolate")
+    assert set(visit.parts_at(visit.grid())) == {-1, part}
+
+
+def test_parts_that_are_moved_apart_do_not_cover_each_other(visit: Visit, job: str) -> None:
+    visit.open_job(job)
+    together = visit.parts_at(visit.grid(20))
+    visit.set_range("explode", 100)
+    visit.settle()
+    apart = visit.parts_at(visit.grid(20))
+    assert together != apart
+    assert len(set(apart)) >= len(set(together))
+
+
+def test_a_link_shows_the_same_thing(visit: Visit, job: str) -> None:
+    visit.open_job(job)
+    parts = visit.parts()
+    splittable = next(p for p in parts if visit.viewer(f"v.tree.node({p}).children.length"))
+    visit.row(splittable).click()
+    visit.page.click("#split")
+    named, hidden = visit.parts()[2], visit.parts()[4]
+    visit.row(hidden).click()
+    visit.page.click("#hide")
+    visit.row(named).click()
+    visit.page.fill("#part-name", "Left arm & co")
+    visit.page.keyboard.press("Enter")
+    visit.set_range("explode", 40)
+    visit.page.click("#wireframe")
+    visit.page.click("#up")
+    visit.page.mouse.move(340, 250)
+    visit.page.mouse.down()
+    visit.page.mouse.move(400, 280)
+    visit.page.mouse.up()
+    visit.address("view=")
+    visit.page.wait_for_timeout(600)  # the camera comes to rest and the address follows
+    state = visit.viewer(
+        """JSON.stringify([v.parts, [...v.selected], [...v.hiddenParts], v.hasAttribute('wireframe'),
+           v.getAttribute('explode'), v.getAttribute('up')])"""
+    )
+    view = visit.viewer("v.view")
+    assert visit.address()["hide"] == str(hidden)
+    assert "Left arm & co" in visit.rows()
+    visit.page.reload()
+    visit.wait_for_parts()
+    assert state == visit.viewer(
+        """JSON.stringify([v.parts, [...v.selected], [...v.hiddenParts], v.hasAttribute('wireframe'),
+           v.getAttribute('explode'), v.getAttribute('up')])"""
+    )
+    assert "Left arm & co" in visit.rows()
+    again = visit.viewer("v.view")
+    assert abs(again["azimuth"] - view["azimuth"]) < 0.02
+    assert abs(again["distance"] - view["distance"]) < 0.02
+
+
+def test_a_link_with_nonsense_shows_the_automatic_parts(visit: Visit, job: str) -> None:
+    visit.open_job(job, "&k=zero&hide=9999.x&sel=-3.77777&cut=&explode=much&view=1_2&n99999=x&show=nothing&up=w")
+    assert len(visit.parts()) in (1, 7)
+    assert visit.selected() == []
+
+
+def test_going_back_returns_to_the_page_before(visit: Visit, job: str) -> None:
+    visit.open()
+    visit.page.click("#open-jobs")
+    visit.page.locator(f".job-row[data-id='{job}'] .job").click()
+    visit.wait_for_parts()
+    visit.page.go_back()
+    visit.page.wait_for_selector("#start:not([hidden])")
+    visit.page.go_forward()
+    visit.wait_for_parts()

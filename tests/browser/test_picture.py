@@ -1,0 +1,104 @@
+"""What is drawn: colours that say which part is which at every level, in one buffer, freed when it goes."""
+
+from browser.visit import Visit
+
+
+def test_moving_the_slider_recolours_only_what_splits_and_asks_for_nothing(visit: Visit, job: str) -> None:
+    visit.open_job(job)
+    visit.page.click("#lines")
+    places = _inside_of_leaves(visit)
+    visit.settle()
+    sent = len(visit.requests)
+    previous = visit.parts_at(places), visit.colors_at(places)
+    recoloured = 0
+    for segments in (8, 9, 15, 30):
+        visit.set_range("level", segments)
+        assert visit.page.inner_text("#level-number") == str(segments)
+        visit.settle()
+        parts, colors = visit.parts_at(places), visit.colors_at(places)
+        keeps_label = visit.page.evaluate(
+            """([was, is]) => {
+              const { tree } = document.getElementById('viewer');
+              return is.map((id, i) => id >= 0 && tree.node(id).label === tree.node(was[i]).label);
+            }""",
+            [previous[0], parts],
+        )
+        for kept, part, old, new in zip(keeps_label, parts, previous[1], colors, strict=True):
+            difference = max(abs(a - b) for a, b in zip(old, new, strict=True))
+            if kept:
+                assert difference <= 2
+            elif part >= 0:
+                recoloured += difference > 10
+        previous = parts, colors
+    assert recoloured > 20
+    assert visit.requests[sent:] == []
+
+
+def test_the_picture_has_the_colours_of_the_list(visit: Visit, job: str) -> None:
+    visit.open_job(job)
+    swatches = visit.viewer("v.parts.map((id) => v.colorOf(id).match(/[0-9]+/g).map(Number))")
+    places = visit.grid(16)
+    found = list(zip(visit.parts_at(places), visit.colors_at(places), strict=True))
+    for part, swatch in zip(visit.parts(), swatches, strict=True):
+        pixels = [color[:3] for at, color in found if at == part]
+        if len(pixels) < 10:
+            continue
+        mean = [sum(channel) / len(pixels) for channel in zip(*pixels, strict=True)]
+        # Light changes how bright a colour is, not which of its channels is the strongest and which the weakest.
+        assert abs(swatch[mean.index(max(mean))] - max(swatch)) <= 12
+        assert abs(swatch[mean.index(min(mean))] - min(swatch)) <= 12
+
+
+def test_every_level_is_drawn_with_no_more_calls_than_parts(visit: Visit, job: str) -> None:
+    visit.open_job(job)
+    for segments in (2, 7, 30):
+        visit.set_range("level", segments)
+        visit.viewer("v.figures.frame()")
+        assert 1 <= visit.viewer("v.figures.drawCalls()") <= segments
+
+
+def test_what_a_model_needs_is_freed_with_it(visit: Visit, job: str) -> None:
+    visit.open_job(job)
+    first = _memory_with_everything(visit)
+    for _ in range(3):
+        visit.page.evaluate(
+            """() => new Promise((done) => {
+              const viewer = document.getElementById('viewer');
+              viewer.addEventListener('cleave-load', done, { once: true });
+              const source = viewer.getAttribute('src');
+              viewer.removeAttribute('src');
+              viewer.setAttribute('src', source);
+            })"""
+        )
+        assert _memory_with_everything(visit) == first
+    visit.page.click("#home")
+    visit.page.wait_for_selector("#start:not([hidden])")
+    assert visit.viewer("v.figures.memory().geometries") == 0
+
+
+def _inside_of_leaves(visit: Visit) -> list[tuple[float, float]]:
+    """Places that no level has at a border, where the colours of two parts are mixed."""
+    visit.set_range("level", 64)
+    places = visit.grid(24)
+    around = [(0, 0), (2, 0), (-2, 0), (0, 2), (0, -2)]
+    found = [visit.parts_at([(x + dx, y + dy) for x, y in places]) for dx, dy in around]
+    visit.page.click("#level-automatic")
+    return [place for place, *parts in zip(places, *found, strict=True) if len(set(parts)) == 1]
+
+
+def _memory_with_everything(visit: Visit) -> dict[str, int]:
+    visit.settle()
+    visit.viewer("(v.toggleAttribute('wireframe', true), v.toggleAttribute('concavity', true), v.figures.frame())")
+    memory: dict[str, int] = visit.viewer("v.figures.memory()")
+    return memory
+
+
+def test_concave_places_are_shown_where_the_arms_begin(visit: Visit, job: str) -> None:
+    visit.open_job(job, "&k=1")
+    plain = visit.colors_at(visit.grid(14))
+    visit.page.click("#concavity")
+    visit.settle()
+    shown = visit.colors_at(visit.grid(14))
+    red = [color for color in shown if color[3] == 255 and color[0] > color[2] + 40]
+    assert not [color for color in plain if color[3] == 255 and color[0] > color[2] + 40]
+    assert 10 < len(red) < len([color for color in shown if color[3] == 255]) / 2

@@ -1,0 +1,88 @@
+"""From a file to its parts and away again."""
+
+import httpx
+
+from browser.meshes import small_burr
+from browser.visit import Visit
+from end_to_end.installation import Installation
+
+
+def test_a_dropped_mesh_is_sent_followed_and_shown(visit: Visit, installation: Installation) -> None:
+    visit.open()
+    seen = visit.page.evaluate_handle(
+        """() => {
+          const seen = new Set();
+          const watch = () => {
+            document.querySelectorAll('#stages [data-state=now]').forEach((item) => seen.add(item.dataset.stage));
+          };
+          new MutationObserver(watch).observe(document.getElementById('stages'),
+            { subtree: true, childList: true, attributes: true });
+          return seen;
+        }"""
+    )
+    visit.drop("dropped.ply", small_burr() + b" ")
+    visit.wait_for_parts()
+    stages = visit.page.evaluate("(seen) => [...seen]", seen)
+    assert stages[0] == "upload"
+    assert stages[-1] == "show"
+    assert visit.page.locator("#title").inner_text() == "dropped.ply"
+    assert visit.page.locator("#level-number").inner_text() == "7"
+    assert len(visit.rows()) == 7
+    job = visit.address("job=")["job"]
+    assert installation.status(f"/v1/jobs/{job}") == "succeeded"
+    events = [url for url in visit.requests if url.endswith("/events")]
+    assert len(events) == 1
+    label = visit.viewer("v.shadowRoot.querySelector('canvas').getAttribute('aria-label')")
+    assert label.startswith("dropped.ply: 7 parts. ")
+
+
+def test_a_sample_becomes_parts(visit: Visit) -> None:
+    visit.open()
+    visit.page.click("[data-sample=dumbbell]")
+    visit.wait_for_parts()
+    assert visit.page.locator("#title").inner_text() == "dumbbell.ply"
+    assert len(visit.rows()) == 3
+
+
+def test_a_job_is_in_the_list_with_its_picture_until_it_is_deleted(visit: Visit, installation: Installation) -> None:
+    submitted = httpx.post(
+        f"{installation.url}/v1/jobs", files={"mesh": ("to-delete.ply", small_burr() + b"\n")}, timeout=60
+    ).json()
+    visit.open(f"#job={submitted['id']}")
+    visit.wait_for_parts()
+    visit.page.reload()
+    visit.wait_for_parts()
+    visit.page.click("#open-jobs")
+    visit.page.fill("#job-search", "TO-DEL")
+    row = visit.page.locator(f".job-row[data-id='{submitted['id']}']")
+    row.locator("img[src^=blob]").wait_for()
+    assert visit.page.evaluate("(id) => document.querySelector(`[data-job='${id}']`).naturalWidth", submitted["id"]) > 0
+    assert visit.page.locator(".job-row:visible").count() == 1
+    row.get_by_role("button", name="Delete to-delete.ply").click()
+    row.get_by_role("button", name="Keep").click()
+    row.get_by_role("button", name="Delete to-delete.ply").click()
+    row.get_by_role("button", name="Delete", exact=True).click()
+    row.wait_for(state="detached")
+    assert installation.get(f"/v1/jobs/{submitted['id']}").status_code in (404, 410)
+    visit.page.keyboard.press("Escape")
+    visit.page.wait_for_selector("#start:not([hidden])")
+
+
+def test_a_mesh_can_be_run_again_with_other_parameters_beside_the_first(visit: Visit) -> None:
+    visit.open()
+    visit.drop("again.ply", small_burr() + b"  ")
+    visit.wait_for_parts()
+    visit.page.click("#open-parameters")
+    visit.page.select_option("#parameter-affinity", "adjacency")
+    visit.page.fill("#parameter-max_segments", "12")
+    visit.page.click("text=Run and compare")
+    visit.page.wait_for_function("() => document.querySelector('#beside-level').max === '12'")
+    assert "adjacency" in visit.page.locator("#beside-about").inner_text()
+    visit.viewer("(v.view = { ...v.view, azimuth: 1.25, distance: 5 })")
+    view = visit.page.evaluate("document.querySelector('#beside cleave-viewer').view")
+    assert (round(view["azimuth"], 6), round(view["distance"], 6)) == (1.25, 5)
+    visit.set_range("beside-level", 3)
+    assert visit.page.evaluate("document.querySelector('#beside cleave-viewer').parts.length") == 3
+    assert len(visit.parts()) == 7
+    visit.page.click("#close-beside")
+    assert "beside" not in visit.address("job=") or visit.page.locator("#beside").is_hidden()
