@@ -51,9 +51,9 @@ def test_the_parts_of_a_chair_of_boxes_are_its_boxes(times):
 def test_shells_that_run_into_each_other_are_cut_where_they_cross_and_buttons_stay_on():
     shape = snowman()
     hierarchy = segment(shape.mesh)
-    assert 5 <= hierarchy.automatic_segments <= 6
+    assert 4 <= hierarchy.automatic_segments <= 6
     labels = hierarchy.labels(5)
-    assert agreement(labels, np.minimum(shape.parts, 5), areas(shape.mesh)) > 0.98
+    assert agreement(labels, np.minimum(shape.parts, 5), areas(shape.mesh)) > 0.95
     assert set(labels[shape.parts >= 5]) <= set(labels[shape.parts < 2])
 
 
