@@ -13,7 +13,7 @@ from segcore.surface import Surface
 from segcore.topology import mesh_edges
 
 _SMALLEST_FACE = 1e-4  # least volume of a face, in mean areas
-_SHORTEST_EDGE = 1e-9  # least length of an edge, in mean lengths
+_SHORTEST_EDGE = 1e-2  # least length of an edge, in mean lengths: as that of a face with the least volume
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -23,7 +23,6 @@ class MeshGraph:
     graph: SurfaceGraph
     points: FloatArray  # (N, 3) where the nodes are
     corners: IntArray  # (F, C) the nodes of every face: itself, or its three vertices
-    thickness: FloatArray | None = None  # (N,) logarithm of the shape diameter over sqrt(total area)
 
 
 def mesh_graph(surface: Surface, parameters: SegmentationParameters) -> MeshGraph:
@@ -34,14 +33,14 @@ def mesh_graph(surface: Surface, parameters: SegmentationParameters) -> MeshGrap
 def face_dual_graph(surface: Surface, parameters: SegmentationParameters) -> MeshGraph:
     """The face dual graph: W = edge length times affinity, the volume of a node is the area of its face.
 
-    A face counts for at least 1e-4 of the mean area and an edge for 1e-9 of the mean length, so that degenerate
-    ones do not vanish from the sums.
+    A face counts for at least 1e-4 of the mean area and an edge for 1e-2 of the mean length, so that degenerate
+    ones do not vanish from the sums, and a face that is a point is not cheaper to cut out than it is worth.
     """
     affinity = FACE_AFFINITIES[parameters.affinity](surface, parameters)
     length = at_least(edge_lengths(surface), _SHORTEST_EDGE)
-    graph = SurfaceGraph(surface.edge_faces, length * affinity.value, at_least(surface.areas, _SMALLEST_FACE), length)
+    graph = SurfaceGraph(surface.edge_faces, length * affinity, at_least(surface.areas, _SMALLEST_FACE), length)
     centroids = surface.vertices[surface.faces].mean(axis=1)
-    return MeshGraph(graph, centroids, np.arange(len(surface.faces), dtype=np.int32)[:, None], affinity.thickness)
+    return MeshGraph(graph, centroids, np.arange(len(surface.faces), dtype=np.int32)[:, None])
 
 
 def vertex_graph(surface: Surface, parameters: SegmentationParameters) -> MeshGraph:

@@ -6,9 +6,8 @@ import numpy as np
 
 from segcore.arrays import BoolArray, IntArray
 from segcore.cheeger import cut_of
-from segcore.connected_sides import with_connected_sides
 from segcore.graph import SurfaceGraph
-from segcore.tree import Tree
+from segcore.recursion import Tree, with_connected_sides
 
 
 def project(tree: Tree, corners: IntArray, faces: SurfaceGraph) -> Tree:

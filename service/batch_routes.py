@@ -23,14 +23,14 @@ from service.lookup import describe_all, known_job
 from service.openapi import PARAMETERS, ref
 from service.problems import Problem, documented
 from service.receiving import declared_length, pieces
-from service.submission_contract import (
+from service.submission_routes import (
     MESH_SCHEMA,
     PARAMETERS_IN_QUERY,
     SUBMISSION_PROBLEMS,
     ParametersInQuery,
     Webhook,
+    check_webhook,
 )
-from service.submission_routes import check_webhook
 from service.unpacking import unpack
 from service.upload import FORM_TYPE, parse_parameters, receive_form
 from service.waiting import wait_for_end

@@ -1,0 +1,87 @@
+"""The same shapes in other meshes: how far the segmentations agree with those of the original meshes.
+
+Every model is segmented as it is and in every version, with the number of segments given; the figure is the share of
+the area on which the two agree after the segments are matched as well as can be. All versions keep the shape: half of
+the model split twice, decimated, refined in patches, with slivers, with noise, remeshed. In the row "other seed" the
+mesh is the same and the seed another: so far two equally good answers agree.
+"""
+
+from __future__ import annotations
+
+import argparse
+import statistics
+from collections.abc import Sequence
+from concurrent.futures import ProcessPoolExecutor
+from functools import partial
+from multiprocessing import get_context
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from bench.dataset import Model, read_models
+from bench.errors import BenchmarkError
+from bench.pool import one_thread_per_process
+from bench.remeshing import VERSIONS, Remeshed, agreement
+from bench.segmenter import CleaveSegmenter
+from bench.summary import standard_error_of_mean
+from bench.text import format_table, number
+
+if TYPE_CHECKING:
+    from segcore.arrays import IntArray
+
+SAME = "other seed"
+
+
+def add_arguments(parser: argparse.ArgumentParser) -> None:
+    parser.add_argument("--data", type=Path, required=True, metavar="DIR", help="the folder of the benchmark")
+    parser.add_argument("--limit", type=int, metavar="N", help="only N models, spread evenly over the list")
+    parser.add_argument("--jobs", type=int, default=1, metavar="N", help="processes (default 1)")
+    parser.add_argument(
+        "--only", nargs="+", choices=[SAME, *VERSIONS], default=[SAME, *VERSIONS], metavar="NAME", help="some versions"
+    )
+
+
+def run(arguments: argparse.Namespace) -> None:
+    if arguments.jobs < 1:
+        raise BenchmarkError(f"--jobs must be at least 1, not {arguments.jobs}.")
+    models = read_models(arguments.data, arguments.limit)
+    segmenter = CleaveSegmenter()
+    with (
+        one_thread_per_process(),
+        ProcessPoolExecutor(arguments.jobs, mp_context=get_context("spawn"), initializer=segmenter.warm_up) as pool,
+    ):
+        measured = list(pool.map(partial(measure, segmenter=segmenter, names=arguments.only), models))
+    print(render(models, arguments.only, measured))
+
+
+def measure(model: Model, segmenter: CleaveSegmenter, names: Sequence[str]) -> list[float]:
+    """The agreement of every version of a model with the original."""
+    mesh = model.read_mesh()
+    same = Remeshed(mesh.vertices, mesh.faces, np.arange(len(mesh.faces), dtype=np.int32))
+    labels = _labels(segmenter, same, model.segments, seed=0)
+    agreements = []
+    for name in names:
+        other = same if name == SAME else VERSIONS[name](mesh, np.random.default_rng(model.number))
+        other_labels = _labels(segmenter, other, model.segments, seed=int(name == SAME))
+        agreements.append(agreement(mesh, labels, other, other_labels))
+    return agreements
+
+
+def render(models: Sequence[Model], names: Sequence[str], measured: Sequence[Sequence[float]]) -> str:
+    rows = []
+    for name, values in zip(names, zip(*measured, strict=True), strict=True):
+        error = standard_error_of_mean(values)
+        above = sum(value >= 0.95 for value in values) / len(values)
+        rows.append([name, number(statistics.fmean(values)), number(error), number(min(values)), f"{above:.0%}"])
+    table = format_table(["version", "agreement", "std. error", "least", "at least 0.95"], rows)
+    return (
+        f"{len(models)} models, number of segments given: share of the area that agrees with the original.\n\n{table}"
+    )
+
+
+def _labels(segmenter: CleaveSegmenter, shape: Remeshed, segments: int, seed: int) -> IntArray:
+    from segcore.mesh import Mesh
+
+    hierarchy = segmenter(Mesh(shape.vertices, shape.faces), seed)
+    return hierarchy.labels(min(segments, hierarchy.max_segments))
