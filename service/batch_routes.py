@@ -23,19 +23,20 @@ from service.lookup import describe_all, known_job
 from service.openapi import PARAMETERS, ref
 from service.problems import Problem, documented
 from service.receiving import declared_length, pieces
-from service.submission_routes import (
+from service.submission_contract import (
     MESH_SCHEMA,
     PARAMETERS_IN_QUERY,
     SUBMISSION_PROBLEMS,
     ParametersInQuery,
     Webhook,
-    check_webhook,
 )
+from service.submission_routes import check_webhook
 from service.unpacking import unpack
 from service.upload import FORM_TYPE, parse_parameters, receive_form
 from service.waiting import wait_for_end
 from worker.batches import Batch
 from worker.jobs import Job, new_job_id, now
+from worker.settings import LONGEST_WAIT_S
 from worker.upload import MeshUpload
 
 router = APIRouter(prefix="/v1/batches", tags=["batches"])
@@ -131,7 +132,14 @@ async def get_batch(
     request: Request,
     context: ContextOf,
     caller: CallerOf,
-    wait: Annotated[float, Query(ge=0, le=60, description="Seconds to wait for the end of its jobs.")] = 0,
+    wait: Annotated[
+        float,
+        Query(
+            ge=0,
+            le=LONGEST_WAIT_S,
+            description="Seconds to wait, if the server waits so long, for the end of its jobs.",
+        ),
+    ] = 0,
 ) -> Response:
     """How a batch is, and each of its jobs."""
     batch = await run_in_threadpool(_known_batch, context, caller, batch_id)

@@ -10,12 +10,13 @@ from service.access import CallerOf
 from service.answers import NOT_MODIFIED, answer_json
 from service.context import ContextOf
 from service.documents import JobDocument, JobPageDocument, Status
-from service.events import has_seen_the_end, job_events
+from service.events import EVENT_SCHEMA, has_seen_the_end, job_events
 from service.lookup import describe, describe_all, known_job
 from service.problems import Problem, documented
 from service.waiting import wait_for_end
 from worker.index import CURSOR
 from worker.jobs import Canceled, now
+from worker.settings import LONGEST_WAIT_S
 
 router = APIRouter(prefix="/v1/jobs", tags=["jobs"])
 
@@ -57,7 +58,12 @@ async def get_job(
     request: Request,
     context: ContextOf,
     caller: CallerOf,
-    wait: Annotated[float, Query(ge=0, le=60, description="Seconds to wait for the end of the job.")] = 0,
+    wait: Annotated[
+        float,
+        Query(
+            ge=0, le=LONGEST_WAIT_S, description="Seconds to wait, if the server waits so long, for the end of the job."
+        ),
+    ] = 0,
 ) -> Response:
     """How a job is. With ``wait`` the answer comes when the job has ended, or after so many seconds."""
     job = await run_in_threadpool(known_job, context, caller, job_id)
@@ -75,7 +81,7 @@ async def get_job(
         200: {
             "description": "A stream of events `status`, each with a job document as its data. The last one is that "
             "of the end of the job.",
-            "content": {"text/event-stream": {"schema": {"type": "string"}}},
+            "content": {"text/event-stream": {"schema": EVENT_SCHEMA}},
         },
         204: {"description": "The job has ended and Last-Event-ID is that of the last event: do not come back."},
         **documented("unauthorized", "job_not_found", "job_deleted", "invalid_request"),

@@ -7,6 +7,8 @@ from platformdirs import user_data_path
 from pydantic import AfterValidator, Field, ValidationError
 from pydantic_settings import BaseSettings, SettingsConfigDict
 
+LONGEST_WAIT_S = 600.0  # that any installation may hold back an answer
+
 
 class InvalidSettings(Exception):  # noqa: N818
     """A variable of the environment has a value that cannot be used; the message names it."""
@@ -47,7 +49,9 @@ class Settings(BaseSettings):
         default=None, ge=1, description="Bytes that a key may upload in an hour."
     )
     max_queued_jobs: int = Field(default=10_000, ge=1, description="Unfinished jobs that the installation may have.")
-    max_wait_s: float = Field(default=60.0, ge=0, le=600, description="Longest time that an answer is held back.")
+    max_wait_s: float = Field(
+        default=60.0, ge=0, le=LONGEST_WAIT_S, description="Longest time that an answer is held back."
+    )
     max_stream_s: float = Field(
         default=3600.0, gt=0, description="Longest stream of events; a client that wants more comes back by itself."
     )

@@ -62,3 +62,12 @@ def test_an_answer_that_takes_long_is_waited_for(settings: Settings, monkeypatch
         path = submit(client)
         assert client.get(path, params={"wait": 0.5}).status_code == 200
         assert client.get(path).status_code == 200
+
+
+def test_head_is_get_without_the_body(client: httpx.Client) -> None:
+    path = submit(client)
+    for url in (path, "/openapi.json", "/nowhere"):
+        whole, head = client.get(url), client.head(url)
+        assert head.content == b""
+        assert head.status_code == whole.status_code
+        assert head.headers["Content-Length"] == whole.headers["Content-Length"]

@@ -8,7 +8,7 @@ import httpx
 import pytest
 from asking import AGAIN, problem, submit
 
-from service.submission_routes import Preference, read_preference
+from service.preference import Preference, read_preference
 from support import sphere, wait_until
 from worker.queue import JobQueue
 from worker.settings import Settings
