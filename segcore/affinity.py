@@ -5,11 +5,13 @@ times g and the volume of a node is the area of its face, so that cuts and volum
 shape is meshed.
 """
 
+from dataclasses import dataclass
+
 import numpy as np
 
 from segcore.arrays import FloatArray, IntArray
 from segcore.boundary_model import boundary_probability
-from segcore.measurements import measure
+from segcore.measurements import Measurements, measure
 from segcore.minima_rule import minima_rule_of_faces, minima_rule_of_vertices
 from segcore.parameters import SegmentationParameters
 from segcore.surface import Surface
@@ -22,36 +24,38 @@ _LEARNED_BENDING = 0.4  # weights of what is measured next to what is learned
 _LEARNED_CHANGE = 1.5
 
 
-def concavity(surface: Surface, parameters: SegmentationParameters) -> FloatArray:
+@dataclass(frozen=True, slots=True, eq=False)
+class Affinity:
+    """The affinity of a surface, and what was measured on the way."""
+
+    value: FloatArray  # (E,) g in (0, 1]
+    thickness: FloatArray | None = None  # (F,) logarithm of the shape diameter over sqrt(total area), smoothed
+
+
+def concavity(surface: Surface, parameters: SegmentationParameters) -> Affinity:
     """g = 0.03 + 0.97 exp(-x / 1.4 - x3 / 0.3), x the concave bending of an edge, x3 the change of thickness across it.
 
     See ``segcore.measurements.measure``.
-
-    Returns
-    -------
-    (E,) in (0.03, 1].
     """
     measured = measure(surface, parameters.seed)
-    return _affinity(measured.bending / _BENDING_SCALE + measured.change / _CHANGE_SCALE)
+    return _affinity(measured, measured.bending / _BENDING_SCALE + measured.change / _CHANGE_SCALE)
 
 
-def learned(surface: Surface, parameters: SegmentationParameters) -> FloatArray:
+def learned(surface: Surface, parameters: SegmentationParameters) -> Affinity:
     """g = 0.03 + 0.97 exp(-p / 0.05 - 0.4 x - 1.5 x3), p the chance that a person cuts along the edge.
 
     See ``segcore.boundary_model``.
-
-    Returns
-    -------
-    (E,) in (0.03, 1].
     """
     measured = measure(surface, parameters.seed)
     chance = boundary_probability(surface, measured)
-    return _affinity(chance / _CHANCE_SCALE + _LEARNED_BENDING * measured.bending + _LEARNED_CHANGE * measured.change)
+    return _affinity(
+        measured, chance / _CHANCE_SCALE + _LEARNED_BENDING * measured.bending + _LEARNED_CHANGE * measured.change
+    )
 
 
-def adjacency_of_faces(surface: Surface, _: SegmentationParameters) -> FloatArray:
+def adjacency_of_faces(surface: Surface, _: SegmentationParameters) -> Affinity:
     """g = 1: the standard adjacency matrix."""
-    return np.ones(len(surface.edge_faces))
+    return Affinity(np.ones(len(surface.edge_faces)))
 
 
 def adjacency_of_vertices(_surface: Surface, ends: IntArray, _: SegmentationParameters) -> FloatArray:
@@ -62,12 +66,11 @@ def adjacency_of_vertices(_surface: Surface, ends: IntArray, _: SegmentationPara
 FACE_AFFINITIES = {
     "concavity": concavity,
     "learned": learned,
-    "minima_rule": minima_rule_of_faces,
+    "minima_rule": lambda surface, parameters: Affinity(minima_rule_of_faces(surface, parameters)),
     "adjacency": adjacency_of_faces,
 }
 VERTEX_AFFINITIES = {"minima_rule": minima_rule_of_vertices, "adjacency": adjacency_of_vertices}
 
 
-def _affinity(distance: FloatArray) -> FloatArray:
-    affinity: FloatArray = _FLOOR + (1.0 - _FLOOR) * np.exp(-distance)
-    return affinity
+def _affinity(measured: Measurements, distance: FloatArray) -> Affinity:
+    return Affinity(_FLOOR + (1.0 - _FLOOR) * np.exp(-distance), measured.log_thickness[measured.patches.of_face])

@@ -16,8 +16,8 @@ from segcore.mesh_graph import MeshGraph
 from segcore.places import broken_leaves, changed_places, crossing_edges, edges_around, move
 from segcore.projection import intervals
 from segcore.proximity import Links
-from segcore.recursion import Tree
 from segcore.surface import Surface
+from segcore.tree import Tree
 
 BAND = 0.03  # of sqrt(total area), to either side of a boundary
 STIFFNESS = 0.1  # added to the affinity in the cost of a boundary: makes it shorter where concavities say little

@@ -20,6 +20,7 @@ class Clusters:
     graph: SurfaceGraph  # N clusters
     of_node: IntArray  # the cluster of every node of the mesh graph
     points: FloatArray  # (N, 3) their centres
+    thickness: FloatArray | None  # (N,) their mean logarithm of the shape diameter over sqrt(total area)
 
 
 def cluster_nodes(mesh_graph: MeshGraph, target: int, rng: np.random.Generator) -> Clusters:
@@ -39,7 +40,9 @@ def cluster_nodes(mesh_graph: MeshGraph, target: int, rng: np.random.Generator) 
         of_node = _with_followers(of_host, host_nodes, component, nearest_hosts(component, is_host, points))
     volume = group_sums(of_node, graph.volume)
     centres = np.stack([group_sums(of_node, graph.volume * points[:, axis]) / volume for axis in range(3)], axis=1)
-    return Clusters(replace(coarse, volume=volume), of_node, centres)
+    thickness = mesh_graph.thickness
+    mean = None if thickness is None else group_sums(of_node, graph.volume * thickness) / volume
+    return Clusters(replace(coarse, volume=volume), of_node, centres, mean)
 
 
 def _with_followers(of_host: IntArray, host_nodes: IntArray, component: IntArray, pairs: IntArray) -> IntArray:

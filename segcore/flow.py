@@ -3,7 +3,7 @@
 from itertools import islice
 
 from segcore.arrays import BoolArray
-from segcore.cheeger import Cut, balance_subgradient, cut_of
+from segcore.cheeger import Cut, balance_subgradient, cut_of, sweep
 from segcore.fiedler import eigenvectors
 from segcore.graph import SurfaceGraph
 from segcore.max_flow import Network
@@ -35,15 +35,21 @@ def flow_cut(graph: SurfaceGraph, *, count: int = 2) -> Cut:
     ValueError
         Where the graph is not connected.
     """
+    return flow_cuts(graph, improved=count, count=count)[0]
+
+
+def flow_cuts(graph: SurfaceGraph, *, improved: int = 2, count: int = 3) -> list[Cut]:
+    """The cut of ``flow_cut`` from the first eigenvectors, then the sweeps of ``count`` of them as they are."""
     network = Network.of(graph)
     vectors = eigenvectors(graph, network.factor, count).T
     flow = TotalVariationFlow.of(graph, vectors[0])
-    passed = [min(islice(flow.cuts(values, ITERATIONS), STEPS + 1), key=_ncc) for values in vectors]
+    passed = [min(islice(flow.cuts(values, ITERATIONS), STEPS + 1), key=_ncc) for values in vectors[:improved]]
     different = {cut.key: cut for cut in passed}
     best, *others = sorted(different.values(), key=_ncc)
     best = _improved(network, best)
     promising = [cut for cut in others if cut.ncc <= HOPELESS * best.ncc]
-    return min([best, *(_improved(network, cut) for cut in promising)], key=_ncc).canonical
+    best = min([best, *(_improved(network, cut) for cut in promising)], key=_ncc).canonical
+    return [best, *(sweep(graph, values).canonical for values in vectors)]
 
 
 def improve(graph: SurfaceGraph, side: BoolArray) -> Cut:

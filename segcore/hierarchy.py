@@ -81,6 +81,23 @@ class Hierarchy:
             nodes[split + 1] = 2 * split + 2
         return nodes
 
+    def segments_at(self, granularity: float) -> int:
+        """The number of segments K at a granularity: 0 is one segment, 0.5 the automatic number, 1 every split made.
+
+        Between them K grows by equal factors for equal steps.
+
+        Raises
+        ------
+        InvalidParameters
+            Where the granularity is not in 0..1.
+        """
+        if not 0.0 <= granularity <= 1.0:
+            raise InvalidParameters(f"The granularity must be a number from 0 (coarse) to 1 (fine), not {granularity}.")
+        if granularity <= 0.5:
+            return round(self.automatic_segments ** (2.0 * granularity))
+        finer = self.max_segments / self.automatic_segments
+        return round(self.automatic_segments * finer ** (2.0 * granularity - 1.0))
+
     def labels(self, segments: int | None = None) -> IntArray:
         """(F,) int32: the segment of every input face, contiguous 0..K - 1, in input order.
 

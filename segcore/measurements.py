@@ -4,7 +4,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from segcore.arrays import FloatArray
+from segcore.arrays import FloatArray, IntArray
 from segcore.curvature import principal_curvatures
 from segcore.edge_geometry import EdgeGeometry
 from segcore.patches import Patches, patches_of
@@ -28,6 +28,7 @@ class Measurements:
     change: FloatArray  # (E,) change of thickness across the edge, 0 to 3
     patches: Patches
     thickness: Thickness
+    log_thickness: FloatArray  # (P,) its logarithm, smoothed over 0.06 sqrt(A)
 
 
 def measure(surface: Surface, seed: int) -> Measurements:
@@ -54,16 +55,14 @@ def measure(surface: Surface, seed: int) -> Measurements:
     guard = _LOWEST_GUARD + (1.0 - _LOWEST_GUARD) * np.exp(-bending)
     patches = patches_of(surface, guard, edges.positive_length, np.random.default_rng(seed))
     thickness = patch_thickness(surface, patches)
-    change = _thickness_change(surface, patches, thickness, edges.across, size)
-    return Measurements(edges, k1, k2, bending, change, patches, thickness)
-
-
-def _thickness_change(
-    surface: Surface, patches: Patches, thickness: Thickness, across: FloatArray, size: float
-) -> FloatArray:
     log = smooth_logarithm(thickness, patches, _THICKNESS_RADIUS * size)
     slope = patches.gradients(log) * (_THICKNESS_RADIUS * size * thickness.confidence)[:, None]
-    f, g = patches.of_face[surface.edge_faces].T
-    along = np.einsum("ij,ij->i", 0.5 * (slope[f] + slope[g]), across)
+    change = _change_across(slope, patches.of_face[surface.edge_faces], edges.across)
+    return Measurements(edges, k1, k2, bending, change, patches, thickness, log)
+
+
+def _change_across(slope: FloatArray, ends: IntArray, across: FloatArray) -> FloatArray:
+    """(E,) the derivative across every edge, from the slopes (P, 3) of the patches (E, 2) at its sides."""
+    along = np.einsum("ij,ij->i", 0.5 * (slope[ends[:, 0]] + slope[ends[:, 1]]), across)
     change: FloatArray = np.minimum(_LARGEST_CHANGE, np.abs(along))
     return change

@@ -23,6 +23,7 @@ class MeshGraph:
     graph: SurfaceGraph
     points: FloatArray  # (N, 3) where the nodes are
     corners: IntArray  # (F, C) the nodes of every face: itself, or its three vertices
+    thickness: FloatArray | None = None  # (N,) logarithm of the shape diameter over sqrt(total area)
 
 
 def mesh_graph(surface: Surface, parameters: SegmentationParameters) -> MeshGraph:
@@ -38,9 +39,9 @@ def face_dual_graph(surface: Surface, parameters: SegmentationParameters) -> Mes
     """
     affinity = FACE_AFFINITIES[parameters.affinity](surface, parameters)
     length = at_least(edge_lengths(surface), _SHORTEST_EDGE)
-    graph = SurfaceGraph(surface.edge_faces, length * affinity, at_least(surface.areas, _SMALLEST_FACE), length)
+    graph = SurfaceGraph(surface.edge_faces, length * affinity.value, at_least(surface.areas, _SMALLEST_FACE), length)
     centroids = surface.vertices[surface.faces].mean(axis=1)
-    return MeshGraph(graph, centroids, np.arange(len(surface.faces), dtype=np.int32)[:, None])
+    return MeshGraph(graph, centroids, np.arange(len(surface.faces), dtype=np.int32)[:, None], affinity.thickness)
 
 
 def vertex_graph(surface: Surface, parameters: SegmentationParameters) -> MeshGraph:

@@ -11,7 +11,7 @@ Graph: TypeAlias = Literal["faces", "vertices"]
 Affinity: TypeAlias = Literal["learned", "concavity", "minima_rule", "adjacency"]
 Thinning: TypeAlias = Literal["walk", "revisit", "none"]
 Solver: TypeAlias = Literal["flow", "fiedler", "inverse_power", "split_bregman", "p_laplacian"]
-Order: TypeAlias = Literal["ncut", "ncc", "volume"]
+Order: TypeAlias = Literal["learned", "ncut", "ncc", "volume"]
 
 
 def _about(description: str, *, exception: int | None = None, **limits: float) -> dict[str, Any]:
@@ -31,7 +31,7 @@ class SegmentationParameters:
 
     graph: Graph = field(default="faces", metadata=_about("The nodes of the graph that is cut."))
     affinity: Affinity = field(
-        default="concavity",
+        default="learned",
         metadata=_about("The weights of its edges; learned, concavity: on faces only."),
     )
     thinning: Thinning = field(
@@ -56,7 +56,11 @@ class SegmentationParameters:
         ),
     )
     order: Order = field(
-        default="ncut", metadata=_about("The segment with the least value, or the largest volume, is split next.")
+        default="learned",
+        metadata=_about(
+            "Which split is next: learned as people would, with affinity learned (ncut with any other); or that of the "
+            "segment with the least value, or the largest volume."
+        ),
     )
     max_segments: int = field(
         default=64, metadata=_about("The number of segments at which the hierarchy ends.", minimum=1, maximum=10_000)
@@ -77,6 +81,11 @@ class SegmentationParameters:
             _check(name, getattr(self, name), schema)
         if self.graph == "vertices" and self.affinity in ("learned", "concavity"):
             raise InvalidParameters(f"affinity {self.affinity!r} needs the graph of the faces: choose graph 'faces'.")
+
+    @property
+    def split_order(self) -> Order:
+        """``order``, with "ncut" in place of "learned" where the affinity is not learned."""
+        return "ncut" if self.order == "learned" and self.affinity != "learned" else self.order
 
     @classmethod
     def preset(cls, name: str) -> "SegmentationParameters":

@@ -6,8 +6,9 @@ import numpy as np
 
 from segcore.arrays import BoolArray, IntArray
 from segcore.cheeger import cut_of
+from segcore.connected_sides import with_connected_sides
 from segcore.graph import SurfaceGraph
-from segcore.recursion import Tree, with_connected_sides
+from segcore.tree import Tree
 
 
 def project(tree: Tree, corners: IntArray, faces: SurfaceGraph) -> Tree:

@@ -16,8 +16,10 @@ from segcore.parameters import SegmentationParameters
 from segcore.progress import OnProgress, Progress
 from segcore.projection import project
 from segcore.proximity import Links
-from segcore.recursion import Tree, bisect
+from segcore.recursion import bisect
+from segcore.split_rules import split_rule
 from segcore.surface import Surface, build_surface
+from segcore.tree import Tree
 
 
 def segment(
@@ -49,7 +51,9 @@ def segment(
     clusters = cluster_nodes(nodes, chosen.clusters, rng)
     clusters, links = assemble(surface, nodes, clusters, chosen.max_segments)
     progress("cut")
-    tree = bisect(clusters.graph, clusters.points, chosen, rng, partial(progress.after_splits, chosen.max_segments))
+    rule = split_rule(clusters, chosen, rng)
+    after_splits = partial(progress.after_splits, chosen.max_segments)
+    tree = bisect(clusters.graph, clusters.points, rule, chosen.max_segments, after_splits)
     progress("label")
     tree = _over_faces(tree, clusters, nodes, links, surface)
     hierarchy = _of_input(surface, tree)

@@ -20,7 +20,7 @@ from service import (
 from service.access import ForeignSites
 from service.api_keys import key_ring
 from service.context import Context, QueueView
-from service.headers import SecurityHeaders
+from service.headers import HeadRequests, SecurityHeaders
 from service.metrics import MeasuredRequests, Metrics
 from service.openapi import complete
 from service.problems import handle_problems
@@ -90,6 +90,7 @@ def create_app(settings: Settings) -> FastAPI:
         app.include_router(module.router)
     _add_middleware(app, settings)
     app.add_middleware(MeasuredRequests, metrics=metrics)
+    app.add_middleware(HeadRequests)
     handle_problems(app)
     complete(app, keys_required=app.state.context.keys_required)
     return app

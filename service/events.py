@@ -16,6 +16,19 @@ from worker.store import UnknownJob
 _LOOK_S = 0.2  # between two looks at the job
 _SILENCE_S = 15.0  # after so long a comment keeps proxies from closing the connection
 _RETRY_MS = 1000  # when a client that lost the connection comes back
+EVENT_SCHEMA = {
+    "type": "object",
+    "required": ["id", "event", "data"],
+    "properties": {
+        "id": {"type": "string", "pattern": "^[0-9]+$"},
+        "event": {"const": "status"},
+        "data": {
+            "type": "string",
+            "contentMediaType": "application/json",
+            "contentSchema": {"$ref": "#/components/schemas/JobDocument"},
+        },
+    },
+}
 
 
 async def job_events(context: Context, job: Job, last_id: int) -> AsyncIterator[str]:

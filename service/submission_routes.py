@@ -1,8 +1,6 @@
 """Submitting a mesh: at once, or with the labels in the same answer."""
 
-import re
 from contextlib import ExitStack
-from dataclasses import dataclass
 from typing import Annotated, Any
 
 from fastapi import APIRouter, Header, Query, Request
@@ -14,133 +12,28 @@ from segcore.io import FORMATS
 from segcore.io.labels import labels_document
 from service.access import Caller, CallerOf
 from service.context import Context, ContextOf
-from service.documents import JobDocument, SubmittedJobDocument
-from service.form import MAX_PARAMETERS_BYTES, ReceivedMesh
+from service.form import ReceivedMesh
 from service.intake import Taken, Wish, take_in
 from service.labels import compact_json
 from service.limits import check_limits
 from service.lookup import describe, result_of
-from service.openapi import PARAMETERS
+from service.preference import Preference, read_preference
 from service.problems import documented
 from service.receiving import declared_length
-from service.upload import FORM_TYPE, parse_parameters, receive_mesh, requested_format
+from service.submission_contract import ANSWERS, BODY, SUBMISSION_PROBLEMS, ParametersInQuery, Webhook
+from service.upload import parse_parameters, receive_mesh, requested_format
 from service.waiting import wait_for_end
 from service.webhook import objection_to
 
 router = APIRouter(prefix="/v1/jobs", tags=["jobs"])
-
-_WAIT = re.compile(r"wait\s*=\s*\"?(\d{1,9})\"?", re.ASCII | re.IGNORECASE)
-
-SUBMISSION_PROBLEMS = (
-    "malformed_request",
-    "unauthorized",
-    "foreign_site",
-    "too_slow",
-    "length_required",
-    "too_large",
-    "unsupported_media_type",
-    "invalid_mesh",
-    "invalid_parameters",
-    "invalid_request",
-    "queue_full",
-    "too_many_jobs",
-    "too_many_bytes",
-    "queue_unavailable",
-    "storage_full",
-)
-MESH_SCHEMA = {"type": "string", "format": "binary", "minLength": 1, "description": "The bytes of a mesh file."}
-_MESH = {"schema": MESH_SCHEMA}
-_FORM = {
-    "schema": {
-        "type": "object",
-        "required": ["mesh"],
-        "additionalProperties": False,
-        "properties": {
-            "mesh": MESH_SCHEMA,
-            "parameters": PARAMETERS,
-        },
-    },
-    "encoding": {"parameters": {"contentType": "application/json"}},
-}
-PARAMETERS_IN_QUERY = {
-    "name": "parameters",
-    "in": "query",
-    "description": "The parameters, where the body is not a form.",
-    "content": {"application/json": {"schema": PARAMETERS, "example": {"max_segments": 32}}},
-}
-ParametersInQuery = Annotated[str | None, Query(max_length=MAX_PARAMETERS_BYTES, include_in_schema=False)]
-Webhook = Annotated[
-    str | None,
-    Query(
-        max_length=2000,
-        description="The URL that is told when the job has ended, as in Standard Webhooks.",
-        json_schema_extra={"pattern": r"^https?://[A-Za-z0-9.-]+(:[0-9]{1,4})?(/[!-~]*)?$"},
-        examples=["https://example.com/hook"],
-    ),
-]
-_BODY: dict[str, Any] = {
-    "parameters": [PARAMETERS_IN_QUERY],
-    "requestBody": {
-        "required": True,
-        "description": "The mesh file as it is, also compressed with gzip, or in a form.",
-        "content": {
-            **{form.media_types[0]: _MESH for form in FORMATS.values()},
-            "application/octet-stream": _MESH,
-            FORM_TYPE: _FORM,
-        },
-    },
-}
-_JOB_HEADERS: dict[str, Any] = {
-    "Location": {"schema": {"type": "string"}, "description": "The path of the job."},
-    "RateLimit": {"schema": {"type": "string"}, "description": "What is left of the caller's limits."},
-    "RateLimit-Policy": {"schema": {"type": "string"}, "description": "The caller's limits."},
-    "Preference-Applied": {"schema": {"type": "string"}, "description": "The part of Prefer that was followed."},
-}
-_FOLLOWERS = (
-    "get_job",
-    "get_events",
-    "get_labels",
-    "get_hierarchy",
-    "get_glb",
-    "get_preview",
-    "cancel_job",
-    "delete_job",
-)
-_LINKS = {
-    name: {"operationId": name, "parameters": {"job_id": "$response.body#/id"}, "description": "Of this job."}
-    for name in _FOLLOWERS
-}
-_ANSWERS: dict[int | str, dict[str, Any]] = {
-    200: {
-        "model": SubmittedJobDocument,
-        "description": "The job has ended: within the time of Prefer: wait, or before, with the same mesh and "
-        "parameters.",
-        "headers": _JOB_HEADERS,
-        "links": _LINKS,
-    },
-    202: {
-        "model": JobDocument,
-        "description": "The job is accepted and durable. Poll its Location, or listen to its events.",
-        "headers": {**_JOB_HEADERS, "Retry-After": {"schema": {"type": "integer"}, "description": "Seconds."}},
-        "links": _LINKS,
-    },
-}
-
-
-@dataclass(frozen=True, slots=True)
-class Preference:
-    """What a Prefer header asks for (RFC 7240)."""
-
-    wait_s: float
-    applied: str | None  # to be told
 
 
 @router.post(
     "",
     status_code=202,
     response_class=Response,
-    openapi_extra=_BODY,
-    responses=_ANSWERS | documented(*SUBMISSION_PROBLEMS, "idempotency_key_spent", "idempotency_key_reused"),
+    openapi_extra=BODY,
+    responses=ANSWERS | documented(*SUBMISSION_PROBLEMS, "idempotency_key_spent", "idempotency_key_reused"),
 )
 async def create_job(
     request: Request,
@@ -204,15 +97,6 @@ async def create_job(
     if preference.wait_s:
         await wait_for_end(context.store, taken.job.id, preference.wait_s)
     return await run_in_threadpool(_answer, context, taken, preference, segments, limits)
-
-
-def read_preference(prefer: str | None, most_s: float) -> Preference:
-    waits = [match for part in (prefer or "").split(",") if (match := _WAIT.fullmatch(part.strip()))]
-    if waits:
-        wait_s = min(float(waits[0][1]), most_s)
-        return Preference(wait_s, f"wait={wait_s:.0f}")
-    is_async = any(part.strip().lower() == "respond-async" for part in (prefer or "").split(","))
-    return Preference(0.0, "respond-async" if is_async else None)
 
 
 def check_webhook(context: Context, url: str | None) -> None:

@@ -14,6 +14,7 @@ from typing import get_args
 from bench.dataset import read_models
 from bench.errors import BenchmarkError
 from bench.evaluation import SegmentChoice
+from bench.learning.folds import read_folds
 from bench.pool import evaluate_models
 from bench.report import render
 from bench.results import save_results
@@ -46,6 +47,12 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         metavar="KEY=VALUE",
         help="parameters of the segmentation, by the names of segcore.SegmentationParameters",
     )
+    parser.add_argument(
+        "--learned",
+        type=Path,
+        metavar="FOLDER",
+        help="go by what was learned without the model at hand (from python -m bench train --folds FOLDER)",
+    )
 
 
 def run(arguments: argparse.Namespace) -> None:
@@ -58,7 +65,8 @@ def run(arguments: argparse.Namespace) -> None:
         raise BenchmarkError(f"The folder of {arguments.output} does not exist: create it first.")
     segmenter = CleaveSegmenter(parameters)
     models = read_models(arguments.data, arguments.limit)
-    results = evaluate_models(models, segmenter, arguments.seeds, arguments.segments, arguments.jobs)
+    learned = None if arguments.learned is None else read_folds(arguments.learned)
+    results = evaluate_models(models, segmenter, arguments.seeds, arguments.segments, arguments.jobs, learned)
     if arguments.output is not None:
         save_results(arguments.output, results, arguments.segments, parameters)
     print(render(results, arguments.segments))

@@ -2,12 +2,12 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 import numpy as np
 from scipy.spatial import KDTree
 
+from bench.learning.rows import Rows
 from segcore.boundary_model import edge_features, patch_fields
 from segcore.measurements import measure
 from segcore.surface import build_surface
@@ -20,15 +20,6 @@ if TYPE_CHECKING:
 ROWS = 1500  # edges of a model that are learned from
 _TOLERANCE = 0.012  # how far a person's cut may be from an edge, in sqrt(total area)
 _SPACING = 0.004  # of the points that stand for a person's cut
-
-
-@dataclass(frozen=True, slots=True, eq=False)
-class Rows:
-    """Features, targets and weights that a model contributes."""
-
-    features: FloatArray  # (N, M)
-    target: FloatArray  # (N,)
-    weight: FloatArray  # (N,), sum 1
 
 
 def boundary_rows(model: Model, seed: int = 0) -> Rows:

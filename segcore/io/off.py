@@ -40,7 +40,7 @@ def read_off(data: bytes, limits: ReadLimits, with_appearance: bool = False) -> 
         raise UnsupportedFormat(
             "OFF files in binary or with four or more dimensions are not read: save it as plain OFF."
         )
-    words = find_words(b" " * keyword.end() + text[keyword.end() :])
+    words = find_words(text, keyword.end())
     vertex_count, face_count = _counts(words, limits)
     width = 3 + (2 if texture else 0) + (4 if color else 0) + (3 if normal else 0)
     problem = InvalidMesh(f"The OFF file ends within its {vertex_count} vertices: it is cut short.")

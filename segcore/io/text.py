@@ -11,14 +11,13 @@ from numpy.typing import NDArray
 
 from segcore.arrays import BoolArray, FloatArray, LongArray
 from segcore.errors import InvalidMesh
+from segcore.io.text_kernels import Offsets, count_words, find_word_starts, parse_floats, parse_integers
 
 _WHITE_SPACE = b" \t\n\v\f\r"
 _NO_CONTROLS = _WHITE_SPACE + bytes(range(33, 256))
 _FILLING = b"\0\x1a"  # blocks that were not full, and the end of a file in DOS
 _SPACE = 32  # this byte and all below it separate words
-_NEWLINE = 10
-_BLOCK = 2**20  # bytes that are looked at together, so that the helper arrays stay in the cache
-_INT64 = np.iinfo(np.int64)
+_NUMBER = re.compile(r"[-+]?((\d+\.?\d*|\.\d+)(e[-+]?\d+)?|nan|inf(inity)?)", re.ASCII | re.IGNORECASE)
 _EXACT = 2.0**53  # whole numbers up to here are exact in float64
 _COMMENT = re.compile(rb"#[^\n]*")
 
@@ -28,8 +27,13 @@ class Words:
     """Where the words and the lines of a text are; lines without a word do not count."""
 
     text: bytes
-    start: LongArray  # (W,) offset of every word
-    line_start: LongArray  # (L + 1,) the first word of every line, and W
+    start: Offsets  # (W,) offset of every word
+    line_start: Offsets  # (L + 1,) the first word of every line, and W
+
+    @property
+    def letters(self) -> NDArray[np.uint8]:
+        """The bytes of the text."""
+        return np.frombuffer(self.text, np.uint8)
 
     @property
     def count(self) -> int:
@@ -50,20 +54,25 @@ class Words:
         InvalidMesh
             Where a word is not a number; the message has its line.
         """
-        try:
-            values = parse_numbers(self._between(first, last), last - first, np.int64)
-        except ValueError:
-            return self.floats(first, last)
-        too_large = (values == _INT64.max) | (values == _INT64.min)  # NumPy does not say when it cuts a number down
-        return self.floats(first, last) if too_large.any() else values
+        values = np.empty(last - first, np.int64)
+        if parse_integers(self.letters, self.start[first:last], values):
+            return values
+        return self.floats(first, last)
 
     def floats(self, first: int, last: int) -> FloatArray:
         """Words first..last - 1 as float64; raises InvalidMesh as :meth:`numbers` does."""
-        try:
-            return parse_numbers(self._between(first, last), last - first, np.float64)
-        except ValueError:
-            bad = first_bad(first, last, lambda low, high: are_numbers(self._between(low, high), high - low))
-            raise InvalidMesh(f"Line {self.line_number(bad)}: {self.word(bad)[:40]!r} is not a number.") from None
+        values, unread = np.empty(last - first), np.empty(last - first, dtype=bool)
+        if parse_floats(self.letters, self.start[first:last], values, unread):
+            for i in np.flatnonzero(unread).tolist():
+                values[i] = self.float(first + i)
+        return values
+
+    def float(self, index: int) -> float:
+        """One word as a number, also as infinity or as none; raises InvalidMesh with the line where it is another."""
+        word = self.word(index)
+        if not _NUMBER.fullmatch(word):
+            raise InvalidMesh(f"Line {self.line_number(index)}: {word[:40]!r} is not a number.")
+        return float(word)
 
     def equal(self, indices: LongArray, word: bytes) -> BoolArray:
         """(N,): which of the words at ``indices`` are ``word``."""
@@ -119,22 +128,14 @@ def without_comments(text: bytes) -> bytes:
     return _COMMENT.sub(lambda comment: b" " * len(comment[0]), text) if b"#" in text else text
 
 
-def find_words(text: bytes) -> Words:
-    """Find all words of a text."""
+def find_words(text: bytes, begin: int = 0) -> Words:
+    """Find all words of a text from byte ``begin`` on."""
     letters = np.frombuffer(text, np.uint8)
-    starts, newlines = [], []
-    for offset in range(0, len(letters), _BLOCK):
-        block = letters[offset : offset + _BLOCK]
-        space = np.empty(len(block) + 1, dtype=bool)
-        space[0] = offset == 0 or letters[offset - 1] <= _SPACE
-        np.less_equal(block, _SPACE, out=space[1:])
-        starts.append(np.flatnonzero(space[:-1] > space[1:]) + offset)
-        newlines.append(np.flatnonzero(block == _NEWLINE) + offset)
-    start = np.concatenate([np.zeros(0, dtype=np.int64), *starts])
-    before_newline = np.searchsorted(start, np.concatenate([np.zeros(0, dtype=np.int64), *newlines]))
-    bounds = np.concatenate([[0], before_newline, [len(start)]])
-    filled = np.flatnonzero(np.diff(bounds))
-    return Words(text, start, np.append(bounds[filled], len(start)))
+    words, lines = count_words(letters, begin)
+    offset = np.int32 if len(text) < 2**31 else np.int64
+    start, line_start = np.empty(words, offset), np.empty(lines + 1, offset)
+    find_word_starts(letters, begin, start, line_start)
+    return Words(text, start, line_start)
 
 
 def parse_numbers(text: bytes, count: int, dtype: type[np.generic]) -> NDArray[Any]:

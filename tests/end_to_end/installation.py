@@ -86,9 +86,13 @@ class Installation:
         self._close()
 
     def submit(self, mesh: bytes, parameters: str = "{}") -> str:
-        """The path of a new job."""
+        """The path of a new job, which is computed whatever was computed before."""
         answer = httpx.post(
-            f"{self.url}/v1/jobs", files={"mesh": ("mesh.off", mesh)}, data={"parameters": parameters}, timeout=60
+            f"{self.url}/v1/jobs",
+            files={"mesh": ("mesh.off", mesh)},
+            data={"parameters": parameters},
+            headers={"Cache-Control": "no-cache"},
+            timeout=60,
         )
         assert answer.status_code == 202, answer.text
         return str(answer.headers["Location"])

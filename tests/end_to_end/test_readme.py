@@ -12,6 +12,7 @@ import pytest
 from end_to_end.installation import Installation
 from worker.settings import Settings
 
+ADDRESS = "http://127.0.0.1:8000"
 README = Path(__file__).parents[2] / "README.md"
 BLOCKS = re.findall(r"```(\w+)\n(.*?)```", README.read_text(), re.DOTALL)
 
@@ -38,11 +39,13 @@ def test_the_walk_through_with_curl_works_as_pasted_and_so_do_the_ways_without_a
         pytest.skip("the walk-through needs bash and curl")
     walk = block("sh", "curl")
     with Installation(workers=1) as installation:
-        printed = run(["bash", "-euc", walk.replace("http://127.0.0.1:8000", installation.url)], tmp_path)
+        printed = run(["bash", "-euc", walk.replace(ADDRESS, installation.url)], tmp_path)
+        check_the_clients(installation.url, tmp_path)
     assert '{"segments":7,' in printed.replace(" ", "")
     assert '{"segments":4,' in printed.replace(" ", "")
     assert '"automatic_segments":7' in printed.replace(" ", "")
-    assert (tmp_path / "parts.glb").read_bytes()[:4] == b"glTF"
+    assert (tmp_path / "parts.png").read_bytes()[1:4] == b"PNG"
+    assert len(set((tmp_path / "burr.seg").read_text().split())) == 7
 
     (tmp_path / "parts.glb").unlink()
     segment = block("sh", "cleave segment").replace("cleave segment", f"{sys.executable} -m service.cli segment")
@@ -52,6 +55,23 @@ def test_the_walk_through_with_curl_works_as_pasted_and_so_do_the_ways_without_a
     assert (tmp_path / "tree.json").exists()
 
     run([sys.executable, "-c", block("python", "segcore") + "\nassert len(set(hierarchy.labels(7))) == 7"], tmp_path)
+
+
+def check_the_clients(url: str, folder: Path) -> None:
+    """The other ways to use a running service, in a folder with burr.stl."""
+    (folder / "parts.glb").unlink()
+    python = block("python", "cleave.client").replace(ADDRESS, url)
+    assert run([sys.executable, "-c", python], folder).startswith("7 [")
+    assert (folder / "parts.glb").read_bytes()[:4] == b"glTF"
+
+    submit = block("sh", "cleave submit").replace("cleave submit", f"{sys.executable} -m service.cli submit")
+    run(["bash", "-euc", f"{submit.strip()} --server {url}"], folder)
+    assert len(set((folder / "results" / "burr.seg").read_text().split())) == 7
+
+    if shutil.which("node"):
+        (folder / "burr.mjs").write_text(block("js", "fetch").replace(ADDRESS, url))
+        segments, faces, _ = run(["node", "burr.mjs"], folder).split()
+        assert (segments, int(faces)) == ("7", len((folder / "results" / "burr.seg").read_text().split()))
 
 
 def test_the_two_commands_are_in_the_readme() -> None:

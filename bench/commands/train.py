@@ -1,0 +1,48 @@
+"""Learning where people cut: the data file segcore/learned.json, and how it does on shapes that it has not seen.
+
+From all models of the benchmark folder, one file; with --folds also one file for every group of models that was left
+out, for "python -m bench princeton --learned FOLDER". The same folder always gives the same bytes.
+"""
+
+from __future__ import annotations
+
+import argparse
+import json
+from pathlib import Path
+from typing import get_args
+
+from bench.dataset import read_models
+from bench.errors import BenchmarkError
+from bench.learning.folds import save_fold
+from bench.learning.training import Grouping, train
+
+_SHIPPED = Path(__file__).parents[2] / "segcore" / "learned.json"
+
+
+def add_arguments(parser: argparse.ArgumentParser) -> None:
+    parser.add_argument("--data", type=Path, required=True, metavar="DIR", help="the folder of the benchmark")
+    parser.add_argument("--limit", type=int, metavar="N", help="only N models, spread evenly over the list")
+    parser.add_argument("--output", type=Path, default=_SHIPPED, metavar="FILE", help="by default segcore/learned.json")
+    parser.add_argument(
+        "--leave-out",
+        choices=get_args(Grouping),
+        default="category",
+        help="the models that are left out together: a category (default; segcore/learned.json is made so), or every "
+        "fifth model",
+    )
+    parser.add_argument("--folds", type=Path, metavar="FOLDER", help="write what was learned without each group here")
+    parser.add_argument("--jobs", type=int, default=1, metavar="N", help="processes (default 1)")
+
+
+def run(arguments: argparse.Namespace) -> None:
+    if arguments.jobs < 1:
+        raise BenchmarkError(f"--jobs must be at least 1, not {arguments.jobs}.")
+    if not arguments.output.parent.is_dir():
+        raise BenchmarkError(f"The folder of {arguments.output} does not exist: create it first.")
+    everything, *folds = train(read_models(arguments.data, arguments.limit), arguments.leave_out, arguments.jobs)
+    arguments.output.write_text(json.dumps(everything.models.document(), indent=1) + "\n", encoding="utf-8")
+    if arguments.folds is not None:
+        arguments.folds.mkdir(parents=True, exist_ok=True)
+        for fold in folds:
+            save_fold(arguments.folds, fold)
+    print(f"Wrote {arguments.output}" + (f" and {len(folds)} files in {arguments.folds}" if arguments.folds else ""))

@@ -1,0 +1,92 @@
+"""Both models from the people of the benchmark, and the same again without the models that they are to be judged on."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from functools import partial
+from typing import TYPE_CHECKING, Literal
+
+import numpy as np
+
+from bench.learning.boundaries import boundary_rows
+from bench.learning.fitting import fit
+from bench.learning.folds import Fold
+from bench.learning.splits import cut_rows
+from bench.pool import map_in_processes
+from segcore.boundary_model import FEATURES as EDGE_FEATURES
+from segcore.learned import LearnedModels, using
+from segcore.logistic import LogisticModel
+from segcore.split_model import FEATURES as CUT_FEATURES
+from segcore.warm_up import warm_up
+
+if TYPE_CHECKING:
+    from bench.dataset import Model
+    from bench.learning.rows import Rows
+
+Grouping = Literal["category", "fifth"]
+
+_BOUNDARY_RIDGE = 1e-4
+_SPLIT_RIDGE = 1e-2
+_ROUNDS = 2  # of growing trees and learning from them: the rule decides which trees it sees
+
+
+def train(models: Sequence[Model], grouping: Grouping, jobs: int) -> list[Fold]:
+    """Learn from all models, and for every group of them from all others.
+
+    Whatever is learned from a model's splits is learned from trees that were grown without knowing the boundaries of
+    its group: otherwise the trees of training would be better than those to come.
+
+    Returns
+    -------
+    First the fold "all", which leaves nothing out, then one for every group.
+    """
+    groups = _groups(models, grouping)
+    edges = map_in_processes(boundary_rows, models, jobs, warm_up)
+    flat = _flat(CUT_FEATURES)
+    folds = [
+        Fold(name, left_out, LearnedModels(_fit(EDGE_FEATURES, models, edges, left_out, _BOUNDARY_RIDGE), flat))
+        for name, left_out in groups.items()
+    ]
+    for _ in range(_ROUNDS):
+        grow = partial(_grow, {number: fold.models.document() for fold in folds for number in fold.left_out})
+        cuts = map_in_processes(grow, models, jobs, warm_up)
+        folds = [
+            Fold(
+                fold.name,
+                fold.left_out,
+                LearnedModels(fold.models.boundary, _fit(CUT_FEATURES, models, cuts, fold.left_out, _SPLIT_RIDGE)),
+            )
+            for fold in folds
+        ]
+    return folds
+
+
+def _groups(models: Sequence[Model], grouping: Grouping) -> dict[str, frozenset[int]]:
+    """The models of every group; before them the group "all", which nothing belongs to."""
+    groups: dict[str, set[int]] = {"all": set()}
+    for position, model in enumerate(models):
+        name = model.category if grouping == "category" else f"fifth{position % 5 + 1}"
+        groups.setdefault(name, set()).add(model.number)
+    return {name: frozenset(numbers) for name, numbers in groups.items()}
+
+
+def _grow(models_of: dict[int, dict[str, object]], model: Model) -> Rows:
+    with using(LearnedModels.from_document(models_of[model.number])):
+        return cut_rows(model)
+
+
+def _fit(
+    names: tuple[str, ...], models: Sequence[Model], rows: Sequence[Rows], left_out: frozenset[int], ridge: float
+) -> LogisticModel:
+    seen = [row for model, row in zip(models, rows, strict=True) if model.number not in left_out]
+    features, target, weight = (
+        np.concatenate([getattr(row, name) for row in seen]).astype(np.float64)
+        for name in ("features", "target", "weight")
+    )
+    return fit(names, features, target, weight, ridge)
+
+
+def _flat(names: tuple[str, ...]) -> LogisticModel:
+    """A model that knows nothing: the rule then goes by the normalized cut alone."""
+    count = len(names)
+    return LogisticModel(names, np.zeros(count), np.ones(count), np.zeros(4 * count), 0.0)

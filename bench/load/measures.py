@@ -1,0 +1,134 @@
+"""The measurements, each of one promise."""
+
+import re
+import statistics
+import subprocess
+import time
+from collections.abc import Iterator
+from pathlib import Path
+
+import httpx
+
+import segcore
+from bench.load.installation import Installation
+from bench.load.meshes import wavy_torus
+
+_LONG = {"clusters": 20_000, "max_segments": 400}  # seconds of work
+_POLLS = Path(__file__).with_name("polls.lua")
+_CONNECTIONS = 75
+
+
+def keep_busy(client: httpx.Client, jobs: int) -> list[str]:
+    """Submit more work than the measurement lasts; the paths of the jobs."""
+    mesh = wavy_torus(100_000)
+    return [
+        str(
+            client.post(
+                "/v1/jobs",
+                files={"mesh": ("busy.ply", mesh)},
+                data={"parameters": f'{{"seed": {seed}, "clusters": {_LONG["clusters"]}, "max_segments": 400}}'},
+            ).headers["Location"]
+        )
+        for seed in range(jobs)
+    ]
+
+
+def polls(installation: Installation, path: str, seconds: int) -> str:
+    """What wrk says of status polls, a few more than 300 a second."""
+    command = ["wrk", "-t1", f"-c{_CONNECTIONS}", f"-d{seconds}s", "--latency", "--timeout", "10s", "-s", str(_POLLS)]
+    done = subprocess.run([*command, installation.url + path], capture_output=True, text=True, check=True)
+    rate = _find(r"Requests/sec:\s+(\S+)", done.stdout)
+    p50, p99 = _find(r"50%\s+(\S+)", done.stdout), _find(r"99%\s+(\S+)", done.stdout)
+    errors = "".join(re.findall(r"(?:Socket errors|Non-2xx).*", done.stdout)) or "no error"
+    return f"{rate} requests/s, median {p50}, p99 {p99}, {errors}"
+
+
+def uploads(client: httpx.Client, count: int) -> str:
+    """From the first byte of a 1 MB mesh to the answer that it is queued."""
+    mesh = wavy_torus(52_000)
+    times_s = []
+    for number in range(count):
+        began_at = time.perf_counter()
+        answer = client.post("/v1/jobs", content=mesh + bytes(number + 1), headers={"Content-Type": "model/ply"})
+        times_s.append(time.perf_counter() - began_at)
+        answer.raise_for_status()
+        client.delete(answer.headers["Location"])
+    p95 = statistics.quantiles(times_s, n=20)[-1]
+    return f"{len(mesh) / 1e6:.2f} MB, median {1000 * statistics.median(times_s):.0f} ms, p95 {1000 * p95:.0f} ms"
+
+
+def upload_memory(installation: Installation, client: httpx.Client, megabytes: int) -> str:
+    """By how much the memory of the service rises, at most, over a large upload."""
+
+    def body() -> Iterator[bytes]:
+        for _ in range(megabytes):
+            yield bytes(1_000_000)
+
+    Path(f"/proc/{installation.service_pid()}/clear_refs").write_text("5")  # the peak begins again at what there is
+    before = _peak_bytes(installation.service_pid())
+    answer = client.post("/v1/jobs", content=body(), headers={"Content-Type": "model/stl"})
+    answer.raise_for_status()
+    grown = _peak_bytes(installation.service_pid()) - before
+    client.delete(answer.headers["Location"])
+    return f"{megabytes} MB raise it by {grown / 2**20:.1f} MiB"
+
+
+def waiting(client: httpx.Client, faces: int, count: int) -> str:
+    """What the way through the service costs, with Prefer: wait=10, over reading and segmenting alone."""
+    overheads, alone = [], []
+    for seed in range(count):
+        mesh, parameters = wavy_torus(faces, 4 + seed % 3), segcore.SegmentationParameters(seed=seed)
+        alone_s = min(_alone(mesh, parameters) for _ in range(2))
+        began_at = time.perf_counter()
+        answer = client.post(
+            "/v1/jobs",
+            content=mesh,
+            params={"parameters": f'{{"seed": {seed}}}'},
+            headers={"Content-Type": "model/ply", "Prefer": "wait=10"},
+        )
+        took_s = time.perf_counter() - began_at
+        assert answer.status_code == 200, answer.text
+        assert len(answer.json()["labels"]) == answer.json()["mesh"]["faces"]
+        overheads.append(took_s - alone_s)
+        alone.append(alone_s)
+    more_ms = [1000 * overhead for overhead in overheads]
+    return (
+        f"alone {1000 * statistics.median(alone):.0f} ms, overhead: median {statistics.median(more_ms):.0f} ms, "
+        f"largest {max(more_ms):.0f} ms"
+    )
+
+
+def levels(client: httpx.Client, faces: int, form: str) -> str:
+    """Labels at numbers of segments that nobody has asked for before; for the first the result is opened too."""
+    answer = client.post("/v1/jobs", content=wavy_torus(faces), headers={"Content-Type": "model/ply"})
+    path = answer.headers["Location"]
+    while client.get(path, params={"wait": 60}).json()["finished_at"] is None:
+        pass
+    times_s = []
+    for segments in range(2, 22):
+        began_at = time.perf_counter()
+        client.get(f"{path}/labels", params={"segments": segments, "format": form}).raise_for_status()
+        times_s.append(time.perf_counter() - began_at)
+    client.delete(path)
+    return (
+        f"first {1000 * times_s[0]:.0f} ms, median {1000 * statistics.median(times_s):.0f} ms, "
+        f"largest {1000 * max(times_s):.0f} ms"
+    )
+
+
+def _alone(mesh: bytes, parameters: segcore.SegmentationParameters) -> float:
+    from io import BytesIO
+
+    began_at = time.perf_counter()
+    segcore.segment(segcore.read_mesh(BytesIO(mesh)), parameters)
+    return time.perf_counter() - began_at
+
+
+def _peak_bytes(pid: int) -> int:
+    lines = Path(f"/proc/{pid}/status").read_text().splitlines()
+    return next(1024 * int(line.split()[1]) for line in lines if line.startswith("VmHWM"))
+
+
+def _find(pattern: str, text: str) -> str:
+    found = re.search(pattern, text)
+    return found[1] if found else "?"
