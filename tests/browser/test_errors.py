@@ -39,6 +39,16 @@ def test_a_file_that_is_too_large_is_refused_before_it_is_sent(visit: Visit) -> 
     assert not [url for url in visit.requests if url.endswith("/v1/jobs")]
 
 
+def test_going_back_from_an_error_returns_to_the_result_before(visit: Visit, job: str) -> None:
+    visit.open_job(job)
+    visit.drop("letter.pdf", b"%PDF-1.7 and so on, too")
+    problem(visit)
+    assert visit.page.locator("#work").is_hidden()
+    visit.page.click("#back")
+    assert visit.page.locator("#work").is_visible()
+    assert len(visit.parts()) == 7
+
+
 def test_a_file_of_another_kind_is_explained(visit: Visit) -> None:
     visit.open()
     visit.drop("letter.pdf", b"%PDF-1.7 and so on")

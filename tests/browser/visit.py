@@ -38,7 +38,7 @@ class Visit:
         self.faults: list[str] = []
         self.foreign: list[str] = []
         self.requests: list[str] = []
-        page.set_default_timeout(30_000)
+        page.set_default_timeout(90_000)  # a busy machine may take long
         page.on("console", lambda message: self.faults.append(message.text) if message.type == "error" else None)
         page.on("pageerror", lambda error: self.faults.append(str(error)))
         page.on("request", self._note)

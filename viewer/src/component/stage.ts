@@ -40,6 +40,7 @@ export class Stage {
   readonly #camera = new PerspectiveCamera(FIELD_OF_VIEW, 1, 0.01, 100);
   readonly #controls: OrbitControls;
   readonly #numbers = new WebGLRenderTarget(1, 1);
+  #pixels = new Uint8Array(0);
   #drawing: Drawing | null = null;
   #frame = 0;
   #askedAt = 0;
@@ -172,9 +173,8 @@ export class Stage {
     const { width, height } = this.#numbers;
     if (this.#drawing === null || x < 0 || y < 0 || x >= width || y >= height) return -1;
     if (this.#numbersAreOld) this.#drawNumbers(this.#drawing);
-    const pixel = new Uint8Array(4);
-    this.#renderer.readRenderTargetPixels(this.#numbers, Math.floor(x), height - 1 - Math.floor(y), 1, 1, pixel);
-    return pixel[0]! + 256 * pixel[1]! - 1;
+    const pixel = 4 * ((height - 1 - Math.floor(y)) * width + Math.floor(x));
+    return this.#pixels[pixel]! + 256 * this.#pixels[pixel + 1]! - 1;
   }
 
   /** The picture as it is seen, without a background. */
@@ -212,6 +212,10 @@ export class Stage {
       this.#renderer.render(this.#scene, this.#camera);
       this.#renderer.setRenderTarget(null);
     });
+    // All at once, so that a pointer that moves over a picture that rests waits for nothing.
+    const { width, height } = this.#numbers;
+    if (this.#pixels.length !== 4 * width * height) this.#pixels = new Uint8Array(4 * width * height);
+    this.#renderer.readRenderTargetPixels(this.#numbers, 0, 0, width, height, this.#pixels);
     this.#numbersAreOld = false;
   }
 

@@ -25,6 +25,7 @@ class Page {
   readonly #start = new Start({
     onFinished: (job, file) => this.#finished(job, file),
     onRemedy: (remedy) => this.#help(remedy),
+    onLeave: () => this.#leave(),
   });
   readonly #level = new LevelSlider(() => this.#session);
   readonly #parts = new PartsPanel(this.#viewer, () => this.#session);
@@ -162,6 +163,7 @@ class Page {
     this.#next = { segments: null, isBeside: false };
     this.#restore();
     announce(`${name}: ${plural(this.#session.parts.length, "part")}.`);
+    if (document.activeElement === document.body) this.#viewer.focus({ preventScroll: true });
   }
 
   #restore(): void {
@@ -238,6 +240,14 @@ class Page {
     if (remedy === "jobs") void this.#jobs.open("open");
     else if (remedy === "parameters") this.#openParameters();
     else void this.#openAddress();
+  }
+
+  /** Back to the result that was there before, or to the beginning. */
+  #leave(): void {
+    this.#next = { segments: null, isBeside: false };
+    if (this.#session !== null) return this.#start.show("none");
+    if (location.hash !== "") history.pushState(null, "", location.pathname);
+    this.#close();
   }
 
   #failed(problem: Problem & { message?: string }): void {

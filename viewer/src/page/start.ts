@@ -11,6 +11,8 @@ type Parameters = Readonly<Record<string, unknown>>;
 export interface StartEvents {
   onFinished(job: Job, file: File | null): void;
   onRemedy(remedy: Remedy): void;
+  /** A person goes back to where they came from. */
+  onLeave(): void;
 }
 
 const SAMPLES: readonly [name: string, title: string][] = [
@@ -48,12 +50,12 @@ export class Start {
     this.#input.addEventListener("change", () => {
       const file = this.#input.files?.[0];
       this.#input.value = "";
-      if (file !== undefined) void this.send(file, this.parameters);
+      if (file !== undefined) this.#take(file);
     });
     for (const button of document.querySelectorAll(".choose")) button.addEventListener("click", () => this.choose());
     byId("stop").addEventListener("click", () => void this.#stop());
     byId("remedy").addEventListener("click", () => this.#remedy());
-    byId("back").addEventListener("click", () => this.show("start"));
+    byId("back").addEventListener("click", () => this.#events.onLeave());
     this.#listenToDrops();
     this.#fillSamples();
     void this.#learnLimits();
@@ -100,6 +102,12 @@ export class Start {
     this.show("problem");
     announce(`${title}. ${detail} ${next}`);
     button.focus();
+  }
+
+  #take(file: File): void {
+    const { parameters } = this;
+    this.parameters = {};
+    void this.send(file, parameters);
   }
 
   async #run(name: string, file: File | null, begin: (signal: AbortSignal) => Promise<Job>): Promise<void> {
@@ -166,7 +174,7 @@ export class Start {
     const job = this.#job;
     this.#running?.abort();
     this.#job = null;
-    this.show("start");
+    this.#events.onLeave();
     if (job !== null && !hasEnded(job)) await cancelJob(job.id).catch(() => undefined);
   }
 
@@ -201,7 +209,7 @@ export class Start {
       event.preventDefault();
       mark(-depth);
       const file = event.dataTransfer?.files[0];
-      if (file !== undefined) void this.send(file, this.parameters);
+      if (file !== undefined) this.#take(file);
     });
   }
 
@@ -225,7 +233,7 @@ export class Start {
   async #sendSample(name: string): Promise<void> {
     try {
       const blob = await getBlob(`samples/${name}.ply`);
-      await this.send(new File([blob], `${name}.ply`), this.parameters);
+      this.#take(new File([blob], `${name}.ply`));
     } catch (error) {
       this.fail(problemOf(error));
     }
