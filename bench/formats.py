@@ -49,7 +49,7 @@ def _reader(program: str, path: Path) -> Callable[[], object]:
     if program == "trimesh":
         import trimesh
 
-        return lambda: trimesh.load(path, process=False).faces.shape
+        return lambda: trimesh.load_scene(path, process=False)
     from segcore.io import read_mesh
 
     return lambda: read_mesh(path)

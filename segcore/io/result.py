@@ -126,7 +126,7 @@ def _read(file: BinaryIO) -> Segmentation:
         with zipfile.ZipFile(file) as archive:
             _check_sizes(archive, file.seek(0, os.SEEK_END))
             return _unpack(archive)
-    except (zipfile.BadZipFile, NotImplementedError, EOFError, UnicodeDecodeError, RuntimeError) as error:
+    except (zipfile.BadZipFile, NotImplementedError, EOFError, ValueError, RuntimeError) as error:
         raise InvalidMesh("This is not a .cleave file, or it is damaged or cut short: make it again.") from error
 
 

@@ -82,7 +82,7 @@ class Package:
         try:
             with self._archive.open(entry) as part:
                 yield part
-        except (zipfile.BadZipFile, zlib.error, EOFError, NotImplementedError) as error:
+        except (zipfile.BadZipFile, zlib.error, EOFError, NotImplementedError, ValueError, OverflowError) as error:
             raise InvalidMesh(f"Part {name[:80]!r} of the 3MF file is damaged or cut short: send it again.") from error
 
 

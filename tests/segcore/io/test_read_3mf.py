@@ -246,6 +246,15 @@ def test_very_many_parts_are_refused_before_they_are_listed() -> None:
         read(THREEMF_SQUARE + b"PK\x01\x02" * 10_001)
 
 
+@pytest.mark.parametrize("shift", [1, 65_536, 2**31])
+def test_a_directory_that_points_before_the_archive_is_refused(shift: int) -> None:
+    end = THREEMF_SQUARE.rindex(b"PK\x05\x06")
+    (offset,) = struct.unpack_from("<I", THREEMF_SQUARE, end + 16)
+    wrong = THREEMF_SQUARE[: end + 16] + struct.pack("<I", offset + shift) + THREEMF_SQUARE[end + 20 :]
+    with pytest.raises(InvalidMesh, match="damaged or cut short"):
+        read(wrong)
+
+
 def test_cut_anywhere_a_package_is_refused() -> None:
     for length in range(len(THREEMF_SQUARE)):
         assert read_or_none(THREEMF_SQUARE[:length], "3mf") is None
