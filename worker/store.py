@@ -31,13 +31,12 @@ from worker.durable import TEMPORARY_SUFFIX, create_file, replace_file, sync_fol
 from worker.index import JobIndex, entry_name, is_entry_name, job_id_of
 from worker.jobs import Attempt, Cause, Job, Outcome, Succeeded, is_job_id, new_job_id, now
 from worker.outbox import Letter, Outbox
+from worker.pending import PendingJobs
 from worker.upload import MeshUpload
 
 _JOB = TypeAdapter(Job)
 _ATTEMPT = TypeAdapter(Attempt)
 _OUTCOME: TypeAdapter[Outcome] = TypeAdapter(Outcome)
-_MARKER_GRACE_S = 3600.0
-_ID_LENGTH = 32
 
 Document = TypeVar("Document")
 
@@ -63,13 +62,13 @@ class LocalStore:
 
     def __init__(self, data_dir: Path) -> None:
         self._jobs = data_dir / "jobs"
-        self._pending = data_dir / "pending"
         self._incoming = data_dir / "incoming"
         self._gone = data_dir / "gone"
         self._index = JobIndex(data_dir / "index")
         self._computed = ComputedIndex(data_dir / "computed")
         self._outbox = Outbox(data_dir)
-        for folder in (self._jobs, self._pending, self._incoming, self._gone):
+        self._pending = PendingJobs(data_dir / "pending", self._jobs)
+        for folder in (self._jobs, self._incoming, self._gone):
             folder.mkdir(mode=0o700, parents=True, exist_ok=True)
 
     def begin_upload(self) -> MeshUpload:
@@ -83,19 +82,20 @@ class LocalStore:
         JobExists
             Where there is a job of this id already; it stays as it is.
         """
+        if self._folder(job.id).exists():
+            raise JobExists(job.id)
         upload.make_durable()
         create_file(upload.folder / "job.json", _JOB.dump_json(job))
         self._index.add(job)
         if job.webhook_url is not None:
             self._outbox.put(job.id, Letter())
-        self._marker(job).touch()
-        sync_folder(self._pending)
+        self._pending.add(job)
         try:
             os.rename(upload.folder, self._folder(job.id))
         except OSError as error:
+            self._index.remove(job)
             if error.errno not in (errno.ENOTEMPTY, errno.EEXIST):
                 raise
-            self._index.remove(job)
             raise JobExists(job.id) from error
         sync_folder(self._jobs)
         self._computed.note(job)
@@ -138,27 +138,24 @@ class LocalStore:
             raise UnknownJob(job_id) from error
         job = self.job(job_id)
         if job is not None:
-            self._marker(job).unlink(missing_ok=True)
+            self._pending.remove(job)
         return self.outcome(job_id) or outcome
 
     def unfinished(self) -> dict[str, str | None]:
         """The accepted jobs without an outcome, oldest first, and their owners."""
-        markers = sorted(os.scandir(self._pending), key=_modified_at)
-        return {_job_id(marker): _owner(marker) for marker in markers if self._is_unfinished(marker)}
+        return self._pending.all()
 
     def unfinished_of(self, owner: str | None) -> list[str]:
         """Those of one owner, oldest first."""
-        markers = [marker for marker in os.scandir(self._pending) if _owner(marker) == owner]
-        return [_job_id(marker) for marker in sorted(markers, key=_modified_at) if self._is_unfinished(marker)]
+        return self._pending.of(owner)
 
     def count_unfinished(self, owner: str | None) -> tuple[int, int]:
-        """How many jobs have no outcome: of everybody, and of one owner; cheap, and now and then one too many."""
-        markers = list(os.scandir(self._pending))
-        return len(markers), sum(_owner(marker) == owner for marker in markers)
+        """How many there are: of everybody, and of one owner; cheap, and now and then one too many."""
+        return self._pending.count(owner)
 
     def oldest_s(self, at_s: float) -> float:
-        """The age of the oldest job without an outcome at a time in seconds since 1970; 0 where there is none."""
-        return max(0.0, at_s - min((_modified_at(marker) for marker in os.scandir(self._pending)), default=at_s))
+        """The age of the oldest of them at a time in seconds since 1970; 0 where there is none."""
+        return self._pending.oldest_s(at_s)
 
     def begin_attempt(self, job_id: str, worker: str) -> Attempt:
         """Count one more run of a job, before it starts.
@@ -240,7 +237,7 @@ class LocalStore:
             raise UnknownJob(job_id) from error
         self._index.remove(job)
         self._computed.remove(job)
-        self._marker(job).unlink(missing_ok=True)
+        self._pending.remove(job)
         shutil.rmtree(doomed, ignore_errors=True)
 
     def was_deleted(self, job_id: str, owner: str | None) -> bool:
@@ -254,14 +251,14 @@ class LocalStore:
         """Forget the jobs that were deleted longer ago than this."""
         oldest = time.time() - deleted_s
         for trace in os.scandir(self._gone):
-            if _modified_at(trace) < oldest:
+            if _modified_at(Path(trace)) < oldest:
                 Path(trace).unlink(missing_ok=True)
 
     def remove_abandoned_uploads(self, untouched_s: float) -> None:
         """Remove what uploads left behind whose process died in the middle."""
         oldest = time.time() - untouched_s
         for folder in self._incoming.iterdir():
-            if max((_path_modified_at(path) for path in (folder, *folder.glob("*"))), default=0.0) < oldest:
+            if max((_modified_at(path) for path in (folder, *folder.glob("*"))), default=0.0) < oldest:
                 shutil.rmtree(folder, ignore_errors=True)
 
     def check_writable(self) -> None:
@@ -273,29 +270,6 @@ class LocalStore:
         if not is_job_id(job_id):
             raise ValueError(f"Not the id of a job: {job_id!r}.")
         return self._jobs / job_id
-
-    def _marker(self, job: Job) -> Path:
-        return self._pending / (f"{job.id}.{job.owner}" if job.owner else job.id)
-
-    def _is_unfinished(self, marker: os.DirEntry[str]) -> bool:
-        """Whether a marker tells the truth; one that does not, because of a crash between two writes, is removed."""
-        if not is_job_id(_job_id(marker)):
-            return False
-        folder = self._folder(_job_id(marker))
-        accepted = (folder / "job.json").exists()
-        if accepted and not (folder / "manifest.json").exists():
-            return True
-        if accepted or _modified_at(marker) < time.time() - _MARKER_GRACE_S:
-            (self._pending / marker.name).unlink(missing_ok=True)
-        return False
-
-
-def _job_id(marker: os.DirEntry[str]) -> str:
-    return marker.name[:_ID_LENGTH]
-
-
-def _owner(marker: os.DirEntry[str]) -> str | None:
-    return marker.name[_ID_LENGTH + 1 :] or None
 
 
 def _attempt_file(folder: Path, attempt: Attempt) -> Path:
@@ -314,14 +288,7 @@ def _remove_torn_files(folder: Path) -> None:
         torn.unlink(missing_ok=True)
 
 
-def _modified_at(entry: os.DirEntry[str]) -> float:
-    try:
-        return entry.stat().st_mtime
-    except FileNotFoundError:
-        return 0.0
-
-
-def _path_modified_at(path: Path) -> float:
+def _modified_at(path: Path) -> float:
     try:
         return path.stat().st_mtime
     except FileNotFoundError:

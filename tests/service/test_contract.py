@@ -3,12 +3,14 @@
 import json
 import threading
 from collections.abc import Iterator
+from contextlib import suppress
 from typing import Any
 
 import httpx
 import pytest
 import schemathesis
-from hypothesis import HealthCheck, given, settings
+from hypothesis import HealthCheck, given, seed, settings
+from hypothesis.errors import Flaky
 from redis import Redis
 from schemathesis.config import SchemathesisConfig
 from servers import serving
@@ -52,21 +54,21 @@ def service(tmp_path_factory: pytest.TempPathFactory, queue_url: str) -> Iterato
 
 
 KEY = new_key()
+_STARTS, _STEPS = 20, 8
 COMMITTED = json.loads((DOCS / "openapi.json").read_text())
 OPERATIONS = [(method, path) for path, operations in COMMITTED["paths"].items() for method in operations]
 
 
 @pytest.fixture(scope="module")
 def schema(service: httpx.Client) -> Any:
-    # Which parameters go together, and which Idempotency-Key was sent before, is more than a schema can say.
-    accepting = {"positive_data_acceptance": {"expected-statuses": ["2xx", 401, 403, 404, 409, 410, 413, 422, 429]}}
+    # Which parameters go together, how many segments a mesh has, which Idempotency-Key was sent before and which job is
+    # gone is more than a schema can say: what it allows may be refused as invalid, too large or gone.
+    accepting = {"expected-statuses": ["2xx", 304, 401, 403, 404, 409, 410, 413, 422, 429]}
     config = SchemathesisConfig.from_dict(
         {
             "base-url": str(service.base_url),
             "auth": {"openapi": {"ApiKey": {"bearer": KEY}}},
-            "operations": [
-                {"include-path": ["/v1/jobs", "/v1/batches"], "include-method": "POST", "checks": accepting}
-            ],
+            "checks": {"positive_data_acceptance": accepting},
         }
     )
     return schemathesis.openapi.from_dict(service.get("/openapi.json").json(), config=config)
@@ -89,6 +91,30 @@ def test_every_answer_is_as_documented(schema: Any, max_examples: int, method: s
 
 
 def test_every_answer_is_as_documented_in_any_order_of_requests(schema: Any, max_examples: int) -> None:
-    schema.as_state_machine().run(
-        settings=settings(max_examples=max_examples, stateful_step_count=8, suppress_health_check=list(HealthCheck))
-    )
+    failures: list[Exception] = []
+    answers = 0
+
+    class Workflow(schema.as_state_machine()):  # type: ignore[misc]
+        def validate_response(self, *arguments: Any, **options: Any) -> None:
+            nonlocal answers
+            answers += 1
+            try:
+                super().validate_response(*arguments, **options)
+            except Exception as failure:
+                failures.append(failure)
+                raise
+
+    # A service that has moved on answers the same requests otherwise, which confuses the search now and then: it begins
+    # again elsewhere. What was found to be wrong stays found.
+    for start in range(_STARTS):
+        with suppress(Flaky):
+            seed(start)(Workflow).run(
+                settings=settings(
+                    max_examples=max_examples, stateful_step_count=_STEPS, suppress_health_check=list(HealthCheck)
+                )
+            )
+        if failures:
+            raise failures[0]
+        if answers >= max_examples * _STEPS / 2:
+            return
+    raise AssertionError(f"only {answers} answers were looked at")

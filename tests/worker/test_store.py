@@ -11,6 +11,7 @@ import pytest
 from support import accepted
 from worker.durable import create_file, replace_file
 from worker.jobs import Canceled, Failed, Job, Succeeded, new_job_id, now
+from worker.outbox import Outbox
 from worker.store import JobExists, LocalStore, UnknownJob
 
 
@@ -194,13 +195,14 @@ def test_owners_see_their_own_jobs_alone(store: LocalStore) -> None:
     assert store.page("me", None, 10).jobs == [mine]
 
 
-def test_a_second_job_of_the_same_id_leaves_the_first_as_it_is(store: LocalStore) -> None:
+def test_a_second_job_of_the_same_id_leaves_the_first_as_it_is(store: LocalStore, tmp_path: Path) -> None:
     first = accepted(store, b"mesh")
-    second = replace(first, created_at=now(), size_bytes=12)
+    second = replace(first, created_at=now(), size_bytes=12, webhook_url="https://example.com/")
     with store.begin_upload() as upload, pytest.raises(JobExists):
         store.accept(second, upload)
     assert store.job(first.id) == first
     assert store.page(None, None, 10).jobs == [first]
+    assert Outbox(tmp_path / "data").letters() == {}
     with store.open_mesh(first.id) as mesh:
         assert mesh.read() == b"mesh"
 
