@@ -8,11 +8,11 @@ OnProgress = Callable[[str, float], None]
 # Processor seconds of every stage: fixed, and for every million faces. Measured on 20,000 and 2,000,000 faces; only
 # their proportions matter.
 _SECONDS = {
-    "clean": (0.005, 0.5),
-    "affinity": (0.005, 1.2),
-    "coarsen": (0.005, 1.4),
-    "cut": (0.18, 0.0),
-    "label": (0.02, 1.0),
+    "clean": (0.0, 0.4),
+    "affinity": (0.3, 3.0),
+    "coarsen": (0.0, 0.9),
+    "cut": (0.36, 0.0),
+    "label": (0.0, 0.95),
 }
 
 
