@@ -35,21 +35,33 @@ def flow_cut(graph: SurfaceGraph, *, count: int = 2) -> Cut:
     ValueError
         Where the graph is not connected.
     """
-    return flow_cuts(graph, improved=count, count=count)[0]
-
-
-def flow_cuts(graph: SurfaceGraph, *, improved: int = 2, count: int = 3) -> list[Cut]:
-    """The cut of ``flow_cut`` from the first eigenvectors, then the sweeps of ``count`` of them as they are."""
     network = Network.of(graph)
     vectors = eigenvectors(graph, network.factor, count).T
     flow = TotalVariationFlow.of(graph, vectors[0])
-    passed = [min(islice(flow.cuts(values, ITERATIONS), STEPS + 1), key=_ncc) for values in vectors[:improved]]
+    passed = [min(islice(flow.cuts(values, ITERATIONS), STEPS + 1), key=_ncc) for values in vectors]
     different = {cut.key: cut for cut in passed}
     best, *others = sorted(different.values(), key=_ncc)
     best = _improved(network, best)
     promising = [cut for cut in others if cut.ncc <= HOPELESS * best.ncc]
-    best = min([best, *(_improved(network, cut) for cut in promising)], key=_ncc).canonical
-    return [best, *(sweep(graph, values).canonical for values in vectors)]
+    return min([best, *(_improved(network, cut) for cut in promising)], key=_ncc).canonical
+
+
+def sweep_cuts(graph: SurfaceGraph, count: int = 3) -> list[Cut]:
+    """The best of the sweeps of several eigenvectors, improved by maximum flows; then the sweeps as they are.
+
+    Parameters
+    ----------
+    graph : connected, at least two nodes.
+    count : how many eigenvectors after the constant one, at least 1.
+
+    Raises
+    ------
+    ValueError
+        Where the graph is not connected.
+    """
+    network = Network.of(graph)
+    sweeps = [sweep(graph, values) for values in eigenvectors(graph, network.factor, count).T]
+    return [cut.canonical for cut in (_improved(network, min(sweeps, key=_ncc)), *sweeps)]
 
 
 def improve(graph: SurfaceGraph, side: BoolArray) -> Cut:

@@ -6,7 +6,7 @@ import numpy as np
 
 from segcore.cheeger import Cut, sweep
 from segcore.fiedler import fiedler_vectors
-from segcore.flow import flow_cut, flow_cuts
+from segcore.flow import flow_cut, sweep_cuts
 from segcore.graph import SurfaceGraph
 from segcore.inverse_power import inverse_power_cut
 from segcore.p_laplacian import p_laplacian_cut
@@ -55,7 +55,5 @@ SOLVERS: dict[str, Solver] = {
 
 
 def candidate_cuts(graph: SurfaceGraph, parameters: SegmentationParameters, rng: np.random.Generator) -> list[Cut]:
-    """The solver's cut first, then, from the solver ``flow``, the sweeps of the eigenvectors that it started from."""
-    if parameters.solver == "flow":
-        return flow_cuts(graph)
-    return [SOLVERS[parameters.solver](graph, parameters, rng)]
+    """Different cuts to choose from: what the solver ``flow`` meets on its way, or the one cut of another solver."""
+    return sweep_cuts(graph) if parameters.solver == "flow" else [SOLVERS[parameters.solver](graph, parameters, rng)]

@@ -13,7 +13,7 @@ from segcore.connected_sides import with_connected_sides
 from segcore.graph import SurfaceGraph
 from segcore.learned import learned_models
 from segcore.parameters import SegmentationParameters
-from segcore.solvers import candidate_cuts
+from segcore.solvers import SOLVERS, candidate_cuts
 from segcore.split_model import ClusterFields, Segment, cut_features
 from segcore.split_order import best_order
 from segcore.tree import Tree
@@ -65,7 +65,7 @@ class RatioRule:
         self._total = graph.total_volume
 
     def best_split(self, segment: Segment) -> Split:
-        cut = candidate_cuts(segment.graph, self._parameters, self._rng)[0]
+        cut = SOLVERS[self._parameters.solver](segment.graph, self._parameters, self._rng)
         cut = with_connected_sides(segment.graph, cut)
         order = self._parameters.split_order
         value = (cut.ncc if order == "ncc" else cut.ncut) * np.sqrt(self._total)

@@ -76,3 +76,19 @@ def test_without_a_number_the_automatic_one_is_used(hierarchy):
 def test_a_number_of_segments_that_the_tree_lacks_is_refused_with_the_range(hierarchy, segments):
     with pytest.raises(InvalidParameters, match=rf"from 1 to {hierarchy.max_segments} .*not {segments}"):
         hierarchy.labels(segments)
+
+
+@given(hierarchies(), st.floats(0, 1), st.floats(0, 1))
+def test_finer_granularity_never_gives_fewer_segments(hierarchy, one, other):
+    low, high = sorted((one, other))
+    assert hierarchy.segments_at(low) <= hierarchy.segments_at(high)
+    assert hierarchy.segments_at(0) == 1
+    assert hierarchy.segments_at(0.5) == hierarchy.automatic_segments
+    assert hierarchy.segments_at(1) == hierarchy.max_segments
+
+
+@pytest.mark.parametrize("granularity", [-0.01, 1.01, float("nan")])
+def test_a_granularity_outside_0_to_1_is_refused(granularity):
+    whole = Hierarchy(np.zeros(0, np.int32), np.zeros(0), np.ones(1), np.ones(1, np.int32), np.zeros(1, np.int32), 1)
+    with pytest.raises(InvalidParameters, match="from 0"):
+        whole.segments_at(granularity)

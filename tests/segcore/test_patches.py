@@ -1,0 +1,60 @@
+import numpy as np
+import pytest
+
+from segcore import shapes
+from segcore.edge_geometry import EdgeGeometry
+from segcore.graph import SurfaceGraph, connected_components
+from segcore.mesh import Mesh
+from segcore.patches import COUNT, patches_of
+from segcore.surface import build_surface
+
+
+def patches(mesh, seed=0):
+    surface = build_surface(mesh)
+    length = EdgeGeometry.of(surface).positive_length
+    return surface, patches_of(surface, np.ones(len(length)), length, np.random.default_rng(seed))
+
+
+def sheet(columns):
+    x, y = np.meshgrid(np.linspace(0, 1, columns + 1), np.linspace(0, 1, columns + 1), indexing="ij")
+    corner = (np.arange(columns)[:, None] * (columns + 1) + np.arange(columns)).ravel()
+    right, above = corner + columns + 1, corner + 1
+    faces = np.concatenate([np.column_stack([corner, right, right + 1]), np.column_stack([corner, right + 1, above])])
+    return Mesh(np.column_stack([x.ravel(), y.ravel(), np.zeros(x.size)]), faces)
+
+
+@pytest.mark.parametrize("subdivisions", [2, 5])
+def test_patches_are_connected_alike_in_size_and_cover_the_surface(subdivisions):
+    surface, made = patches(shapes.icosphere(subdivisions))
+    assert len(made.area) == min(COUNT, len(surface.faces))
+    np.testing.assert_allclose(made.area, np.bincount(made.of_face, surface.areas))
+    inside = made.of_face[surface.edge_faces[:, 0]] == made.of_face[surface.edge_faces[:, 1]]
+    within = SurfaceGraph(surface.edge_faces[inside], np.ones(inside.sum()), surface.areas)
+    assert connected_components(within).max() + 1 == len(made.area)
+    assert made.area.max() < 2.1 * made.area.mean()
+    assert made.area.min() > 0.1 * made.area.mean()
+
+
+def test_smoothing_keeps_the_mean_and_flattens():
+    _, made = patches(shapes.icosphere(5))
+    values = np.random.default_rng(0).normal(size=len(made.area))
+    smooth = made.smoothed(values, 0.1)
+    np.testing.assert_allclose(np.dot(made.area, smooth), np.dot(made.area, values))
+    assert smooth.std() < 0.5 * values.std()
+    np.testing.assert_allclose(made.smoothed(np.full(len(made.area), 3.0), 0.1), 3.0)
+    np.testing.assert_allclose(made.smoothed(np.stack([values, 2 * values], axis=1), 0.1)[:, 1], 2 * smooth)
+
+
+def test_patches_without_mass_take_the_values_around_them():
+    _, made = patches(shapes.icosphere(5))
+    unknown = np.arange(len(made.area)) % 7 == 0
+    values = np.where(unknown, 100.0, made.centre[:, 2])
+    smooth = made.smoothed(values, 0.05, np.where(unknown, 1e-9, made.area))
+    assert np.abs(smooth - made.centre[:, 2])[unknown].max() < 0.1
+
+
+def test_the_gradient_of_a_linear_function_on_a_plane_is_its_slope():
+    _, made = patches(sheet(60))
+    slope = np.array([2.0, -3.0, 0.0])
+    gradient = made.gradients(made.centre @ slope)
+    np.testing.assert_allclose(gradient, np.tile(slope, (len(made.area), 1)), atol=0.02)
