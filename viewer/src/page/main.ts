@@ -163,7 +163,6 @@ class Page {
     this.#next = { segments: null, isBeside: false };
     this.#restore();
     announce(`${name}: ${plural(this.#session.parts.length, "part")}.`);
-    if (document.activeElement === document.body) this.#viewer.focus({ preventScroll: true });
   }
 
   #restore(): void {
