@@ -79,11 +79,13 @@ class Client:
         mesh: Mesh,
         *,
         segments: int | None = None,
+        granularity: float | None = None,
         parameters: Mapping[str, object] | None = None,
         format: str | None = None,  # noqa: A002
     ) -> Segmentation:
-        """Submit a mesh and wait for its labels."""
-        return self._run(flows.segment(submission_of(mesh, parameters, format, None, None, False), segments))
+        """Submit a mesh and wait for its labels: at a number of segments, or a granularity from 0 to 1, or neither."""
+        submission = submission_of(mesh, parameters, format, None, None, False)
+        return self._run(flows.segment(submission, flows.level_of(segments, granularity)))
 
     def job(self, job_id: str, *, wait_s: float = 0.0) -> Job:
         """How a job is; the answer comes when it has ended, or after ``wait_s``."""
@@ -102,9 +104,9 @@ class Client:
             if cursor is None:
                 return
 
-    def labels(self, job: Job, segments: int | None = None) -> Segmentation:
+    def labels(self, job: Job, segments: int | None = None, *, granularity: float | None = None) -> Segmentation:
         """The labels of a job that has succeeded."""
-        return self._run(flows.labels(job, segments))
+        return self._run(flows.labels(job, flows.level_of(segments, granularity)))
 
     def hierarchy(self, job_id: str) -> dict[str, Any]:
         """The tree of cuts."""

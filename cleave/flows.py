@@ -46,14 +46,14 @@ class Submission:
     idempotency_key: str = field(default_factory=lambda: secrets.token_urlsafe(16))
     recompute: bool = False
 
-    def call(self, wait_s: float, segments: int | None = None) -> Call:
+    def call(self, wait_s: float, level: Mapping[str, str] | None = None) -> Call:
         name = self.file_name or (self.mesh.name if isinstance(self.mesh, Path) else None)
         params = {
             "file_name": name,
             "format": self.format,
             "parameters": json.dumps(dict(self.parameters)) if self.parameters else None,
-            "segments": None if segments is None else str(segments),
             "webhook": self.webhook,
+            **(level or {}),
         }
         return Call(
             method="POST",
@@ -74,14 +74,20 @@ def submit(submission: Submission) -> Flow[Job]:
     return job_from((yield submission.call(0.0)).json())
 
 
-def segment(submission: Submission, segments: int | None) -> Flow[Segmentation]:
+def level_of(segments: int | None, granularity: float | None) -> dict[str, str]:
+    """How the server is told how fine the segments are to be."""
+    wanted = {"segments": segments, "granularity": granularity}
+    return {name: str(value) for name, value in wanted.items() if value is not None}
+
+
+def segment(submission: Submission, level: Mapping[str, str]) -> Flow[Segmentation]:
     """Submit and wait: one round trip where the server is quick enough."""
-    document = (yield submission.call(POLL_S, segments)).json()
+    document = (yield submission.call(POLL_S, level)).json()
     job = job_from(document)
     if document.get("labels") is not None:
         return Segmentation(job, document["segments"], np.array(document["labels"], dtype=np.int32))
     job = yield from wait(job.id)
-    return (yield from labels(job, segments))
+    return (yield from labels(job, level))
 
 
 def get(job_id: str, wait_s: float = 0.0) -> Flow[Job]:
@@ -98,16 +104,15 @@ def wait(job_id: str) -> Flow[Job]:
             return job
 
 
-def labels(job: Job, segments: int | None) -> Flow[Segmentation]:
+def labels(job: Job, level: Mapping[str, str]) -> Flow[Segmentation]:
     if job.has_ended and job.status != "succeeded":
         raise JobEnded(job)
-    chosen = segments or job.automatic_segments
-    if chosen is None:
-        job = yield from get(job.id)
-        chosen = job.automatic_segments
-    params = {"format": "raw"} | ({} if segments is None else {"segments": str(segments)})
+    params = {"format": "raw", **level}
     answer = yield Call(method="GET", path=f"/v1/jobs/{job.id}/labels", params=params)
-    return Segmentation(job, chosen or 0, np.frombuffer(answer.content, dtype="<i4").astype(np.int32))
+    if not job.has_ended:
+        job = yield from get(job.id)
+    of_faces = np.frombuffer(answer.content, dtype="<i4").astype(np.int32)
+    return Segmentation(job, int(of_faces.max()) + 1, of_faces)  # there is no mesh without faces, no empty segment
 
 
 def hierarchy(job_id: str) -> Flow[dict[str, Any]]:

@@ -10,6 +10,7 @@ from segcore.io.glb import write_glb
 from segcore.io.labels import write_seg
 from service.context import Context
 from service.documents import JobDocument
+from service.fineness import Fineness
 from service.labels import compact_json
 from service.lookup import result_of
 from service.result_documents import hierarchy_of
@@ -42,7 +43,7 @@ class _Outlet(io.RawIOBase):
         return len(self._written)
 
 
-def batch_archive(context: Context, jobs: Sequence[tuple[Job, JobDocument]], segments: int | None) -> Iterator[bytes]:
+def batch_archive(context: Context, jobs: Sequence[tuple[Job, JobDocument]], fineness: Fineness) -> Iterator[bytes]:
     """A folder for every job: its document, and where it succeeded its labels, hierarchy and model."""
     outlet = _Outlet()
     with zipfile.ZipFile(outlet, "w", zipfile.ZIP_DEFLATED, compresslevel=1) as archive:
@@ -51,7 +52,7 @@ def batch_archive(context: Context, jobs: Sequence[tuple[Job, JobDocument]], seg
             archive.writestr(f"{folder}/job.json", json.dumps(document.model_dump(mode="json"), indent=1))
             if document.status == "succeeded":
                 try:
-                    _write_result(archive, folder, context, job, segments)
+                    _write_result(archive, folder, context, job, fineness)
                 except UnknownJob:
                     archive.writestr(f"{folder}/DELETED", "")
             if len(outlet) > _PIECE_BYTES:
@@ -59,10 +60,10 @@ def batch_archive(context: Context, jobs: Sequence[tuple[Job, JobDocument]], seg
     yield outlet.take()
 
 
-def _write_result(archive: zipfile.ZipFile, folder: str, context: Context, job: Job, segments: int | None) -> None:
+def _write_result(archive: zipfile.ZipFile, folder: str, context: Context, job: Job, fineness: Fineness) -> None:
     result = result_of(context, job)
     most = result.hierarchy.max_segments
-    count = None if segments is None else min(segments, most)
+    count = most if (fineness.segments or 0) > most else fineness.segments_of(result.hierarchy)
     with archive.open(f"{folder}/labels.seg", "w") as target:
         write_seg(_as_binary(target), result.hierarchy.labels(count))
     archive.writestr(f"{folder}/hierarchy.json", compact_json(hierarchy_of(result)))

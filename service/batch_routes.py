@@ -16,8 +16,10 @@ from service.answers import NOT_MODIFIED, answer_json
 from service.archiving import ZIP, batch_archive
 from service.context import Context, ContextOf
 from service.documents import BatchDocument, BatchedJob, BatchJobs, BatchLinks, JobDocument
+from service.fineness import Fineness
 from service.form import Form, write_capped
 from service.intake import Wish, take_in
+from service.levels import Granularity
 from service.limits import check_limits
 from service.lookup import describe_all, known_job
 from service.openapi import PARAMETERS, ref
@@ -159,7 +161,7 @@ async def get_batch(
             "content": {ZIP: {"schema": {"type": "string", "format": "binary"}}},
             "description": "A folder for every job: job.json, labels.seg, hierarchy.json, model.glb.",
         },
-        **documented("unauthorized", "batch_not_found", "not_finished", "invalid_request"),
+        **documented("unauthorized", "batch_not_found", "not_finished", "invalid_request", "invalid_parameters"),
     },
 )
 def get_batch_results(
@@ -167,14 +169,16 @@ def get_batch_results(
     context: ContextOf,
     caller: CallerOf,
     segments: Annotated[int | None, Query(ge=1, description="The number of segments; by default automatic.")] = None,
+    granularity: Granularity = None,
 ) -> StreamingResponse:
     """The results of all jobs that succeeded; where a hierarchy ends before `segments`, its last level."""
+    fineness = Fineness(segments, granularity)
     batch = _known_batch(context, caller, batch_id)
     jobs = [(job, document) for job, document in _jobs(context, batch) if job and document]
     if any(document.finished_at is None for _, document in jobs):
         raise Problem("not_finished", "Some jobs of the batch have not ended: poll it until its status is finished.")
     name = {"Content-Disposition": f'attachment; filename="{batch.id}.zip"'}
-    return StreamingResponse(batch_archive(context, jobs, segments), media_type=ZIP, headers=name)
+    return StreamingResponse(batch_archive(context, jobs, fineness), media_type=ZIP, headers=name)
 
 
 @router.delete(

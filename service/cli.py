@@ -8,7 +8,7 @@ from pathlib import Path
 from typing import NoReturn
 
 from service.cli_submit import add_submit
-from service.file_commands import add_convert, add_inspect, add_outputs
+from service.file_commands import add_convert, add_fineness, add_inspect, add_outputs
 from worker.logs import configure_logging
 from worker.settings import InvalidSettings, Settings, load_settings
 
@@ -93,7 +93,7 @@ def _add_segment(commands: "argparse._SubParsersAction[_Parser]") -> None:
         description="Segment one mesh and write what is asked for; without outputs only a summary is printed.",
     )
     segment.add_argument("mesh", type=Path, metavar="MESH", help="the mesh file")
-    segment.add_argument("--segments", type=int, metavar="K", help="number of segments (chosen by the mesh)")
+    add_fineness(segment, "chosen by the mesh")
     segment.add_argument("--max-segments", type=int, metavar="N", help="how far the hierarchy goes (64, or K)")
     segment.add_argument("--preset", metavar="NAME", help="a published method, such as chahhou2014")
     segment.add_argument(
@@ -151,13 +151,14 @@ def _work(choices: argparse.Namespace) -> None:
 
 
 def _segment(choices: argparse.Namespace) -> None:
+    from service.fineness import Fineness
     from service.outputs import output_options
     from service.segment_command import SegmentRequest, segment_file
 
     summary = segment_file(
         SegmentRequest(
             mesh=choices.mesh,
-            segments=choices.segments,
+            fineness=Fineness(choices.segments, choices.granularity),
             parameters=dict(choices.parameters)
             | ({} if choices.preset is None else {"preset": choices.preset})
             | ({} if choices.max_segments is None else {"max_segments": choices.max_segments}),

@@ -6,6 +6,8 @@ import sys
 from collections.abc import Callable
 from pathlib import Path
 
+from service.file_commands import add_fineness
+
 # What is saved of every file: the ending of its name, and the path below the job.
 RESULTS = {
     "seg": ("seg", "labels?format=seg"),
@@ -27,7 +29,7 @@ def add_submit(submit: argparse.ArgumentParser, parameter: Callable[[str], tuple
     """Describe the command; ``parameter`` reads NAME=VALUE."""
     submit.add_argument("files", type=Path, nargs="+", metavar="FILE", help="mesh files")
     submit.add_argument("--server", default=_DEFAULT_SERVER, metavar="URL", help="of the service (%(default)s)")
-    submit.add_argument("--segments", type=int, metavar="K", help="number of segments (chosen by each mesh)")
+    add_fineness(submit, "chosen by each mesh")
     submit.add_argument(
         "--set",
         type=parameter,
@@ -57,6 +59,7 @@ def _submit(choices: argparse.Namespace) -> int:
         server=choices.server,
         api_key=os.environ.get("CLEAVE_API_KEY"),
         segments=choices.segments,
+        granularity=choices.granularity,
         parameters=dict(choices.parameters),
         results=choices.results,
         folder=choices.output,

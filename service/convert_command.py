@@ -4,10 +4,11 @@ from collections.abc import Sequence
 from pathlib import Path
 
 from segcore.io.result import read_result
+from service.fineness import Fineness
 from service.outputs import OutputOptions, check_outputs, write_model
 
 
-def convert_file(result: Path, segments: int | None, outputs: Sequence[Path], options: OutputOptions) -> list[str]:
+def convert_file(result: Path, fineness: Fineness, outputs: Sequence[Path], options: OutputOptions) -> list[str]:
     """Write the files, and sum up in a few lines what is in them.
 
     Raises
@@ -19,10 +20,10 @@ def convert_file(result: Path, segments: int | None, outputs: Sequence[Path], op
     """
     check_outputs(outputs)
     opened = read_result(result)
-    count = len(opened.hierarchy.segment_nodes(segments))
+    count = fineness.segments_of(opened.hierarchy)
     for path in outputs:
-        write_model(path, opened.mesh, opened.hierarchy, segments, options)
-    chosen = "chosen automatically" if segments is None else "as asked"
+        write_model(path, opened.mesh, opened.hierarchy, count, options)
+    chosen = "chosen automatically" if fineness.is_automatic else "as asked"
     return [
         f"{count} segments, {chosen}; 1 to {opened.hierarchy.max_segments} are possible",
         *(f"wrote {path}" for path in outputs),

@@ -13,6 +13,18 @@ OUTPUTS = ".glb .ply .obj .3mf .zip .seg .npy .json .cleave"
 # Each command imports what it needs when it runs, as in service.cli.
 
 
+def add_fineness(parser: argparse.ArgumentParser, automatic: str) -> None:
+    """The arguments that say how fine the segments are; ``automatic`` says what is done without."""
+    group = parser.add_mutually_exclusive_group()
+    group.add_argument("--segments", type=int, metavar="K", help=f"number of segments ({automatic})")
+    group.add_argument(
+        "--granularity",
+        type=_granularity,
+        metavar="G",
+        help="in place of a number: 0 coarse (one segment), 0.5 automatic, 1 fine (all there are)",
+    )
+
+
 def add_outputs(parser: argparse.ArgumentParser, required: bool = False) -> None:
     """The arguments that :func:`service.outputs.output_options` reads, and ``output``."""
     parser.add_argument(
@@ -37,7 +49,7 @@ def add_convert(commands: "Commands", say: Callable[[str], None]) -> None:
         description="Write the segmentation that a .cleave file holds in other formats, at any number of segments.",
     )
     convert.add_argument("result", type=Path, metavar="MESH.cleave", help="what cleave segment --result wrote")
-    convert.add_argument("--segments", type=int, metavar="K", help="number of segments (the automatic one)")
+    add_fineness(convert, "the automatic one")
     add_outputs(convert, required=True)
     convert.set_defaults(run=lambda choices: _convert(choices, say))
 
@@ -55,9 +67,11 @@ def add_inspect(commands: "Commands", say: Callable[[str], None]) -> None:
 
 def _convert(choices: argparse.Namespace, say: Callable[[str], None]) -> None:
     from service.convert_command import convert_file
+    from service.fineness import Fineness
     from service.outputs import output_options
 
-    written = convert_file(choices.result, choices.segments, choices.output, output_options(choices))
+    fineness = Fineness(choices.segments, choices.granularity)
+    written = convert_file(choices.result, fineness, choices.output, output_options(choices))
     say("\n".join(written))
 
 
@@ -66,6 +80,16 @@ def _inspect(choices: argparse.Namespace, say: Callable[[str], None]) -> None:
 
     report = inspect_file(choices.mesh)
     say(report_json(report) if choices.json else "\n".join(describe(choices.mesh.name, report)))
+
+
+def _granularity(text: str) -> float:
+    try:
+        number = float(text)
+    except ValueError:
+        number = -1.0
+    if not 0.0 <= number <= 1.0:
+        raise argparse.ArgumentTypeError(f"a granularity is a number from 0 (coarse) to 1 (fine), not {text!r}")
+    return number
 
 
 def _output(text: str) -> Path:

@@ -1,4 +1,4 @@
-"""Which cut through the tree a result is asked for: a number of segments, or splits chosen by hand."""
+"""Which cut through the tree a result is asked for: a number of segments, a granularity, or splits chosen by hand."""
 
 from dataclasses import dataclass, replace
 from typing import Annotated
@@ -8,6 +8,7 @@ from fastapi import Depends, Query
 from segcore.errors import InvalidParameters
 from segcore.io.result import Segmentation
 from segcore.recut import keep_splits
+from service.fineness import Fineness
 
 _MOST_SPLITS = 10_000  # of any hierarchy
 
@@ -23,10 +24,10 @@ class ChosenCut:
 
 @dataclass(frozen=True, slots=True)
 class Level:
-    """What a request says; at most one of the two."""
+    """What a request says."""
 
-    segments: int | None
-    splits: str | None
+    fineness: Fineness
+    splits: str | None  # in place of the fineness
 
     def of(self, result: Segmentation) -> ChosenCut:
         """The cut that is meant.
@@ -37,20 +38,34 @@ class Level:
             Where the hierarchy has no such cut.
         """
         if self.splits is None:
-            count = len(result.hierarchy.segment_nodes(self.segments))
+            count = self.fineness.segments_of(result.hierarchy)
             return ChosenCut(result, count, f"segments={count}")
-        if self.segments is not None:
-            raise InvalidParameters("Give either segments or splits, not both.")
+        if not self.fineness.is_automatic:
+            raise InvalidParameters("Give one of segments, granularity and splits, not several.")
         chosen = sorted({int(split) for split in self.splits.split(",") if split})
         hierarchy = keep_splits(result.hierarchy, chosen)
         name = ",".join(map(str, chosen))
         return ChosenCut(replace(result, hierarchy=hierarchy), len(chosen) + 1, f"splits={name}")
 
 
+Segments = Annotated[
+    int | None, Query(ge=1, description="The number of segments, 1 to max_segments; by default automatic_segments.")
+]
+Granularity = Annotated[
+    float | None,
+    Query(
+        ge=0,
+        le=1,
+        description="In place of segments: 0 is one segment, 0.5 automatic_segments, 1 max_segments; between them the "
+        "number grows by equal factors for equal steps.",
+        examples=[0.7],
+    ),
+]
+
+
 async def _level(
-    segments: Annotated[
-        int | None, Query(ge=1, description="The number of segments, 1 to max_segments; by default automatic_segments.")
-    ] = None,
+    segments: Segments = None,
+    granularity: Granularity = None,
     splits: Annotated[
         str | None,
         Query(
@@ -62,7 +77,7 @@ async def _level(
         ),
     ] = None,
 ) -> Level:
-    return Level(segments, splits)
+    return Level(Fineness(segments, granularity), splits)
 
 
 LevelOf = Annotated[Level, Depends(_level)]

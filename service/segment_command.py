@@ -10,6 +10,7 @@ from typing import BinaryIO
 import segcore
 from segcore.io.labels import hierarchy_document, write_seg
 from segcore.io.result import write_result
+from service.fineness import Fineness
 from service.outputs import OutputOptions, check_outputs, write_file, write_model
 from service.progress_bar import ProgressBar
 
@@ -19,7 +20,7 @@ class SegmentRequest:
     """What the command line asked for; a path that is None is not written."""
 
     mesh: Path
-    segments: int | None
+    fineness: Fineness
     parameters: dict[str, object]
     outputs: tuple[Path, ...]  # in the formats that their extensions name
     options: OutputOptions
@@ -46,12 +47,12 @@ def segment_file(request: SegmentRequest) -> list[str]:
         bar("read", 0.0)
         mesh = segcore.read_mesh(request.mesh, appearance=True)
         hierarchy = segcore.segment(mesh, parameters, bar)
-        labels = hierarchy.labels(request.segments)
-        written = _write(request, mesh, hierarchy)
-    chosen = "chosen automatically" if request.segments is None else "as asked"
+        segments = request.fineness.segments_of(hierarchy)
+        written = _write(request, mesh, hierarchy, segments)
+    chosen = "chosen automatically" if request.fineness.is_automatic else "as asked"
     return [
         f"{request.mesh.name}: {len(mesh.faces)} faces, {len(mesh.vertices)} vertices",
-        f"{labels.max() + 1} segments, {chosen}; 1 to {hierarchy.max_segments} are possible",
+        f"{segments} segments, {chosen}; 1 to {hierarchy.max_segments} are possible",
         *(f"wrote {path}" for path in written),
     ]
 
@@ -59,23 +60,24 @@ def segment_file(request: SegmentRequest) -> list[str]:
 def _parameters(request: SegmentRequest) -> segcore.SegmentationParameters:
     """The number of segments that is wanted must be within the hierarchy, also where nobody said how far it goes."""
     parameters = segcore.SegmentationParameters.from_mapping(request.parameters)
-    if request.segments is None:
+    wanted = request.fineness.segments
+    if wanted is None:
         return parameters
-    if request.segments < 1:
-        raise segcore.InvalidParameters(f"The number of segments must be at least 1, not {request.segments}.")
-    return replace(parameters, max_segments=max(parameters.max_segments, request.segments))
+    if wanted < 1:
+        raise segcore.InvalidParameters(f"The number of segments must be at least 1, not {wanted}.")
+    return replace(parameters, max_segments=max(parameters.max_segments, wanted))
 
 
 def _named_outputs(request: SegmentRequest) -> list[Path]:
     return [path for path in (request.labels, request.hierarchy, request.result) if path is not None]
 
 
-def _write(request: SegmentRequest, mesh: segcore.Mesh, hierarchy: segcore.Hierarchy) -> list[Path]:
+def _write(request: SegmentRequest, mesh: segcore.Mesh, hierarchy: segcore.Hierarchy, segments: int) -> list[Path]:
     for model in request.outputs:
-        write_model(model, mesh, hierarchy, request.segments, request.options)
+        write_model(model, mesh, hierarchy, segments, request.options)
     document = hierarchy_document(hierarchy)
     writers: list[tuple[Path | None, Callable[[BinaryIO], object]]] = [
-        (request.labels, lambda target: write_seg(target, hierarchy.labels(request.segments))),
+        (request.labels, lambda target: write_seg(target, hierarchy.labels(segments))),
         (request.hierarchy, lambda target: target.write(json.dumps(document, allow_nan=False).encode())),
         (request.result, lambda target: write_result(target, mesh, hierarchy)),
     ]

@@ -12,9 +12,11 @@ from segcore.io import FORMATS
 from segcore.io.labels import labels_document
 from service.access import Caller, CallerOf
 from service.context import Context, ContextOf
+from service.fineness import Fineness
 from service.form import ReceivedMesh
 from service.intake import Taken, Wish, take_in
 from service.labels import compact_json
+from service.levels import Granularity
 from service.limits import check_limits
 from service.lookup import describe, result_of
 from service.preference import Preference, read_preference
@@ -52,6 +54,7 @@ async def create_job(
     segments: Annotated[
         int | None, Query(ge=1, description="The number of segments of the labels in the answer.")
     ] = None,
+    granularity: Granularity = None,
     file_name: Annotated[str | None, Query(max_length=1000, description="What to call the mesh.")] = None,
     webhook: Webhook = None,
     prefer: Annotated[
@@ -76,6 +79,7 @@ async def create_job(
     # disk without a bound. Once the job is in the store it is accepted, and the janitor sees to the queue if need be.
     await run_in_threadpool(context.queue.connection.ping)
     check_webhook(context, webhook)
+    fineness = Fineness(segments, granularity)
     declared = requested_format(request, format)
     limits = await run_in_threadpool(check_limits, context, caller, 1, declared_length(request))
     with ExitStack() as uploads:
@@ -96,7 +100,7 @@ async def create_job(
     preference = read_preference(prefer, context.settings.max_wait_s)
     if preference.wait_s:
         await wait_for_end(context.store, taken.job.id, preference.wait_s)
-    return await run_in_threadpool(_answer, context, taken, preference, segments, limits)
+    return await run_in_threadpool(_answer, context, taken, preference, fineness, limits)
 
 
 def check_webhook(context: Context, url: str | None) -> None:
@@ -115,7 +119,7 @@ def _take_in(context: Context, caller: Caller, mesh: ReceivedMesh, wish: Wish) -
 
 
 def _answer(
-    context: Context, taken: Taken, preference: Preference, segments: int | None, limits: dict[str, str]
+    context: Context, taken: Taken, preference: Preference, fineness: Fineness, limits: dict[str, str]
 ) -> Response:
     document = describe(context, taken.job)
     has_ended = document.finished_at is not None
@@ -128,6 +132,7 @@ def _answer(
     if has_ended:
         labels: dict[str, Any] = {"segments": None, "labels": None}
         if preference.wait_s and document.status == "succeeded":
-            labels = labels_document(result_of(context, taken.job).hierarchy, segments)
+            hierarchy = result_of(context, taken.job).hierarchy
+            labels = labels_document(hierarchy, fineness.segments_of(hierarchy))
         body = body[:-1] + b"," + compact_json(labels)[1:]
     return Response(body, 200 if has_ended else 202, headers, "application/json")

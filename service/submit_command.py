@@ -30,6 +30,7 @@ class SubmitRequest:
     server: str
     api_key: str | None
     segments: int | None
+    granularity: float | None  # in place of the number
     parameters: dict[str, object]
     results: Sequence[str]  # keys of RESULTS
     folder: Path
@@ -92,11 +93,11 @@ def _one(
     try:
         job = _finished(client, request, path, lambda stage, part: board.show(path.name, stage, part), stopping)
         for result, target in missing.items():
-            _save(client, job, result, target, request.segments)
+            _save(client, job, result, target, request)
     except ClientError as error:
         board.finish(path.name, str(error))
         return f"{path.name}: {error}"
-    board.finish(path.name, f"{request.segments or job.automatic_segments} segments")
+    board.finish(path.name, _level(job, request))
     return None
 
 
@@ -122,9 +123,16 @@ def _finished(
     return job
 
 
-def _save(client: Client, job: Job, result: str, target: Path, segments: int | None) -> None:
+def _level(job: Job, request: SubmitRequest) -> str:
+    if request.granularity is not None:
+        return f"granularity {request.granularity:g}"
+    return f"{request.segments or job.automatic_segments} segments"
+
+
+def _save(client: Client, job: Job, result: str, target: Path, request: SubmitRequest) -> None:
     address, _, query = RESULTS[result][1].partition("?")
-    params: dict[str, object] = {} if result in _OF_ALL_LEVELS else {"segments": segments}
+    level: dict[str, object] = {"segments": request.segments, "granularity": request.granularity}
+    params = {} if result in _OF_ALL_LEVELS else level
     if query:
         name, _, value = query.partition("=")
         params[name] = value

@@ -31,6 +31,15 @@ def test_a_mesh_becomes_labels_in_one_call(url: str, mesh: Path) -> None:
         assert client.segment(mesh.read_bytes(), format="off").segments == automatic.segments
 
 
+def test_a_granularity_stands_in_place_of_a_number(url: str, mesh: Path) -> None:
+    with Client(url) as client:
+        parts = client.segment(mesh, granularity=1.0)
+        assert parts.segments == parts.job.max_segments == len(set(parts.labels.tolist()))
+        assert client.labels(parts.job, granularity=0.5).segments == parts.job.automatic_segments
+        with pytest.raises(RequestRefused, match="not both"):
+            client.labels(parts.job, 3, granularity=0.5)
+
+
 def test_a_job_can_be_followed_fetched_and_deleted(url: str, mesh: Path, tmp_path: Path) -> None:
     with Client(url) as client:
         job = client.submit(mesh, parameters={"max_segments": 5}, idempotency_key="one")
@@ -55,6 +64,7 @@ def test_asyncio_does_the_same(url: str, mesh: Path, tmp_path: Path) -> None:
         async with AsyncClient(url) as client:
             parts, job = await asyncio.gather(client.segment(mesh, segments=4), client.submit(mesh))
             job = await client.wait(job.id)
+            assert (await client.labels(job, granularity=1.0)).segments == job.max_segments
             assert np.array_equal((await client.labels(job, 4)).labels, parts.labels)
             assert {other.id async for other in client.jobs()} == {job.id, parts.job.id}
             await client.download(job.id, "labels", tmp_path / "labels.npy", format="npy", segments=4)

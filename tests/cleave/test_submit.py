@@ -1,5 +1,6 @@
 """`cleave submit`: results in a folder, nothing done twice, and an exit status for scripts."""
 
+import json
 import os
 from pathlib import Path
 
@@ -32,6 +33,15 @@ def test_every_file_gets_its_results(
     printed = capsys.readouterr()
     assert "2 of 2 files" in printed.out
     assert "ball10.off: 3 segments" in printed.err
+
+
+def test_a_granularity_stands_in_place_of_a_number(
+    url: str, meshes: list[Path], tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    assert submit(url, meshes[:1], tmp_path / "out", "--granularity", "1", "--results", "seg,json") == 0
+    most = json.loads((tmp_path / "out" / "ball10.json").read_text())["max_segments"]
+    assert len(set((tmp_path / "out" / "ball10.seg").read_text().split())) == most
+    assert "ball10.off: granularity 1" in capsys.readouterr().err
 
 
 def test_a_second_run_goes_on_where_the_first_broke_off(url: str, meshes: list[Path], tmp_path: Path) -> None:

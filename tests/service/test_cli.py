@@ -45,6 +45,19 @@ def test_every_output_is_of_the_same_segmentation(mesh: Path, tmp_path: Path) ->
     assert len(json.loads(paths["tree.json"].read_text())["nodes"]) > 5
 
 
+def test_a_granularity_stands_in_place_of_a_number(
+    mesh: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    expected = segcore.segment(segcore.read_mesh(mesh))
+    direct, converted, result = tmp_path / "direct.seg", tmp_path / "converted.seg", tmp_path / "ball.cleave"
+    outputs = ["-o", str(direct), "--result", str(result)]
+    assert main(["segment", str(mesh), "--granularity", "0.7", *outputs]) == 0
+    assert main(["convert", str(result), "--granularity", "0.7", "-o", str(converted)]) == 0
+    labels = [str(label) for label in expected.labels(expected.segments_at(0.7)).tolist()]
+    assert direct.read_text().split() == converted.read_text().split() == labels
+    assert capsys.readouterr().out.count(f"{expected.segments_at(0.7)} segments, as asked") == 2
+
+
 def test_more_segments_than_the_default_hierarchy_has_can_be_asked_for(mesh: Path, tmp_path: Path) -> None:
     labels = tmp_path / "labels.seg"
     assert main(["segment", str(mesh), "--segments", "100", "--labels", str(labels)]) == 0
@@ -69,6 +82,9 @@ def test_a_preset_and_parameters_change_the_method(mesh: Path, tmp_path: Path) -
         (["segment", "MESH", "--set", "colour=red"], "Unknown parameter 'colour'"),
         (["segment", "nowhere.off"], "nowhere.off: No such file or directory."),
         (["segment", "MESH", "--segments", "0"], "The number of segments must be at least 1, not 0."),
+        (["segment", "MESH", "--granularity", "2"], "a granularity is a number from 0 (coarse) to 1 (fine), not '2'"),
+        (["segment", "MESH", "--granularity", "nan"], "not 'nan'"),
+        (["segment", "MESH", "--segments", "3", "--granularity", "1"], "not allowed with argument --segments"),
         (["segment", "MESH", "--segments", "9999"], "The number of segments must be from 1 to"),
         (["segment", "MESH", "--max-segments", "0"], "max_segments must be an integer"),
         (["segment", "MESH", "--labels", "no/such/folder"], "no/such: There is no such folder."),

@@ -1,4 +1,4 @@
-"""Results at a cut made by hand: the splits are named in place of a number of segments."""
+"""Results at a granularity, or at a cut made by hand, in place of a number of segments."""
 
 from collections.abc import Callable
 
@@ -58,9 +58,34 @@ def test_splits_that_cannot_be_made_are_refused(client: httpx.Client, job: str, 
     problem(client.get(f"{job}/labels", params={"splits": splits}), 422, "invalid_parameters")
 
 
-def test_a_number_and_splits_together_are_refused(client: httpx.Client, job: str) -> None:
-    answer = client.get(f"{job}/labels", params={"splits": "0", "segments": 2})
-    problem(answer, 422, "invalid_parameters")
+@pytest.mark.parametrize("others", [{"splits": "0", "segments": 2}, {"splits": "0", "granularity": 1}])
+def test_splits_and_a_level_together_are_refused(client: httpx.Client, job: str, others: dict[str, str]) -> None:
+    body = problem(client.get(f"{job}/labels", params=others), 422, "invalid_parameters")
+    assert "one of segments, granularity and splits" in str(body["detail"])
+
+
+@pytest.mark.parametrize("granularity", [0, 0.3, 0.5, 0.7, 1])
+def test_a_granularity_is_the_number_of_segments_that_the_hierarchy_says(
+    client: httpx.Client, job: str, store: LocalStore, granularity: float
+) -> None:
+    with store.open_result(job.rpartition("/")[2]) as file:
+        segments = read_result(file).hierarchy.segments_at(granularity)
+    for form in FORMS:
+        answer = client.get(f"{job}/{form}", params={"granularity": granularity})
+        assert answer.status_code == 200
+        assert answer.headers["ETag"] == client.get(f"{job}/{form}", params={"segments": segments}).headers["ETag"]
+    assert client.get(f"{job}/labels", params={"granularity": granularity}).json()["segments"] == segments
+
+
+def test_a_granularity_and_a_number_together_are_refused(client: httpx.Client, job: str) -> None:
+    both = {"granularity": 0.7, "segments": 2}
+    for answer in (client.get(f"{job}/labels", params=both), client.post("/v1/jobs", params=both, content=b"OFF")):
+        assert "either segments or granularity" in str(problem(answer, 422, "invalid_parameters")["detail"])
+
+
+@pytest.mark.parametrize("granularity", ["-0.1", "1.1", "nan", "fine"])
+def test_a_granularity_outside_of_its_range_is_refused(client: httpx.Client, job: str, granularity: str) -> None:
+    problem(client.get(f"{job}/labels", params={"granularity": granularity}), 422, "invalid_request")
 
 
 def test_text_that_names_no_splits_is_refused(client: httpx.Client, job: str) -> None:

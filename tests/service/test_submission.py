@@ -50,6 +50,15 @@ def test_who_waits_gets_the_labels_in_one_round_trip(
     assert {**client.get(job["links"]["self"]).json(), **labels} == job
 
 
+def test_who_waits_gets_the_labels_at_a_granularity(
+    client: httpx.Client, store: LocalStore, settings: Settings
+) -> None:
+    with working(store, settings):
+        answer = client.post("/v1/jobs?granularity=1", content=MESH, headers={"Prefer": "wait=60"})
+    job = answer.json()
+    assert job["segments"] == job["max_segments"] == len(set(job["labels"]))
+
+
 def test_who_waits_in_vain_polls(client: httpx.Client) -> None:
     answer = client.post("/v1/jobs", content=MESH, headers={"Prefer": "wait=1"})
     assert answer.status_code == 202
