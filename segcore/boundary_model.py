@@ -8,6 +8,7 @@ meshed.
 from dataclasses import dataclass
 
 import numpy as np
+from numba import njit
 
 from segcore.arrays import FloatArray, IntArray, LongArray, group_sums
 from segcore.learned import learned_models
@@ -89,46 +90,82 @@ def edge_features(
     surface: Surface, measured: Measurements, fields: PatchFields, chosen: IntArray | LongArray | slice
 ) -> FloatArray:
     """(N, M): the features of some dual edges, in the order of ``FEATURES``."""
-    f, g = measured.patches.of_face[surface.edge_faces[chosen]].T
-    t = measured.edges.across[chosen]
     ends = surface.vertices[surface.edge_vertices[chosen]]
-    u = ends[:, 1] - ends[:, 0]
-    u /= np.maximum(np.linalg.norm(u, axis=1, keepdims=True), np.finfo(float).tiny)
-
-    def both(field: FloatArray) -> FloatArray:
-        return 0.5 * (field[f] + field[g])
-
-    columns = [
-        signed_log(measured.edges.dihedral[chosen] / measured.edges.typical_dihedral),
-        signed_log(measured.k1[chosen]),
-        signed_log(measured.k2[chosen]),
-        np.log1p(measured.bending[chosen]),
-        np.log1p(measured.change[chosen]),
-    ]
-    tensor, mean = both(fields.tensor), both(fields.mean)
-    for scale in range(len(TENSOR_RADII)):
-        six = tensor[:, scale]
-        columns += [signed_log(_form(six, t, t)), signed_log(_form(six, u, u)), np.log1p(np.abs(_form(six, t, u)))]
-    steps = np.abs(np.einsum("nsk,nk->ns", both(fields.mean_gradient), t))
-    columns += list(np.log1p(steps).T)
-    columns += list(signed_log(mean[:, :-1] - mean[:, 1:]).T)
-    log = both(fields.thickness)
-    slope = both(fields.thickness_gradient)
-    columns.append(log[:, 1])
-    columns += list(np.log1p(np.abs(np.einsum("nsk,nk->ns", slope, t))).T)
-    columns.append(np.log1p(np.abs(np.einsum("nk,nk->n", slope[:, 1], u))))
-    columns += [log[:, 0] - log[:, 1], log[:, 1] - log[:, 2], both(fields.confidence)]
-    return np.stack(columns, axis=1)
-
-
-def _form(six: FloatArray, a: FloatArray, b: FloatArray) -> FloatArray:
-    xx, yy, zz, xy, xz, yz = six.T
-    value: FloatArray = (
-        xx * a[:, 0] * b[:, 0]
-        + yy * a[:, 1] * b[:, 1]
-        + zz * a[:, 2] * b[:, 2]
-        + xy * (a[:, 0] * b[:, 1] + a[:, 1] * b[:, 0])
-        + xz * (a[:, 0] * b[:, 2] + a[:, 2] * b[:, 0])
-        + yz * (a[:, 1] * b[:, 2] + a[:, 2] * b[:, 1])
+    features = np.empty((len(ends), len(FEATURES)))
+    features[:, 0] = signed_log(measured.edges.dihedral[chosen] / measured.edges.typical_dihedral)
+    features[:, 1] = signed_log(measured.k1[chosen])
+    features[:, 2] = signed_log(measured.k2[chosen])
+    features[:, 3] = np.log1p(measured.bending[chosen])
+    features[:, 4] = np.log1p(measured.change[chosen])
+    _fill_from_patches(
+        features,
+        measured.patches.of_face[surface.edge_faces[chosen]],
+        measured.edges.across[chosen],
+        ends[:, 1] - ends[:, 0],
+        fields.tensor,
+        fields.mean,
+        fields.mean_gradient,
+        fields.thickness,
+        fields.thickness_gradient,
+        fields.confidence,
     )
-    return value
+    return features
+
+
+@njit(cache=True)
+def _fill_from_patches(features, pairs, across, edge, tensor, mean, mean_gradient, thickness, slope, confidence):  # type: ignore[no-untyped-def]
+    """The columns from the sixth on: means over the patches at both sides of an edge."""
+    scales = tensor.shape[1]
+    six = np.empty(6)
+    for i in range(len(pairs)):
+        f, g = pairs[i, 0], pairs[i, 1]
+        row, t, u = features[i], across[i], edge[i]
+        length = np.sqrt(u[0] ** 2 + u[1] ** 2 + u[2] ** 2)
+        if length > 0.0:
+            u /= length
+        column = 5
+        for s in range(scales):
+            for k in range(6):
+                six[k] = 0.5 * (tensor[f, s, k] + tensor[g, s, k])
+            row[column] = _signed_log(_form(six, t, t))
+            row[column + 1] = _signed_log(_form(six, u, u))
+            row[column + 2] = np.log1p(abs(_form(six, t, u)))
+            column += 3
+        for s in range(scales - 1):
+            row[column] = np.log1p(_slope(mean_gradient[f, s], mean_gradient[g, s], t))
+            before, after = 0.5 * (mean[f, s] + mean[g, s]), 0.5 * (mean[f, s + 1] + mean[g, s + 1])
+            row[column + scales - 1] = _signed_log(before - after)
+            column += 1
+        column += scales - 1
+        near, middle, far = 0.5 * (thickness[f] + thickness[g])
+        row[column] = middle
+        for s in range(3):
+            row[column + 1 + s] = np.log1p(_slope(slope[f, s], slope[g, s], t))
+        row[column + 4] = np.log1p(_slope(slope[f, 1], slope[g, 1], u))
+        row[column + 5] = near - middle
+        row[column + 6] = middle - far
+        row[column + 7] = 0.5 * (confidence[f] + confidence[g])
+
+
+@njit(cache=True)
+def _form(six, a, b):  # type: ignore[no-untyped-def]
+    """The symmetric form (xx, yy, zz, xy, xz, yz) of two vectors."""
+    return (
+        six[0] * a[0] * b[0]
+        + six[1] * a[1] * b[1]
+        + six[2] * a[2] * b[2]
+        + six[3] * (a[0] * b[1] + a[1] * b[0])
+        + six[4] * (a[0] * b[2] + a[2] * b[0])
+        + six[5] * (a[1] * b[2] + a[2] * b[1])
+    )
+
+
+@njit(cache=True)
+def _slope(one, other, along):  # type: ignore[no-untyped-def]
+    """The derivative along a vector, without its sign, of the mean of two gradients."""
+    return 0.5 * abs((one[0] + other[0]) * along[0] + (one[1] + other[1]) * along[1] + (one[2] + other[2]) * along[2])
+
+
+@njit(cache=True)
+def _signed_log(x):  # type: ignore[no-untyped-def]
+    return np.log1p(x) if x >= 0.0 else -np.log1p(-x)

@@ -35,9 +35,7 @@ class EdgeGeometry:
 
 def edge_lengths(surface: Surface) -> FloatArray:
     """(E,) length of the mesh edge that a dual edge crosses."""
-    ends = surface.vertices[surface.edge_vertices]
-    length: FloatArray = np.linalg.norm(ends[:, 1] - ends[:, 0], axis=1)
-    return length
+    return _lengths(surface.vertices, surface.edge_vertices)
 
 
 def dihedral_angles(surface: Surface) -> FloatArray:
@@ -52,6 +50,15 @@ def _across(surface: Surface) -> FloatArray:
     a, b = surface.edge_vertices.T
     f, g = surface.edge_faces.T
     return _across_edges(surface.vertices, surface.normals, a, b, f, g)
+
+
+@njit(cache=True)
+def _lengths(vertices, ends):  # type: ignore[no-untyped-def]
+    length = np.empty(len(ends))
+    for e in range(len(ends)):
+        p, q = vertices[ends[e, 0]], vertices[ends[e, 1]]
+        length[e] = np.sqrt((q[0] - p[0]) ** 2 + (q[1] - p[1]) ** 2 + (q[2] - p[2]) ** 2)
+    return length
 
 
 @njit(cache=True)

@@ -50,7 +50,8 @@ class RayCaster:
 
 
 def _along_curve(vertices: FloatArray, faces: IntArray) -> NDArray[np.int64]:
-    centroids = vertices[faces].mean(axis=1)
+    a, b, c = faces.T
+    centroids = (vertices[a] + vertices[b] + vertices[c]) / 3.0
     low = centroids.min(axis=0)
     extent = float((centroids.max(axis=0) - low).max())
     cells = ((centroids - low) * ((2**_MORTON_BITS - 1) / extent if extent > _TINY else 0.0)).astype(np.uint64)
