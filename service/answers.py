@@ -1,5 +1,6 @@
 """Answers that a client may have already, or wants a part of: RFC 9110, sections 13 (conditions) and 14 (ranges)."""
 
+import gzip
 import hashlib
 import re
 from collections.abc import Callable, Mapping
@@ -16,8 +17,16 @@ _FOR_EVER = "private, max-age=31536000, immutable"
 _RESULT_HEADERS = {
     "ETag": {"schema": {"type": "string"}, "description": "Of these bytes; for If-None-Match and If-Range."},
     "Accept-Ranges": {"schema": {"const": "bytes"}},
+    "Content-Encoding": {
+        "schema": {"const": "gzip"},
+        "description": "Of labels and the hierarchy, where Accept-Encoding takes it and no range is asked for.",
+    },
 }
 NOT_MODIFIED = "The client has it already: If-None-Match names its ETag."
+# What shrinks to a part of itself in a moment; models and pictures hardly shrink, or take long.
+_SHRINKS = re.compile(r"text/.*|application/(.*\+)?json|application/x-npy|application/octet-stream")
+_GZIP_LEVEL = 1
+_NO_QUALITY = re.compile(r"q\s*=\s*0(\.0*)?", re.IGNORECASE)
 _ONE_RANGE = re.compile(r"bytes=(\d{0,18})-(\d{0,18})", re.ASCII)
 
 
@@ -46,10 +55,14 @@ def rendition_responses(content: dict[str, Any], description: str) -> dict[int |
 
 def answer_rendition(request: Request, rendition: Rendition) -> Response:
     """The bytes of a result, a range of them, or that the client has them."""
-    tag = entity_tag(rendition.identity.encode())
+    shrinks = _SHRINKS.fullmatch(rendition.media_type.partition(";")[0]) is not None
+    # A range is one of the bytes themselves: most who ask for it would take a piece of a compressed file for them.
+    is_gzip = shrinks and "range" not in request.headers and takes_gzip(request.headers.get("accept-encoding", ""))
+    tag = entity_tag(f"{rendition.identity}{';gzip' if is_gzip else ''}".encode())
     headers = {"ETag": tag, "Cache-Control": _FOR_EVER, "Accept-Ranges": "bytes"}
-    if rendition.vary:
-        headers["Vary"] = rendition.vary
+    chosen_by = [rendition.vary, "Accept-Encoding" if shrinks else None]
+    if any(chosen_by):
+        headers["Vary"] = ", ".join(filter(None, chosen_by))
     if is_current(request, tag):
         return Response(status_code=304, headers=headers)
     if rendition.file_name:
@@ -60,7 +73,19 @@ def answer_rendition(request: Request, rendition: Rendition) -> Response:
         if part is not None:
             headers["Content-Range"] = f"bytes {part.start}-{part.stop - 1}/{len(body)}"
             return Response(body[part.start : part.stop], 206, headers, rendition.media_type)
+    if is_gzip:
+        headers["Content-Encoding"] = "gzip"
+        body = gzip.compress(body, _GZIP_LEVEL, mtime=0)  # without the time: equal tags are of equal bytes
     return Response(body, 200, headers, rendition.media_type)
+
+
+def takes_gzip(accept_encoding: str) -> bool:
+    """Whether an Accept-Encoding header takes gzip by its name (RFC 9110, section 12.5.3)."""
+    for coding in accept_encoding.split(","):
+        name, _, weight = coding.partition(";")
+        if name.strip().lower() in ("gzip", "x-gzip"):
+            return _NO_QUALITY.fullmatch(weight.strip()) is None
+    return False
 
 
 def answer_json(request: Request, body: bytes, status: int = 200, headers: Mapping[str, str] | None = None) -> Response:

@@ -30,6 +30,7 @@ def test_a_result_is_sent_once_and_in_any_part(
     client: httpx.Client, finished_job: Callable[..., str], result: str
 ) -> None:
     url = f"{finished_job()}/{result}"
+    client.headers["Accept-Encoding"] = "identity"
     whole = client.get(url)
     assert whole.headers["Accept-Ranges"] == "bytes"
     assert "immutable" in whole.headers["Cache-Control"]
@@ -51,6 +52,46 @@ def test_a_result_is_sent_once_and_in_any_part(
     problem(client.get(url, headers={"Range": f"bytes={size}-"}), 416, "range_not_satisfiable")
     for ignored in ({"Range": "bytes=0-1", "If-Range": '"other"'}, {"Range": "bytes=0-1,3-4"}, {"Range": "lines=1-2"}):
         assert client.get(url, headers=ignored).status_code == 200
+
+
+@pytest.mark.parametrize(
+    "result", ["labels", "labels?format=seg", "labels?format=raw", "labels?format=npy", "hierarchy"]
+)
+def test_what_shrinks_is_compressed_for_those_who_take_it(
+    client: httpx.Client, finished_job: Callable[..., str], result: str
+) -> None:
+    url = f"{finished_job()}/{result}"
+    plain = client.get(url, headers={"Accept-Encoding": "br, gzip;q=0"})
+    packed = client.get(url, headers={"Accept-Encoding": "br, gzip;q=0.5"})
+    assert "Content-Encoding" not in plain.headers
+    assert packed.headers["Content-Encoding"] == "gzip"
+    assert packed.content == plain.content  # httpx unpacks it
+    assert int(packed.headers["Content-Length"]) < int(plain.headers["Content-Length"]) / 2
+    assert packed.headers["ETag"] != plain.headers["ETag"]
+    for answer in (plain, packed):
+        assert "Accept-Encoding" in answer.headers["Vary"]
+    known = {"Accept-Encoding": "gzip", "If-None-Match": packed.headers["ETag"]}
+    assert client.get(url, headers=known).status_code == 304
+
+
+def test_a_range_is_never_of_compressed_bytes(client: httpx.Client, finished_job: Callable[..., str]) -> None:
+    url = f"{finished_job()}/labels"
+    packed = client.get(url, headers={"Accept-Encoding": "gzip"})
+    asked = {"Accept-Encoding": "gzip", "Range": "bytes=1-9"}
+    part = client.get(url, headers=asked)
+    assert (part.status_code, part.content) == (206, packed.content[1:10])
+    assert "Content-Encoding" not in part.headers
+    assert part.headers["ETag"] != packed.headers["ETag"]
+    whole = client.get(url, headers={**asked, "If-Range": packed.headers["ETag"]})
+    assert (whole.status_code, whole.content) == (200, packed.content)
+
+
+@pytest.mark.parametrize("result", ["model.glb", "model.3mf", "preview.png"])
+def test_what_hardly_shrinks_is_sent_as_it_is(
+    client: httpx.Client, finished_job: Callable[..., str], result: str
+) -> None:
+    answer = client.get(f"{finished_job()}/{result}", headers={"Accept-Encoding": "gzip"})
+    assert {"Content-Encoding", "Vary"}.isdisjoint(answer.headers)
 
 
 def test_different_results_have_different_tags(client: httpx.Client, finished_job: Callable[..., str]) -> None:
