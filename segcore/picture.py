@@ -66,7 +66,7 @@ def _shaded(label: IntArray, light: FloatArray, size: int) -> ByteArray:
     return pixels
 
 
-@njit(cache=True)
+@njit(cache=True, nogil=True)
 def _corner_normals(faces: IntArray, normals: FloatArray, vertex_count: int) -> FloatArray:
     """(F, 3, 3): at every corner the mean normal of the faces there that lie within the crease angle."""
     start = np.zeros(vertex_count + 1, np.int64)
@@ -96,7 +96,7 @@ def _corner_normals(faces: IntArray, normals: FloatArray, vertex_count: int) -> 
     return result
 
 
-@njit(cache=True)
+@njit(cache=True, nogil=True)
 def _rasterize(
     screen: FloatArray, faces: IntArray, labels: IntArray, normals: FloatArray, resolution: int
 ) -> tuple[IntArray, FloatArray]:
