@@ -13,12 +13,12 @@ from numba import njit
 from segcore.arrays import FloatArray, IntArray, LongArray, group_sums
 from segcore.learned import learned_models
 from segcore.logistic import signed_log
-from segcore.measurements import Measurements
+from segcore.measurements import THICKNESS_RADIUS, Measurements
 from segcore.surface import Surface
 from segcore.thickness import smooth_logarithm
 
 TENSOR_RADII = (0.0, 0.03, 0.06, 0.12)  # in units of the square root of the total area, as all radii here
-THICKNESS_RADII = (0.03, 0.06, 0.12)
+THICKNESS_RADII = (0.03, THICKNESS_RADIUS, 0.12)
 
 FEATURES = (
     "dihedral",
@@ -71,7 +71,10 @@ def patch_fields(surface: Surface, measured: Measurements) -> PatchFields:
     tensor = np.stack([raw if r == 0 else patches.smoothed(raw, r * size) for r in TENSOR_RADII], axis=1)
     mean = 0.5 * tensor[:, :, :3].sum(axis=2)
     mean_gradient = np.stack([size * patches.gradients(column) for column in mean[:, 1:].T], axis=1)
-    logs = [smooth_logarithm(measured.thickness, patches, r * size) for r in THICKNESS_RADII]
+    logs = [
+        measured.log_thickness if r == THICKNESS_RADIUS else smooth_logarithm(measured.thickness, patches, r * size)
+        for r in THICKNESS_RADII
+    ]
     gradient = np.stack([size * patches.gradients(log) for log in logs], axis=1)
     return PatchFields(tensor, mean, mean_gradient, np.stack(logs, axis=1), gradient, measured.thickness.confidence)
 

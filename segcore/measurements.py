@@ -13,7 +13,7 @@ from segcore.thickness import Thickness, patch_thickness, smooth_logarithm
 
 _CURVATURE_SCALE = 8.0  # concave minimum curvatures are measured in 1 / sqrt(total area)
 _LOWEST_GUARD = 0.03  # affinity of the deepest concavity where patches are concerned
-_THICKNESS_RADIUS = 0.06  # over which the thickness is smoothed, in sqrt(total area)
+THICKNESS_RADIUS = 0.06  # over which the thickness is smoothed, in sqrt(total area)
 _LARGEST_CHANGE = 3.0
 
 
@@ -55,8 +55,8 @@ def measure(surface: Surface, seed: int) -> Measurements:
     guard = _LOWEST_GUARD + (1.0 - _LOWEST_GUARD) * np.exp(-bending)
     patches = patches_of(surface, guard, edges.positive_length, np.random.default_rng(seed))
     thickness = patch_thickness(surface, patches)
-    log = smooth_logarithm(thickness, patches, _THICKNESS_RADIUS * size)
-    slope = patches.gradients(log) * (_THICKNESS_RADIUS * size * thickness.confidence)[:, None]
+    log = smooth_logarithm(thickness, patches, THICKNESS_RADIUS * size)
+    slope = patches.gradients(log) * (THICKNESS_RADIUS * size * thickness.confidence)[:, None]
     change = _change_across(slope, patches.of_face[surface.edge_faces], edges.across)
     return Measurements(edges, k1, k2, bending, change, patches, thickness, log)
 

@@ -7,6 +7,7 @@ is the best, which split is worth most, and which is worth nothing.
 from dataclasses import dataclass
 
 import numpy as np
+from numba import njit
 
 from segcore.arrays import BoolArray, FloatArray, IntArray, group_sums
 from segcore.cheeger import Cut
@@ -77,8 +78,7 @@ def cut_features(fields: ClusterFields, segment: Segment, cut: Cut) -> FloatArra
     graph, small = segment.graph, cut.side if cut.inside <= cut.outside else ~cut.side
     crossing = small[graph.edges[:, 0]] != small[graph.edges[:, 1]]
     border = float(graph.length[crossing].sum())
-    one = _Side.of(fields, segment, small, border)
-    other = _Side.of(fields, segment, ~small, border)
+    one, other = _sides(fields, segment, small, border)
     affinity = cut.weight / border
     ends = graph.edges[crossing]
     at_cut = fields.thickness[segment.nodes[ends]].mean(axis=1)
@@ -130,24 +130,60 @@ class _Side:
     flatness: float  # least over largest standard deviation of the points
     roundness: float  # middle over largest
 
-    @classmethod
-    def of(cls, fields: ClusterFields, segment: Segment, side: BoolArray, border: float) -> "_Side":
-        graph, nodes = segment.graph, segment.nodes[side]
-        inside = side[graph.edges[:, 0]] & side[graph.edges[:, 1]]
-        length = float(graph.length[inside].sum())
-        outline = float(fields.degree[nodes].sum()) - 2.0 * length
-        share = graph.volume[side] / graph.volume[side].sum()
-        thickness = fields.thickness[nodes]
-        mean = float(np.dot(share, thickness))
-        offset = fields.points[nodes] - share @ fields.points[nodes]
-        variance = np.linalg.eigvalsh((offset * share[:, None]).T @ offset)
-        deviation = np.sqrt(np.maximum(variance, 0.0)) / np.sqrt(max(variance[2], _TINY))
-        return cls(
-            area=float(graph.volume[side].sum()),
-            affinity=float(graph.weight[inside].sum()) / length if length > 0 else 1.0,
-            closed=min(1.0, border / max(outline, border)),
-            thickness=mean,
-            thickness_spread=float(np.sqrt(np.dot(share, (thickness - mean) ** 2))),
-            flatness=float(deviation[0]),
-            roundness=float(deviation[1]),
-        )
+
+def _sides(fields: ClusterFields, segment: Segment, small: BoolArray, border: float) -> list[_Side]:
+    graph, nodes = segment.graph, segment.nodes
+    sums = _sums_of_sides(
+        graph.edges,
+        graph.weight,
+        graph.length,
+        graph.volume,
+        small,
+        fields.degree[nodes],
+        fields.thickness[nodes],
+        fields.points[nodes],
+    )
+    return [_side(row, border) for row in sums]
+
+
+def _side(sums: FloatArray, border: float) -> _Side:
+    area, weight, length, degree, thickness, squares = sums[:6].tolist()
+    outline = degree - 2.0 * length
+    mean = thickness / area
+    centre = sums[6:9] / area
+    variance = np.linalg.eigvalsh(sums[9:].reshape(3, 3) / area - np.outer(centre, centre))
+    deviation = np.sqrt(np.maximum(variance, 0.0)) / np.sqrt(max(variance[2], _TINY))
+    return _Side(
+        area=area,
+        affinity=weight / length if length > 0 else 1.0,
+        closed=min(1.0, border / max(outline, border)),
+        thickness=mean,
+        thickness_spread=float(np.sqrt(max(squares / area - mean**2, 0.0))),
+        flatness=float(deviation[0]),
+        roundness=float(deviation[1]),
+    )
+
+
+@njit(cache=True)
+def _sums_of_sides(edges, weight, length, volume, small, degree, thickness, points):  # type: ignore[no-untyped-def]
+    """(2, 18) for the small side and the other: area; weight and length inside; and sums over the nodes of the degree,
+    and, times the area, of thickness, its square, the position, and its products."""
+    sums = np.zeros((2, 18))
+    for e in range(len(edges)):
+        a, b = edges[e, 0], edges[e, 1]
+        if small[a] == small[b]:
+            row = 0 if small[a] else 1
+            sums[row, 1] += weight[e]
+            sums[row, 2] += length[e]
+    for i in range(len(volume)):
+        row = 0 if small[i] else 1
+        v, t, p = volume[i], thickness[i], points[i]
+        sums[row, 0] += v
+        sums[row, 3] += degree[i]
+        sums[row, 4] += v * t
+        sums[row, 5] += v * t * t
+        for k in range(3):
+            sums[row, 6 + k] += v * p[k]
+            for m in range(3):
+                sums[row, 9 + 3 * k + m] += v * p[k] * p[m]
+    return sums
