@@ -6,7 +6,7 @@ import time
 from worker.store import LocalStore
 
 _SHORTEST_PAUSE_S, _LONGEST_PAUSE_S = 0.01, 0.25
-_PAUSES = 20.0  # looks per doubling of the time waited, so that nobody waits for much longer than the job takes
+_PAUSES = 100.0  # looks per doubling of the time waited: an answer is late by a hundredth of what the job takes
 
 
 async def wait_for_end(store: LocalStore, job_id: str, at_most_s: float) -> bool:
