@@ -1,5 +1,6 @@
 """A store and a queue server for every test that asks for one; the same random examples in every run."""
 
+import os
 import subprocess
 import tempfile
 from collections.abc import Iterator
@@ -24,7 +25,10 @@ set_hypothesis_home_dir(_HYPOTHESIS.name)
 
 def pytest_addoption(parser: pytest.Parser) -> None:
     parser.addoption(
-        "--contract-examples", type=int, default=20, help="requests that schemathesis makes up for every operation"
+        "--contract-examples",
+        type=int,
+        default=int(os.environ.get("CONTRACT_EXAMPLES", "20")),
+        help="requests that schemathesis makes up for every operation (CONTRACT_EXAMPLES, or 20)",
     )
 
 

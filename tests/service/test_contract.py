@@ -53,6 +53,7 @@ def service(tmp_path_factory: pytest.TempPathFactory, queue_url: str) -> Iterato
     worker.join()
 
 
+pytestmark = pytest.mark.timeout(900)  # with as many examples as CI asks for
 KEY = new_key()
 _STARTS, _STEPS = 20, 8
 COMMITTED = json.loads((DOCS / "openapi.json").read_text())
