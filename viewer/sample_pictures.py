@@ -1,4 +1,4 @@
-"""Draws the pictures of the samples into static/: ``python viewer/sample_pictures.py`` from the top of the repository."""
+"""Draws the pictures of the samples into static/: ``python viewer/sample_pictures.py`` at the top of the repository."""
 
 from pathlib import Path
 
