@@ -10,6 +10,7 @@ import numpy as np
 from segcore.arrays import BoolArray, FloatArray, IntArray, group_sums
 from segcore.assembly import CONTACT
 from segcore.band import band_network, free_faces, grow_band
+from segcore.edge_geometry import edge_lengths
 from segcore.graph import SurfaceGraph, rows_of
 from segcore.max_flow import push
 from segcore.mesh_graph import MeshGraph
@@ -38,8 +39,7 @@ def draw_boundaries(tree: Tree, nodes: MeshGraph, links: Links, surface: Surface
     """
     if len(tree.split_node) == 0:
         return tree
-    ends = surface.vertices[surface.edge_vertices]
-    cost = nodes.graph.weight + STIFFNESS * np.linalg.norm(ends[:, 1] - ends[:, 0], axis=1)
+    cost = nodes.graph.weight + STIFFNESS * edge_lengths(surface)
     linked = SurfaceGraph(
         np.concatenate([surface.edge_faces, links.faces]),
         np.concatenate([cost, CONTACT * links.length]),

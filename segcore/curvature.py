@@ -11,6 +11,7 @@ import numpy as np
 from numba import njit
 
 from segcore.arrays import FloatArray, IntArray
+from segcore.frames import tangent_frame
 
 _SLIVER = 1e-6  # twice the area over the squared longest edge below which the direction of a face is rounding noise
 
@@ -53,7 +54,8 @@ def _curvature_tensors(vertices: FloatArray, faces: IntArray) -> FloatArray:
     frame_u = np.empty((vertex_count, 3))
     frame_v = np.empty((vertex_count, 3))
     for v in range(vertex_count):
-        _tangent_frame(normal[v], frame_u[v], frame_v[v])
+        _normalize(normal[v])
+        tangent_frame(normal[v], frame_u[v], frame_v[v])
     tensor = np.zeros((vertex_count, 3))
     for i in range(len(faces)):
         _add_face_tensor(vertices, faces[i], normal, frame_u, frame_v, share, corner_share[i], tensor)
@@ -101,18 +103,13 @@ def _add_normals_and_shares(
 
 
 @njit(cache=True)
-def _tangent_frame(normal: FloatArray, u: FloatArray, v: FloatArray) -> None:
-    """Normalise a normal in place and complete it to a right-handed frame (Duff et al. 2017)."""
+def _normalize(normal: FloatArray) -> None:
+    """Give a normal the length 1, in place; one of length 0 becomes the z-axis."""
     length = np.sqrt(normal[0] ** 2 + normal[1] ** 2 + normal[2] ** 2)
     if length > 0.0:
         normal /= length
     else:
         normal[2] = 1.0
-    sign = 1.0 if normal[2] >= 0.0 else -1.0
-    a = -1.0 / (sign + normal[2])
-    b = normal[0] * normal[1] * a
-    u[0], u[1], u[2] = 1.0 + sign * normal[0] ** 2 * a, sign * b, -sign * normal[0]
-    v[0], v[1], v[2] = b, sign + normal[1] ** 2 * a, -normal[1]
 
 
 @njit(cache=True)

@@ -8,6 +8,20 @@ from segcore.arrays import FloatArray, IntArray
 from segcore.errors import InvalidParameters
 
 
+def renumbered_nodes(order: IntArray) -> IntArray:
+    """(2 S + 1,): the number that every node of a hierarchy gets where its splits are made in another order.
+
+    Parameters
+    ----------
+    order : (S,) the splits, first to last, parents before children.
+    """
+    number = np.zeros(2 * len(order) + 1, dtype=np.int32)
+    place = np.arange(len(order), dtype=np.int32)
+    number[2 * order + 1] = 2 * place + 1
+    number[2 * order + 2] = 2 * place + 2
+    return number
+
+
 @dataclass(frozen=True, slots=True, eq=False)
 class Hierarchy:
     """The splits of a mesh in the order in which they were made.

@@ -66,6 +66,13 @@ def face_normals_and_areas(corners: FloatArray) -> tuple[FloatArray, FloatArray]
     return normals, 0.5 * double_area
 
 
+def face_centroids(vertices: FloatArray, faces: IntArray) -> FloatArray:
+    """(F, 3): the mean of the three corners of every face."""
+    a, b, c = faces.T
+    centroids: FloatArray = (vertices[a] + vertices[b] + vertices[c]) / 3.0
+    return centroids
+
+
 def _checked_vertices(values: ArrayLike) -> FloatArray:
     vertices = _as_array(values, "vertices")
     if vertices.ndim != 2 or vertices.shape[1] != 3:

@@ -8,6 +8,7 @@ from segcore.affinity import FACE_AFFINITIES, VERTEX_AFFINITIES
 from segcore.arrays import FloatArray, IntArray, at_least
 from segcore.edge_geometry import edge_lengths
 from segcore.graph import SurfaceGraph, connected_components
+from segcore.mesh import face_centroids
 from segcore.parameters import SegmentationParameters
 from segcore.surface import Surface
 from segcore.topology import mesh_edges
@@ -40,7 +41,7 @@ def face_dual_graph(surface: Surface, parameters: SegmentationParameters) -> Mes
     affinity = FACE_AFFINITIES[parameters.affinity](surface, parameters)
     length = at_least(edge_lengths(surface), _SHORTEST_EDGE)
     graph = SurfaceGraph(surface.edge_faces, length * affinity.value, at_least(surface.areas, _SMALLEST_FACE), length)
-    centroids = surface.vertices[surface.faces].mean(axis=1)
+    centroids = face_centroids(surface.vertices, surface.faces)
     return MeshGraph(graph, centroids, np.arange(len(surface.faces), dtype=np.int32)[:, None], affinity.thickness)
 
 

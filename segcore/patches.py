@@ -12,6 +12,7 @@ from scipy.sparse.linalg import splu
 from segcore.arrays import FloatArray, IntArray, at_least, group_sums
 from segcore.coarsen import coarsen
 from segcore.graph import SurfaceGraph
+from segcore.mesh import face_centroids
 from segcore.surface import Surface
 
 COUNT = 2000
@@ -90,8 +91,7 @@ def patches_of(surface: Surface, affinity: FloatArray, length: FloatArray, rng: 
     graph = SurfaceGraph(surface.edge_faces, length * affinity, areas, length)
     coarse, of_face = coarsen(graph, COUNT, rng, largest_share=_LARGEST_SHARE)
     count = coarse.node_count
-    a, b, c = surface.faces.T
-    centroids = (surface.vertices[a] + surface.vertices[b] + surface.vertices[c]) / 3.0
+    centroids = face_centroids(surface.vertices, surface.faces)
     centre = _sums(of_face, areas, centroids, count) / coarse.volume[:, None]
     normal = _sums(of_face, areas, surface.normals, count)
     size = np.linalg.norm(normal, axis=1, keepdims=True)

@@ -13,6 +13,7 @@ from numba import njit
 from numpy.typing import NDArray
 
 from segcore.arrays import FloatArray, IntArray
+from segcore.mesh import face_centroids
 
 _LEAF = 4  # faces in a leaf, at most
 
@@ -29,8 +30,7 @@ class RayCaster:
     def of(cls, vertices: FloatArray, faces: IntArray) -> "RayCaster":
         """Arrange faces (F, 3) over vertices (V, 3), F >= 1. O(F log F)."""
         leaves = 1 << max(0, int(np.ceil(np.log2(len(faces) / _LEAF))))
-        a, b, c = faces.T
-        order = _arranged(((vertices[a] + vertices[b] + vertices[c]) / 3.0).astype(np.float32), leaves)
+        order = _arranged(face_centroids(vertices, faces).astype(np.float32), leaves)
         corners = vertices.astype(np.float32)[faces[order]]
         sides = np.concatenate([corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0]], axis=1)
         return cls(_boxes(corners, leaves), np.ascontiguousarray(corners[:, 0]), sides)

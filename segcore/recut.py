@@ -4,8 +4,9 @@ from collections.abc import Collection
 
 import numpy as np
 
+from segcore.arrays import IntArray
 from segcore.errors import InvalidParameters
-from segcore.hierarchy import Hierarchy
+from segcore.hierarchy import Hierarchy, renumbered_nodes
 
 
 def keep_splits(hierarchy: Hierarchy, splits: Collection[int]) -> Hierarchy:
@@ -34,11 +35,8 @@ def keep_splits(hierarchy: Hierarchy, splits: Collection[int]) -> Hierarchy:
     return _reordered(hierarchy, order, len(chosen) + 1)
 
 
-def _reordered(hierarchy: Hierarchy, order: np.ndarray[tuple[int], np.dtype[np.int32]], segments: int) -> Hierarchy:
-    new_node = np.zeros(hierarchy.node_count, dtype=np.int32)
-    place = np.arange(len(order), dtype=np.int32)
-    new_node[2 * order + 1] = 2 * place + 1
-    new_node[2 * order + 2] = 2 * place + 2
+def _reordered(hierarchy: Hierarchy, order: IntArray, segments: int) -> Hierarchy:
+    new_node = renumbered_nodes(order)
     old_node = np.argsort(new_node)
     return Hierarchy(
         split_node=new_node[hierarchy.split_node[order]],

@@ -32,7 +32,6 @@ class Split:
     value: float  # normalized cut, or the ratio that orders the splits, times sqrt(total volume)
     priority: float  # the least is next
     late: bool  # parts off so little that it waits for everything else
-    gain: float = 0.0  # share of all pairs that more people part than keep together, of those that this split parts
 
 
 class SplitRule(Protocol):
@@ -101,8 +100,7 @@ class LearnedRule:
         best = int(np.argmin([q + _NCUT_WEIGHT * cut.ncut * size for q, cut in zip(kept, candidates, strict=True)]))
         cut = candidates[best]
         late = min(cut.inside, cut.outside) < SMALLEST_SIDE * self._total
-        gain = 2.0 * cut.inside * cut.outside / self._total**2 * (1.0 - 2.0 * float(kept[best]))
-        return Split(cut, cut.ncut * size, float(kept[best]), late, gain)
+        return Split(cut, cut.ncut * size, float(kept[best]), late)
 
     def candidates(self, segment: Segment) -> list[Cut]:
         """Different cuts with connected sides. Of a segment that can only be split late there is one."""
@@ -118,7 +116,9 @@ class LearnedRule:
         apart = sum(split is None for split in splits)
         learned = [split for split in splits if split is not None]
         parent = np.maximum((tree.split_node[apart:] - 1) // 2 - apart, -1)
-        gain = np.array([-1.0 if split.late else split.gain for split in learned])
+        # Of all pairs of points those that a split parts; of these, those that more people part than keep together.
         pairs = np.array([2.0 * split.cut.inside * split.cut.outside / self._total**2 for split in learned])
+        kept = np.array([split.priority for split in learned])
+        gain = np.where([split.late for split in learned], -1.0, pairs * (1.0 - 2.0 * kept))
         order, worthwhile = best_order(parent, gain, pairs)
         return tree.reordered([*range(apart), *(apart + s for s in order)], apart + worthwhile + 1)

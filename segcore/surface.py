@@ -12,7 +12,7 @@ from scipy.spatial import KDTree
 
 from segcore.arrays import BoolArray, FloatArray, IntArray
 from segcore.graph import SurfaceGraph, rows_of
-from segcore.mesh import Mesh
+from segcore.mesh import Mesh, face_centroids
 from segcore.orientation import patch_volumes, reliable_normals, turned_round
 from segcore.topology import consistent_orientation, dual_edges, first_equal_row
 from segcore.welding import weld
@@ -97,7 +97,7 @@ def follow_neighbours(stands_for: IntArray, corners: IntArray, positions: FloatA
     for f in kept[touched[corners[kept]].any(axis=1)][::-1].tolist():
         at_edge.update({tuple(edge): f for edge in edges[f].tolist()})
         at_corner.update(dict.fromkeys(corners[f].tolist(), f))
-    centroids = positions[corners].mean(axis=1)
+    centroids = face_centroids(positions, corners)
     nearest = kept[KDTree(centroids[kept]).query(centroids[lost])[1]]
     for f, fallback in zip(lost.tolist(), nearest.tolist(), strict=True):
         of_edge = [at_edge[tuple(edge)] for edge in edges[f].tolist() if tuple(edge) in at_edge]

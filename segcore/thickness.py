@@ -12,6 +12,7 @@ import numpy as np
 from numba import njit
 
 from segcore.arrays import FloatArray, IntArray, at_least
+from segcore.frames import tangent_frames
 from segcore.patches import Patches
 from segcore.rays import RayCaster
 from segcore.surface import Surface
@@ -73,7 +74,7 @@ def _rays(surface: Surface, patches: Patches, size: float) -> tuple[FloatArray, 
     sine = np.sin(_HALF_ANGLE) * np.sqrt((spoke + 0.5) / RAYS)
     cosine = np.sqrt(1.0 - sine**2)
     turn = _GOLDEN * spoke
-    u, v = _frames(inward)
+    u, v = tangent_frames(inward)
     directions = (sine * np.cos(turn))[:, None] * u + (sine * np.sin(turn))[:, None] * v + cosine[:, None] * inward
     return origins, directions, cosine
 
@@ -91,17 +92,6 @@ def _sample_faces(of_face: IntArray, areas: FloatArray, count: int) -> tuple[Int
     found = np.minimum(np.searchsorted(end, wanted), len(order) - 1)
     place = np.clip((wanted - (end[found] - sizes[found])) / sizes[found], 0.0, 1.0)
     return order[found], place
-
-
-def _frames(normal: FloatArray) -> tuple[FloatArray, FloatArray]:
-    """Two unit vectors (N, 3) that complete every unit normal to a frame (Duff et al. 2017)."""
-    x, y, z = normal.T
-    sign = np.where(z >= 0.0, 1.0, -1.0)
-    a = -1.0 / (sign + z)
-    b = x * y * a
-    u = np.stack([1.0 + sign * x * x * a, sign * b, -sign * x], axis=1)
-    v = np.stack([b, sign + y * y * a, -y], axis=1)
-    return u, v
 
 
 @njit(cache=True)

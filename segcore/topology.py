@@ -43,6 +43,18 @@ def first_equal_row(rows: LongArray) -> IntArray:
 
 
 @njit(cache=True)
+def _first_half_edges(faces: IntArray, vertex_count: int) -> LongArray:
+    """(V + 1,): where the half-edges of every vertex begin, when they are sorted by their smaller end."""
+    start = np.zeros(vertex_count + 1, np.int64)
+    for f in range(len(faces)):
+        for k in range(3):
+            start[min(faces[f, k], faces[f, (k + 1) % 3]) + 1] += 1
+    for v in range(vertex_count):
+        start[v + 1] += start[v]
+    return start
+
+
+@njit(cache=True)
 def dual_edges(faces: IntArray, vertex_count: int) -> tuple[IntArray, IntArray, BoolArray, BoolArray]:
     """Pairs of faces that share an edge.
 
@@ -54,12 +66,7 @@ def dual_edges(faces: IntArray, vertex_count: int) -> tuple[IntArray, IntArray, 
     (E,) True where both faces run through it in the same direction, which means that their orientations disagree.
     """
     half_edges = 3 * len(faces)
-    start = np.zeros(vertex_count + 1, np.int64)
-    for f in range(len(faces)):
-        for k in range(3):
-            start[min(faces[f, k], faces[f, (k + 1) % 3]) + 1] += 1
-    for v in range(vertex_count):
-        start[v + 1] += start[v]
+    start = _first_half_edges(faces, vertex_count)
     far_end = np.empty(half_edges, np.int32)
     owner = np.empty(half_edges, np.int32)
     forward = np.empty(half_edges, np.bool_)
@@ -101,12 +108,7 @@ def dual_edges(faces: IntArray, vertex_count: int) -> tuple[IntArray, IntArray, 
 @njit(cache=True)
 def border_vertices(faces: IntArray, vertex_count: int) -> BoolArray:
     """(V,): the vertices at edges that only one face (F, 3) has; edges between equal corners do not count."""
-    start = np.zeros(vertex_count + 1, np.int64)
-    for f in range(len(faces)):
-        for k in range(3):
-            start[min(faces[f, k], faces[f, (k + 1) % 3]) + 1] += 1
-    for v in range(vertex_count):
-        start[v + 1] += start[v]
+    start = _first_half_edges(faces, vertex_count)
     far_end = np.empty(3 * len(faces), np.int32)
     uses = np.zeros(3 * len(faces), np.int32)
     fill = start[:-1].copy()

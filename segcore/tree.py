@@ -6,6 +6,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from segcore.arrays import FloatArray, IntArray
+from segcore.hierarchy import renumbered_nodes
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -24,8 +25,6 @@ class Tree:
         ----------
         order : (S,) the splits, first to last.
         """
-        new = np.zeros(2 * len(order) + 1, dtype=np.int32)
-        for position, split in enumerate(order):
-            new[2 * split + 1 : 2 * split + 3] = 2 * position + 1, 2 * position + 2
-        splits = np.asarray(order, dtype=np.int64)
-        return Tree(new[self.split_node[splits]], self.cut_value[splits], new[self.leaf], automatic_segments)
+        splits = np.asarray(order, dtype=np.int32)
+        number = renumbered_nodes(splits)
+        return Tree(number[self.split_node[splits]], self.cut_value[splits], number[self.leaf], automatic_segments)
