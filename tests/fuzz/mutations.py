@@ -5,7 +5,7 @@ import struct
 import zlib
 
 from hypothesis import strategies as st
-from samples import SAMPLES, SQUARE
+from samples import DRESSED, SAMPLES, SQUARE
 from threemf_files import Model3MF, package
 
 NUMBER = re.compile(rb"[-+]?\d+(?:\.\d*)?(?:[eE][-+]?\d+)?")
@@ -31,7 +31,7 @@ KEYWORDS["gltf"] = KEYWORDS["glb"]
 @st.composite
 def mutated(draw: st.DrawFn, name: str) -> bytes:
     """A file of the format called ``name`` after one to eight changes, sometimes cut, joined or compressed."""
-    seeds = SAMPLES[name]
+    seeds = SAMPLES[name] + DRESSED[name]
     data = draw(st.sampled_from(seeds))
     if name == "3mf" and draw(st.integers(0, 3)):
         return package({"3D/3dmodel.model": changed(draw, _model(), name)})

@@ -1,4 +1,4 @@
-"""Every reader gives a valid mesh or a typed error for whatever comes.
+"""Every reader gives a valid mesh or a typed error for whatever comes, the same whether it keeps the appearance or not.
 
 Short by default. ``CLEAVE_FUZZ_SECONDS=600 pytest tests/fuzz`` takes that long for each reader, with new examples in
 every run; ``CLEAVE_FUZZ_SEED`` repeats one.
@@ -41,9 +41,13 @@ def fuzz(name: str, number: int) -> None:
     def check(data: bytes) -> None:
         for form in (None, name):
             mesh = read_or_none(data, form)
-            if mesh is not None:
+            dressed = read_or_none(data, form, appearance=True)
+            assert (mesh is None) == (dressed is None)
+            if mesh is not None and dressed is not None:
                 assert np.isfinite(mesh.vertices).all()
                 assert 0 <= mesh.faces.min() <= mesh.faces.max() < len(mesh.vertices)
+                np.testing.assert_array_equal(dressed.vertices, mesh.vertices)
+                np.testing.assert_array_equal(dressed.faces, mesh.faces)
 
     try:
         check()

@@ -46,14 +46,19 @@ def triangle_soups() -> st.SearchStrategy[Soup]:
     return soups(largest_polygon=3)
 
 
-def read(data: bytes, format: str | None = None, limits: ReadLimits | None = None) -> Mesh:  # noqa: A002
-    return read_mesh(io.BytesIO(data), format, limits=limits)
+def read(
+    data: bytes,
+    format: str | None = None,  # noqa: A002
+    limits: ReadLimits | None = None,
+    appearance: bool = False,
+) -> Mesh:
+    return read_mesh(io.BytesIO(data), format, limits=limits, appearance=appearance)
 
 
-def read_or_none(data: bytes, format: str | None = None) -> Mesh | None:  # noqa: A002
+def read_or_none(data: bytes, format: str | None = None, appearance: bool = False) -> Mesh | None:  # noqa: A002
     """None where the bytes are refused as they should be: with an error of ours, and with no other."""
     try:
-        return read(data, format)
+        return read(data, format, appearance=appearance)
     except CleaveError:
         return None
 

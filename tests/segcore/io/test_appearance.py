@@ -9,7 +9,7 @@ from gltf_files import FLOAT, Asset
 from hypothesis import given
 from hypothesis import strategies as st
 from ply_files import ply
-from samples import INDICES, OBJ, OFF, SAMPLES, SQUARE, XYZ, gltf_square
+from samples import DRESSED, INDICES, OBJ, OFF, SAMPLES, SQUARE, XYZ, gltf_square, gltf_with_attributes
 from threemf_files import Model3MF
 from trees import two_strips
 from written import written
@@ -122,12 +122,23 @@ def test_glb_goes_round(looking: tuple[Mesh, Hierarchy]) -> None:
     assert back.corners.tolist() == mesh.corners.tolist()
 
 
-@pytest.mark.parametrize("data", [data for samples in SAMPLES.values() for data in samples])
+@pytest.mark.parametrize(
+    "data", [data for group in (SAMPLES, DRESSED) for samples in group.values() for data in samples]
+)
 def test_the_appearance_changes_neither_vertices_nor_faces(data: bytes) -> None:
     plain, kept = read_mesh(io.BytesIO(data)), read_mesh(io.BytesIO(data), appearance=True)
     assert plain.appearance is None
     assert kept.vertices.tolist() == plain.vertices.tolist()
     assert kept.faces.tolist() == plain.faces.tolist()
+
+
+@pytest.mark.parametrize(("name", "data"), [(name, data) for name, samples in DRESSED.items() for data in samples])
+def test_what_a_format_can_say_beside_the_shape_is_read(name: str, data: bytes) -> None:
+    look = read_look(data)
+    vertices = {"off", "ply", "obj", "glb", "gltf"}
+    groups = {"stl", "obj", "glb", "gltf", "3mf"}
+    assert (look.normals is not None) == (name in vertices)
+    assert (look.face_group is not None) == (name in groups)
 
 
 def test_off_with_all_prefixes() -> None:
@@ -200,21 +211,6 @@ def test_solids_of_stl_and_objects_of_3mf_and_nodes_of_gltf_are_groups() -> None
         assert look.group_names == ("Left Wheel", "axle")
         assert look.face_group.tolist()[0] == 0
         assert look.face_group.tolist()[-1] == 1
-
-
-def gltf_with_attributes() -> Asset:
-    asset = Asset()
-    positions = asset.accessor(SQUARE.vertices, FLOAT)
-    primitive = asset.primitive(positions, [0, 1, 2, 0, 2, 3])
-    primitive["attributes"]["NORMAL"] = asset.accessor([(0.0, 0.6, 0.8)] * 4, FLOAT)
-    view = asset.view([(0.25, 0.5)] * 4, FLOAT)
-    uvs = {"bufferView": view, "componentType": FLOAT, "count": 4, "type": "VEC2"}
-    primitive["attributes"]["TEXCOORD_0"] = asset.add("accessors", uvs)
-    view = asset.view([(255, 0, 55, 128)] * 4, 5121)
-    colors = {"bufferView": view, "componentType": 5121, "count": 4, "type": "VEC4", "normalized": True}
-    primitive["attributes"]["COLOR_0"] = asset.add("accessors", colors)
-    asset.add("meshes", {"primitives": [primitive]})
-    return asset
 
 
 def test_gltf_normals_turn_with_their_nodes_and_colours_become_srgb() -> None:
