@@ -5,7 +5,7 @@ import io
 import numpy as np
 import pygltflib
 import pytest
-from gltf_files import FLOAT, Asset
+from gltf_files import FLOAT
 from hypothesis import given
 from hypothesis import strategies as st
 from ply_files import ply
