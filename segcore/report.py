@@ -39,9 +39,14 @@ class MeshReport:
     groups: tuple[str, ...]  # names in the file
 
 
-def mesh_report(mesh: Mesh) -> MeshReport:
-    """Inspect a mesh."""
-    surface = build_surface(mesh)
+def mesh_report(mesh: Mesh, surface: Surface | None = None) -> MeshReport:
+    """Inspect a mesh.
+
+    Parameters
+    ----------
+    surface : ``build_surface(mesh)``, where the caller has it already.
+    """
+    surface = surface or build_surface(mesh)
     corners = weld(mesh.vertices, mesh.faces)[mesh.faces]
     a, b, c = corners.T
     proper = (a != b) & (b != c) & (c != a)

@@ -23,7 +23,10 @@ from segcore.tree import Tree
 
 
 def segment(
-    mesh: Mesh, parameters: SegmentationParameters | None = None, on_progress: OnProgress = lambda *_: None
+    mesh: Mesh,
+    parameters: SegmentationParameters | None = None,
+    on_progress: OnProgress = lambda *_: None,
+    surface: Surface | None = None,
 ) -> Hierarchy:
     """Cut a mesh into a hierarchy of parts.
 
@@ -34,6 +37,7 @@ def segment(
     parameters : choices of the method, by default ``SegmentationParameters()``.
     on_progress : called with the name of a stage and the fraction of the whole work that is done, 0 to 1; what it
         raises ends the work and is passed on.
+    surface : ``build_surface(mesh)``, where the caller has it already.
 
     Returns
     -------
@@ -44,7 +48,7 @@ def segment(
     rng = np.random.default_rng(chosen.seed)
     progress = Progress(on_progress, len(mesh.faces))
     progress("clean")
-    surface = build_surface(mesh)
+    surface = surface or build_surface(mesh)
     progress("affinity")
     nodes = mesh_graph(surface, chosen)
     progress("coarsen")

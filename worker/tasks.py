@@ -7,6 +7,7 @@ import segcore
 from segcore.io import ReadLimits
 from segcore.io.result import write_result
 from segcore.report import mesh_report
+from segcore.surface import build_surface
 from worker.jobs import Failed, Job, Outcome, Succeeded, now
 from worker.settings import Settings
 from worker.store import LocalStore, UnknownJob
@@ -31,7 +32,9 @@ def segment_stored_mesh(store: LocalStore, job: Job, limits: ReadLimits, on_prog
         on_progress("reading", 0.0)
         with store.open_mesh(job.id) as source:
             mesh = segcore.read_mesh(source, job.mesh_format, limits=limits, appearance=True)
-        hierarchy = segcore.segment(mesh, segcore.SegmentationParameters.from_mapping(job.parameters), on_progress)
+        surface = build_surface(mesh)
+        parameters = segcore.SegmentationParameters.from_mapping(job.parameters)
+        hierarchy = segcore.segment(mesh, parameters, on_progress, surface)
     except segcore.CleaveError as error:
         return Failed(finished_at=now(), code=error.code, message=str(error))
     except FileNotFoundError:
@@ -45,7 +48,7 @@ def segment_stored_mesh(store: LocalStore, job: Job, limits: ReadLimits, on_prog
         vertices=len(mesh.vertices),
         max_segments=hierarchy.max_segments,
         automatic_segments=hierarchy.automatic_segments,
-        report=asdict(mesh_report(mesh)),
+        report=asdict(mesh_report(mesh, surface)),
     )
 
 
