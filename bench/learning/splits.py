@@ -33,7 +33,7 @@ def cut_rows(model: Model, seed: int = 0) -> Rows:
     nodes = mesh_graph(surface, parameters)
     clusters, _ = assemble(surface, nodes, cluster_nodes(nodes, parameters.clusters, rng), parameters.max_segments)
     labels_of_people = model.read_people(len(mesh.faces))
-    people = [_areas(clusters.of_node[surface.face_of_input], labels) for labels in labels_of_people]
+    people = [_face_counts(clusters.of_node[surface.face_of_input], labels) for labels in labels_of_people]
     assert clusters.thickness is not None
     fields = ClusterFields.of(clusters.graph, clusters.points, clusters.thickness)
     rule = _Recorder(fields, parameters, rng, people)
@@ -42,7 +42,7 @@ def cut_rows(model: Model, seed: int = 0) -> Rows:
     return Rows(np.stack(rule.rows), np.array(rule.target), weight / weight.sum())
 
 
-def _areas(cluster: IntArray, labels: LongArray) -> FloatArray:
+def _face_counts(cluster: IntArray, labels: LongArray) -> FloatArray:
     """(N, K): the number of faces of every cluster in every segment of a person."""
     distinct, segment = np.unique(labels, return_inverse=True)
     count = int(cluster.max()) + 1
