@@ -27,10 +27,10 @@ from service.problems import handle_problems
 from service.results import ResultCache
 from worker.batches import BatchStore
 from worker.installation_secret import InstallationSecret
+from worker.opening import open_store
 from worker.queue import JobQueue, connect_impatiently
 from worker.quota import UploadQuota
 from worker.settings import Settings
-from worker.store import LocalStore
 
 _EXPOSED_HEADERS = (
     "Location",
@@ -68,7 +68,7 @@ def create_app(settings: Settings) -> FastAPI:
         docs_url=None,
         redoc_url=None,
     )
-    store = LocalStore(settings.data_dir)
+    store = open_store(settings)
     keys = key_ring(settings)
     queue = JobQueue(connect_impatiently(settings.redis_url))
     metrics = Metrics(store, queue)

@@ -16,7 +16,7 @@ from worker.jobs import Canceled, Job, now
 from worker.queue import Activity, JobQueue, QueueError
 from worker.quota import UploadQuota
 from worker.settings import Settings
-from worker.store import LocalStore
+from worker.store import JobStore
 
 _PAUSE_S = 1.0
 
@@ -46,7 +46,7 @@ class QueueView:
 class Context:
     settings: Settings
     version: str  # of the software
-    store: LocalStore
+    store: JobStore
     queue: JobQueue
     view: QueueView
     quota: UploadQuota

@@ -12,10 +12,11 @@ from service.webhook import Undeliverable, send, webhook_body
 from worker.installation_secret import InstallationSecret
 from worker.jobs import Job, Outcome
 from worker.logs import configure_logging
+from worker.opening import open_store
 from worker.outbox import Letter, Outbox
 from worker.queue import JobQueue, QueueError, connect_impatiently
 from worker.settings import Settings, load_settings
-from worker.store import LocalStore
+from worker.store import JobStore
 
 log = logging.getLogger("cleave.courier")
 
@@ -29,7 +30,7 @@ _WITHOUT_JOB_S = 600.0
 
 @dataclass(frozen=True, slots=True)
 class Courier:
-    store: LocalStore
+    store: JobStore
     outbox: Outbox
     queue: JobQueue
     secret: InstallationSecret
@@ -89,7 +90,7 @@ def main() -> None:
     configure_logging(settings.log_level)
     assert settings.redis_url, "the parent process sets CLEAVE_REDIS_URL"
     courier = Courier(
-        LocalStore(settings.data_dir),
+        open_store(settings),
         Outbox(settings.data_dir),
         JobQueue(connect_impatiently(settings.redis_url)),
         InstallationSecret(settings.data_dir),

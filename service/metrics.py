@@ -9,7 +9,7 @@ from prometheus_client.registry import Collector
 from starlette.types import ASGIApp, Message, Receive, Scope, Send
 
 from worker.queue import JobQueue, QueueError
-from worker.store import LocalStore
+from worker.store import JobStore
 
 _BUCKETS_S = (0.005, 0.01, 0.025, 0.05, 0.1, 0.25, 0.5, 1.0, 2.5, 5.0, 10.0, 30.0, 60.0)
 _NOWHERE = "none"  # the route of a path that there is not
@@ -18,7 +18,7 @@ _NOWHERE = "none"  # the route of a path that there is not
 class Metrics:
     """The metrics of one application."""
 
-    def __init__(self, store: LocalStore, queue: JobQueue) -> None:
+    def __init__(self, store: JobStore, queue: JobQueue) -> None:
         self.registry = CollectorRegistry()
         self.requests = Counter(
             "cleave_requests", "Requests that were answered.", ["method", "route", "status"], registry=self.registry
@@ -38,7 +38,7 @@ class Metrics:
 
 
 class _QueueCollector(Collector):
-    def __init__(self, store: LocalStore, queue: JobQueue) -> None:
+    def __init__(self, store: JobStore, queue: JobQueue) -> None:
         self._store = store
         self._queue = queue
 

@@ -6,13 +6,13 @@ from typing import Any
 
 from segcore.io.result import Segmentation, read_result
 from service.lru import LruCache
-from worker.store import LocalStore
+from worker.store import JobStore
 
 
 class ResultCache:
     """The opened results of the store, and the bytes that were made of them."""
 
-    def __init__(self, store: LocalStore, max_opened_bytes: int, max_rendered_bytes: int) -> None:
+    def __init__(self, store: JobStore, max_opened_bytes: int, max_rendered_bytes: int) -> None:
         self._store = store
         self._opened: LruCache[str, Segmentation] = LruCache(max_opened_bytes, _size_bytes)
         self._rendered: LruCache[tuple[str, str], bytes] = LruCache(max_rendered_bytes, len)

@@ -12,8 +12,8 @@ from service.api_keys import key_ring
 from service.programs import api_program, queue_server_program, worker_programs
 from service.queue_server import NoQueueServer, embedded_queue_server, stop_orphan
 from service.supervisor import Program, Supervisor, lock_data
+from worker.opening import open_store
 from worker.settings import InvalidSettings, Settings, load_settings
-from worker.store import LocalStore
 
 Say = Callable[[str], None]  # tells the person who gave the command
 
@@ -32,7 +32,7 @@ def serve(host: str, port: int, workers: int | None, data_dir: Path | None, say:
         listening = stack.enter_context(listen(host, port))
         check_guarded(settings, listening.getsockname()[0])
         stack.enter_context(lock_data(settings.data_dir))
-        LocalStore(settings.data_dir).check_writable()
+        open_store(settings).check_writable()
         support: list[Program] = []
         if settings.redis_url is None:
             server = embedded_queue_server(settings.data_dir)

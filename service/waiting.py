@@ -3,13 +3,13 @@
 import asyncio
 import time
 
-from worker.store import LocalStore
+from worker.store import JobStore
 
 _SHORTEST_PAUSE_S, _LONGEST_PAUSE_S = 0.01, 0.25
 _PAUSES = 100.0  # looks per doubling of the time waited: an answer is late by a hundredth of what the job takes
 
 
-async def wait_for_end(store: LocalStore, job_id: str, at_most_s: float) -> bool:
+async def wait_for_end(store: JobStore, job_id: str, at_most_s: float) -> bool:
     """Return when a job has ended or the time is over; whether it has ended."""
     began_at = time.monotonic()
     while not store.has_ended(job_id):

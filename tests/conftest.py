@@ -13,8 +13,9 @@ from redis import Redis
 
 from service.queue_server import embedded_queue_server
 from support import wait_until
+from worker.opening import open_folder
 from worker.queue import JobQueue, connect_impatiently
-from worker.store import LocalStore
+from worker.store import JobStore
 
 # No deadline: the first call of a kernel compiles it. Nothing is left in the folder where the tests run.
 settings.register_profile("repeatable", derandomize=True, deadline=None, database=None)
@@ -42,8 +43,8 @@ def pytest_unconfigure() -> None:
 
 
 @pytest.fixture
-def store(tmp_path: Path) -> LocalStore:
-    return LocalStore(tmp_path / "data")
+def store(tmp_path: Path) -> JobStore:
+    return open_folder(tmp_path / "data")
 
 
 @pytest.fixture(scope="session")

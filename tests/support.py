@@ -8,7 +8,7 @@ from pathlib import Path
 import numpy as np
 
 from worker.jobs import Job, new_job_id, now
-from worker.store import LocalStore
+from worker.store import JobStore
 
 
 def wait_until(condition: Callable[[], object], within_s: float = 60.0) -> None:
@@ -46,7 +46,7 @@ def sphere(rows: int, bumps: float = 0.25) -> bytes:
     return text.getvalue().encode()
 
 
-def accepted(store: LocalStore, mesh: bytes, **parameters: object) -> Job:
+def accepted(store: JobStore, mesh: bytes, **parameters: object) -> Job:
     """A job in the store, as the service leaves it there."""
     with store.begin_upload() as upload:
         upload.write(mesh)

@@ -1,10 +1,10 @@
 """How many jobs of an owner are in the queue or run at a time: the others wait in the store, in the order they came."""
 
 from worker.queue import JobQueue
-from worker.store import LocalStore
+from worker.store import JobStore
 
 
-def admit(store: LocalStore, queue: JobQueue, owner: str | None, most: int | None, job_id: str | None = None) -> None:
+def admit(store: JobStore, queue: JobQueue, owner: str | None, most: int | None, job_id: str | None = None) -> None:
     """Let jobs of an owner into the queue as far as there is room: after a job has come, and after one has ended.
 
     Where there is no limit only ``job_id`` is looked at. Two callers at once may let in one too many.

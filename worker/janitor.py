@@ -8,9 +8,10 @@ import time
 from worker.admission import may_wait_outside
 from worker.jobs import exhausted
 from worker.logs import configure_logging
+from worker.opening import open_store
 from worker.queue import JobQueue, QueueError, connect_impatiently
 from worker.settings import Settings, load_settings
-from worker.store import LocalStore, UnknownJob
+from worker.store import JobStore, UnknownJob
 
 log = logging.getLogger("cleave.janitor")
 
@@ -25,7 +26,7 @@ _DELETED_S = 30 * 24 * 3600.0  # for so long clients are told that a job was the
 class Janitor:
     """One look at everything per sweep; between sweeps it only remembers since when a job has been missing."""
 
-    def __init__(self, store: LocalStore, queue: JobQueue, settings: Settings) -> None:
+    def __init__(self, store: JobStore, queue: JobQueue, settings: Settings) -> None:
         self._store = store
         self._queue = queue
         self._settings = settings
@@ -77,7 +78,7 @@ def main() -> None:
     configure_logging(settings.log_level)
     assert settings.redis_url, "the parent process sets CLEAVE_REDIS_URL"
     queue = JobQueue(connect_impatiently(settings.redis_url))
-    janitor = Janitor(LocalStore(settings.data_dir), queue, settings)
+    janitor = Janitor(open_store(settings), queue, settings)
     trouble = ""
     while True:
         trouble = sweep_or_tell(janitor, trouble)

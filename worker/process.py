@@ -21,11 +21,12 @@ import segcore
 from worker.admission import admit
 from worker.jobs import Attempt, Cause, exhausted, is_job_id
 from worker.logs import configure_logging
+from worker.opening import open_store
 from worker.parent_death import die_with_parent
 from worker.progress import ProgressReporter
 from worker.queue import TASK, JobQueue, QueueError, connect_impatiently, connect_patiently
 from worker.settings import Settings, load_settings
-from worker.store import LocalStore, UnknownJob
+from worker.store import JobStore, UnknownJob
 from worker.tasks import perform
 from worker.work_horse import cause_of_death, exit_status, limit_memory, out_of_memory_kills
 
@@ -47,7 +48,7 @@ class JobWorker(Worker):  # type: ignore[misc]  # rq is not analysed
 
     max_connection_wait_time = 2.0
 
-    def __init__(self, store: LocalStore, queue: JobQueue, leases: JobQueue, settings: Settings) -> None:
+    def __init__(self, store: JobStore, queue: JobQueue, leases: JobQueue, settings: Settings) -> None:
         """``queue`` may wait for Redis as long as it takes, ``leases`` must not."""
         super().__init__(
             [queue.entries],
@@ -218,7 +219,7 @@ def main() -> None:
     log.info("ready for jobs")
     queue = JobQueue(connect_patiently(settings.redis_url))
     leases = JobQueue(connect_impatiently(settings.redis_url))
-    JobWorker(LocalStore(settings.data_dir), queue, leases, settings).work(logging_level="WARNING")
+    JobWorker(open_store(settings), queue, leases, settings).work(logging_level="WARNING")
 
 
 if __name__ == "__main__":

@@ -57,7 +57,7 @@ class JobPage:
     next_cursor: str | None  # of the jobs that are older; None: there are none
 
 
-class LocalStore:
+class JobStore:
     """The jobs of a folder; processes and machines that share the folder share the jobs."""
 
     def __init__(self, data_dir: Path) -> None:

@@ -10,12 +10,12 @@ from segcore.report import mesh_report
 from segcore.surface import build_surface
 from worker.jobs import Failed, Job, Outcome, Succeeded, now
 from worker.settings import Settings
-from worker.store import LocalStore, UnknownJob
+from worker.store import JobStore, UnknownJob
 
 OnProgress = Callable[[str, float], None]
 
 
-def perform(store: LocalStore, settings: Settings, job_id: str, on_progress: OnProgress) -> None:
+def perform(store: JobStore, settings: Settings, job_id: str, on_progress: OnProgress) -> None:
     """Bring a job to its outcome; without effect where it has one or was deleted."""
     job = store.job(job_id)
     if job is None or store.outcome(job_id) is not None:
@@ -26,7 +26,7 @@ def perform(store: LocalStore, settings: Settings, job_id: str, on_progress: OnP
         return
 
 
-def segment_stored_mesh(store: LocalStore, job: Job, limits: ReadLimits, on_progress: OnProgress) -> Outcome:
+def segment_stored_mesh(store: JobStore, job: Job, limits: ReadLimits, on_progress: OnProgress) -> Outcome:
     """Read, segment, write the result file: what was expected to go wrong is a value, the rest is raised."""
     try:
         on_progress("reading", 0.0)

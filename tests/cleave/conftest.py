@@ -9,7 +9,7 @@ from redis import Redis
 from servers import serving
 
 from worker.settings import Settings
-from worker.store import LocalStore
+from worker.store import JobStore
 from worker.tasks import perform
 
 
@@ -20,7 +20,7 @@ def settings(tmp_path: Path, queue_url: str, connection: Redis) -> Settings:
 
 
 @pytest.fixture
-def url(settings: Settings, store: LocalStore) -> Iterator[str]:
+def url(settings: Settings, store: JobStore) -> Iterator[str]:
     """The URL of a service that works."""
     stop = threading.Event()
 

@@ -11,7 +11,7 @@ from servers import serving
 
 from support import sphere
 from worker.settings import Settings
-from worker.store import LocalStore
+from worker.store import JobStore
 from worker.tasks import perform
 
 
@@ -35,7 +35,7 @@ def client_without_queue(settings: Settings, tmp_path: Path) -> Iterator[httpx.C
 
 
 @pytest.fixture
-def finished_job(client: httpx.Client, settings: Settings, store: LocalStore) -> Callable[..., str]:
+def finished_job(client: httpx.Client, settings: Settings, store: JobStore) -> Callable[..., str]:
     """Submit a mesh, do the work, and give the path of the job."""
 
     def submit_and_perform(mesh: bytes | None = None) -> str:

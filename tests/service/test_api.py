@@ -11,11 +11,11 @@ from segcore.io.result import read_result
 from support import sphere
 from worker.queue import JobQueue, Progress
 from worker.settings import Settings
-from worker.store import LocalStore
+from worker.store import JobStore
 
 
 def test_a_submitted_mesh_is_a_queued_job_at_its_location(
-    client: httpx.Client, store: LocalStore, queue: JobQueue
+    client: httpx.Client, store: JobStore, queue: JobQueue
 ) -> None:
     answer = client.post("/v1/jobs", files={"mesh": ("hand.off", b"some bytes")}, data={"parameters": '{"seed": 5}'})
     assert answer.status_code == 202
@@ -51,7 +51,7 @@ def test_a_finished_job_says_what_can_be_asked_for(client: httpx.Client, finishe
 
 
 def test_labels_are_those_of_the_stored_hierarchy_at_every_number_of_segments(
-    client: httpx.Client, store: LocalStore, finished_job: Callable[..., str]
+    client: httpx.Client, store: JobStore, finished_job: Callable[..., str]
 ) -> None:
     path = finished_job()
     with store.open_result(path.rpartition("/")[2]) as file:
@@ -200,7 +200,7 @@ def test_without_its_queue_the_service_takes_no_jobs_and_serves_results(
 
 
 def test_what_is_accepted_while_the_queue_goes_down_stays_accepted(
-    client: httpx.Client, monkeypatch: pytest.MonkeyPatch, store: LocalStore, queue: JobQueue
+    client: httpx.Client, monkeypatch: pytest.MonkeyPatch, store: JobStore, queue: JobQueue
 ) -> None:
     from redis.exceptions import ConnectionError as QueueConnectionError
 
@@ -229,7 +229,7 @@ def test_an_internal_error_tells_no_secrets(client: httpx.Client, monkeypatch: p
     def fail(*_: object) -> None:
         raise ZeroDivisionError("secret")
 
-    monkeypatch.setattr(LocalStore, "job", fail)
+    monkeypatch.setattr(JobStore, "job", fail)
     answer = client.get(UNKNOWN)
     problem(answer, 500, "internal_error")
     assert "secret" not in answer.text

@@ -13,7 +13,7 @@ from servers import serving
 
 from support import sphere
 from worker.settings import Settings
-from worker.store import LocalStore
+from worker.store import JobStore
 from worker.tasks import perform
 
 UNKNOWN = "/v1/batches/" + "0" * 32
@@ -32,13 +32,13 @@ def post_zip(client: httpx.Client, data: bytes) -> httpx.Response:
     return client.post("/v1/batches", content=data, headers={"Content-Type": "application/zip"})
 
 
-def work(store: LocalStore, settings: Settings) -> None:
+def work(store: JobStore, settings: Settings) -> None:
     for job_id in store.unfinished():
         perform(store, settings, job_id, lambda *_: None)
 
 
 def test_many_meshes_in_a_form_are_a_batch_with_one_archive(
-    client: httpx.Client, store: LocalStore, settings: Settings
+    client: httpx.Client, store: JobStore, settings: Settings
 ) -> None:
     files = [("mesh", (name, data)) for name, data in MESHES.items()] + [("mesh", ("bad.off", b"OFF\n1"))]
     accepted = client.post("/v1/batches", files=files, data={"parameters": '{"max_segments": 7}'})
@@ -64,7 +64,7 @@ def test_many_meshes_in_a_form_are_a_batch_with_one_archive(
     assert json.loads(results.read("0004-bad/job.json"))["status"] == "failed"
 
 
-def test_an_archive_of_meshes_is_a_batch(client: httpx.Client, store: LocalStore) -> None:
+def test_an_archive_of_meshes_is_a_batch(client: httpx.Client, store: JobStore) -> None:
     members = {f"folder/{name}": data for name, data in MESHES.items()}
     answer = post_zip(client, archive(members | {"__MACOSX/._mesh": b"x", "folder/.DS_Store": b"x", "folder/": b""}))
     assert answer.status_code == 202, answer.text

@@ -17,8 +17,8 @@ from servers import serving
 
 from service.api_keys import key_digest, new_key
 from service.contract import DOCS
+from worker.opening import open_store
 from worker.settings import Settings
-from worker.store import LocalStore
 from worker.tasks import perform
 
 
@@ -38,7 +38,7 @@ def service(tmp_path_factory: pytest.TempPathFactory, queue_url: str) -> Iterato
         connection.flushall()
         connection.sadd("rq:workers:cleave", "rq:worker:tester")  # so that it is ready
         connection.hset("rq:worker:tester", "state", "idle")
-    store, stop = LocalStore(limits.data_dir), threading.Event()
+    store, stop = open_store(limits), threading.Event()
 
     def work() -> None:
         while not stop.wait(0.02):

@@ -8,7 +8,7 @@ import pytest
 from asking import problem
 
 from segcore.io.result import read_result
-from worker.store import LocalStore
+from worker.store import JobStore
 
 FORMS = ("labels", "model.glb", "model.ply", "model.obj", "model.3mf", "parts.zip", "preview.png")
 
@@ -26,7 +26,7 @@ def test_the_first_splits_give_the_level(client: httpx.Client, job: str) -> None
 
 
 def test_a_cut_that_is_no_level_parts_faces_where_its_splits_do(
-    client: httpx.Client, job: str, store: LocalStore
+    client: httpx.Client, job: str, store: JobStore
 ) -> None:
     with store.open_result(job.rpartition("/")[2]) as file:
         hierarchy = read_result(file).hierarchy
@@ -66,7 +66,7 @@ def test_splits_and_a_level_together_are_refused(client: httpx.Client, job: str,
 
 @pytest.mark.parametrize("granularity", [0, 0.3, 0.5, 0.7, 1])
 def test_a_granularity_is_the_number_of_segments_that_the_hierarchy_says(
-    client: httpx.Client, job: str, store: LocalStore, granularity: float
+    client: httpx.Client, job: str, store: JobStore, granularity: float
 ) -> None:
     with store.open_result(job.rpartition("/")[2]) as file:
         segments = read_result(file).hierarchy.segments_at(granularity)

@@ -12,14 +12,14 @@ from service.preference import Preference, read_preference
 from support import sphere, wait_until
 from worker.queue import JobQueue
 from worker.settings import Settings
-from worker.store import LocalStore
+from worker.store import JobStore
 from worker.tasks import perform
 
 MESH = sphere(12)
 
 
 @contextmanager
-def working(store: LocalStore, settings: Settings) -> Iterator[None]:
+def working(store: JobStore, settings: Settings) -> Iterator[None]:
     """Somebody does what is submitted."""
     stop = threading.Event()
 
@@ -38,7 +38,7 @@ def working(store: LocalStore, settings: Settings) -> Iterator[None]:
 
 
 def test_who_waits_gets_the_labels_in_one_round_trip(
-    client: httpx.Client, store: LocalStore, settings: Settings
+    client: httpx.Client, store: JobStore, settings: Settings
 ) -> None:
     with working(store, settings):
         answer = client.post("/v1/jobs?segments=3", content=MESH, headers={"Prefer": "wait=60"})
@@ -51,7 +51,7 @@ def test_who_waits_gets_the_labels_in_one_round_trip(
 
 
 def test_who_waits_gets_the_labels_at_a_granularity(
-    client: httpx.Client, store: LocalStore, settings: Settings
+    client: httpx.Client, store: JobStore, settings: Settings
 ) -> None:
     with working(store, settings):
         answer = client.post("/v1/jobs?granularity=1", content=MESH, headers={"Prefer": "wait=60"})

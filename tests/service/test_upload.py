@@ -18,7 +18,7 @@ from service.form import FormReader
 from service.problems import Problem
 from service.upload import file_label, mesh_format, parse_parameters, receive_mesh
 from worker.settings import Settings
-from worker.store import LocalStore
+from worker.store import JobStore
 
 BOUNDARY = "----boundary"
 LIMITED = Settings(max_upload_bytes=10_000, upload_idle_s=0.2)
@@ -40,7 +40,7 @@ def post(client: httpx.Client, body: bytes | Iterator[bytes], content_type: str 
 
 
 @pytest.mark.parametrize("step", [1, 2, 7, 64, 1000])
-def test_a_form_means_the_same_however_it_is_cut_up(store: LocalStore, step: int) -> None:
+def test_a_form_means_the_same_however_it_is_cut_up(store: JobStore, step: int) -> None:
     content = b"\r\n--" + bytes(range(256)) + f"\r\n--{BOUNDARY[:-1]}\r\n".encode() * 3
     body = form(part("parameters", b'{"seed": 1}'), part("mesh", content, '; filename="hand.OFF"'))
     with store.begin_upload() as upload:
@@ -62,7 +62,7 @@ def test_a_form_means_the_same_however_it_is_cut_up(store: LocalStore, step: int
         | st.binary(max_size=40)
     )
 )
-def test_whatever_is_sent_is_a_form_or_a_problem(store: LocalStore, pieces: list[bytes]) -> None:
+def test_whatever_is_sent_is_a_form_or_a_problem(store: JobStore, pieces: list[bytes]) -> None:
     with store.begin_upload() as upload:
         reader = FormReader(BOUNDARY.encode(), lambda: upload, 10_000)
         with suppress(Problem):
@@ -137,7 +137,7 @@ def request_of(chunks: list[bytes], **headers: str) -> Request:
     return Request({"type": "http", "method": "POST", "headers": raw}, receive)
 
 
-def test_a_client_that_goes_away_leaves_nothing(store: LocalStore, tmp_path: Path) -> None:
+def test_a_client_that_goes_away_leaves_nothing(store: JobStore, tmp_path: Path) -> None:
     request = request_of([part("mesh", b"half of a mesh")], content_type=CONTENT_TYPE, transfer_encoding="chunked")
 
     async def receive() -> None:
@@ -150,7 +150,7 @@ def test_a_client_that_goes_away_leaves_nothing(store: LocalStore, tmp_path: Pat
 
 
 @pytest.mark.parametrize("length", ["10000000", "9" * 5000])
-def test_a_declared_length_is_refused_before_the_body_is_read(store: LocalStore, length: str) -> None:
+def test_a_declared_length_is_refused_before_the_body_is_read(store: JobStore, length: str) -> None:
     request = request_of([], content_type=CONTENT_TYPE, content_length=length)
 
     async def receive() -> None:
@@ -253,7 +253,7 @@ def raw(client: httpx.Client, body: bytes, url: str = "/v1/jobs", **headers: str
     ],
 )
 def test_the_body_can_be_the_mesh_itself(
-    client: httpx.Client, store: LocalStore, query: str, headers: dict[str, str], declared: str | None
+    client: httpx.Client, store: JobStore, query: str, headers: dict[str, str], declared: str | None
 ) -> None:
     answer = raw(client, b"abc", f"/v1/jobs{query}", **headers)
     assert answer.status_code == 202, answer.text
@@ -277,7 +277,7 @@ def test_a_raw_body_is_limited_and_leaves_nothing(client: httpx.Client, settings
     assert list((settings.data_dir / "incoming").iterdir()) == []
 
 
-def test_a_request_without_a_body_is_told_so(store: LocalStore) -> None:
+def test_a_request_without_a_body_is_told_so(store: JobStore) -> None:
     request = request_of([], content_type=CONTENT_TYPE)
 
     async def receive() -> None:
@@ -300,7 +300,7 @@ def slow_request(pause_s: float) -> Request:
 
 
 @pytest.mark.parametrize("pause_s", [60.0, 0.01])
-def test_a_client_that_sends_hardly_anything_is_given_up(store: LocalStore, tmp_path: Path, pause_s: float) -> None:
+def test_a_client_that_sends_hardly_anything_is_given_up(store: JobStore, tmp_path: Path, pause_s: float) -> None:
     async def receive() -> None:
         with store.begin_upload() as upload:
             await receive_mesh(slow_request(pause_s), LIMITED, lambda: upload)

@@ -6,7 +6,7 @@ from typing import cast
 import pytest
 
 from service import waiting
-from worker.store import LocalStore
+from worker.store import JobStore
 
 
 class Clock:
@@ -30,7 +30,7 @@ class Clock:
 def wait(monkeypatch: pytest.MonkeyPatch, clock: Clock, at_most_s: float) -> bool:
     monkeypatch.setattr(waiting, "time", clock)
     monkeypatch.setattr(waiting, "asyncio", clock)
-    return asyncio.run(waiting.wait_for_end(cast(LocalStore, clock), "job", at_most_s))
+    return asyncio.run(waiting.wait_for_end(cast(JobStore, clock), "job", at_most_s))
 
 
 @pytest.mark.parametrize("takes_s", [0.004, 0.3, 0.7, 5.0, 20.0])

@@ -22,7 +22,7 @@ from worker.jobs import now
 from worker.outbox import Outbox
 from worker.queue import JobQueue
 from worker.settings import Settings
-from worker.store import LocalStore
+from worker.store import JobStore
 from worker.tasks import perform
 
 
@@ -68,13 +68,13 @@ def inside(settings: Settings) -> Settings:
 
 
 @pytest.fixture
-def courier(store: LocalStore, queue: JobQueue, inside: Settings) -> Courier:
+def courier(store: JobStore, queue: JobQueue, inside: Settings) -> Courier:
     folder = inside.data_dir
     return Courier(store, Outbox(folder), queue, InstallationSecret(folder), inside, "courier")
 
 
 @pytest.fixture
-def finished_with_webhook(inside: Settings, store: LocalStore) -> Callable[[str], tuple[str, str]]:
+def finished_with_webhook(inside: Settings, store: JobStore) -> Callable[[str], tuple[str, str]]:
     def submit(url: str) -> tuple[str, str]:
         """The id of a finished job, and the secret of its webhooks."""
         with serving(inside) as client:

@@ -11,11 +11,11 @@ from worker.janitor import MISSING_S, Janitor
 from worker.jobs import Canceled, Job, new_job_id, now
 from worker.queue import JobQueue
 from worker.settings import Settings
-from worker.store import LocalStore
+from worker.store import JobStore
 
 
 @pytest.fixture
-def submitted(store: LocalStore) -> Callable[[str], Job]:
+def submitted(store: JobStore) -> Callable[[str], Job]:
     def submit(owner: str) -> Job:
         template = accepted(store, b"mesh")
         store.delete(template.id)
@@ -33,7 +33,7 @@ def waiting(queue: JobQueue) -> list[str]:
 
 
 def test_an_owner_has_no_more_in_the_queue_than_allowed(
-    store: LocalStore, queue: JobQueue, submitted: Callable[[str], Job]
+    store: JobStore, queue: JobQueue, submitted: Callable[[str], Job]
 ) -> None:
     mine = [submitted("me") for _ in range(4)]
     for job in mine:
@@ -47,14 +47,14 @@ def test_an_owner_has_no_more_in_the_queue_than_allowed(
     assert waiting(queue) == [mine[1].id, theirs.id, mine[2].id]
 
 
-def test_without_a_limit_every_job_enters(store: LocalStore, queue: JobQueue, submitted: Callable[[str], Job]) -> None:
+def test_without_a_limit_every_job_enters(store: JobStore, queue: JobQueue, submitted: Callable[[str], Job]) -> None:
     jobs = [submitted("me") for _ in range(3)]
     for job in jobs:
         admit(store, queue, "me", None, job.id)
     assert waiting(queue) == [job.id for job in jobs]
 
 
-def test_running_jobs_take_up_room(store: LocalStore, queue: JobQueue, submitted: Callable[[str], Job]) -> None:
+def test_running_jobs_take_up_room(store: JobStore, queue: JobQueue, submitted: Callable[[str], Job]) -> None:
     first, second = submitted("me"), submitted("me")
     queue.take(first.id, "worker", lease_s=30)
     admit(store, queue, "me", 1, second.id)
@@ -62,7 +62,7 @@ def test_running_jobs_take_up_room(store: LocalStore, queue: JobQueue, submitted
 
 
 def test_the_janitor_leaves_jobs_outside_and_brings_back_lost_ones(
-    store: LocalStore, queue: JobQueue, submitted: Callable[[str], Job], settings: Settings
+    store: JobStore, queue: JobQueue, submitted: Callable[[str], Job], settings: Settings
 ) -> None:
     jobs = [submitted("me") for _ in range(3)]
     janitor = Janitor(store, queue, settings)
@@ -72,7 +72,7 @@ def test_the_janitor_leaves_jobs_outside_and_brings_back_lost_ones(
 
 
 @pytest.fixture
-def settings(store: LocalStore) -> Settings:
+def settings(store: JobStore) -> Settings:
     del store
     return Settings(key_max_running_jobs=1)
 

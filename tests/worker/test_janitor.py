@@ -10,11 +10,11 @@ from worker.janitor import MISSING_S, Janitor
 from worker.jobs import Failed, new_job_id
 from worker.queue import JobQueue
 from worker.settings import Settings
-from worker.store import LocalStore
+from worker.store import JobStore
 
 
 @pytest.fixture
-def janitor(store: LocalStore, queue: JobQueue, tmp_path: Path) -> Janitor:
+def janitor(store: JobStore, queue: JobQueue, tmp_path: Path) -> Janitor:
     return Janitor(store, queue, Settings(data_dir=tmp_path, max_attempts=3))
 
 
@@ -24,7 +24,7 @@ def waiting(queue: JobQueue) -> list[str]:
 
 
 def test_a_job_that_the_queue_never_got_waits_after_a_grace(
-    janitor: Janitor, store: LocalStore, queue: JobQueue
+    janitor: Janitor, store: JobStore, queue: JobQueue
 ) -> None:
     job = accepted(store, b"mesh")
     janitor.sweep(0.0)
@@ -33,7 +33,7 @@ def test_a_job_that_the_queue_never_got_waits_after_a_grace(
     assert waiting(queue) == [job.id]
 
 
-def test_a_wiped_queue_is_filled_again(janitor: Janitor, store: LocalStore, queue: JobQueue, connection: Redis) -> None:
+def test_a_wiped_queue_is_filled_again(janitor: Janitor, store: JobStore, queue: JobQueue, connection: Redis) -> None:
     jobs = [accepted(store, b"mesh") for _ in range(5)]
     for job in jobs:
         queue.enqueue(job.id)
@@ -43,7 +43,7 @@ def test_a_wiped_queue_is_filled_again(janitor: Janitor, store: LocalStore, queu
     assert sorted(waiting(queue)) == sorted(job.id for job in jobs)
 
 
-def test_jobs_that_wait_or_run_are_left_alone(janitor: Janitor, store: LocalStore, queue: JobQueue) -> None:
+def test_jobs_that_wait_or_run_are_left_alone(janitor: Janitor, store: JobStore, queue: JobQueue) -> None:
     waits, runs = accepted(store, b"mesh"), accepted(store, b"mesh")
     queue.enqueue(waits.id)
     queue.take(runs.id, "worker", lease_s=30)
@@ -52,7 +52,7 @@ def test_jobs_that_wait_or_run_are_left_alone(janitor: Janitor, store: LocalStor
     assert waiting(queue) == [waits.id]
 
 
-def test_a_job_that_is_seen_in_between_was_not_lost(janitor: Janitor, store: LocalStore, queue: JobQueue) -> None:
+def test_a_job_that_is_seen_in_between_was_not_lost(janitor: Janitor, store: JobStore, queue: JobQueue) -> None:
     job = accepted(store, b"mesh")
     janitor.sweep(0.0)
     queue.take(job.id, "worker", lease_s=30)
@@ -63,7 +63,7 @@ def test_a_job_that_is_seen_in_between_was_not_lost(janitor: Janitor, store: Loc
 
 
 def test_a_time_without_knowledge_of_the_queue_does_not_count(
-    janitor: Janitor, store: LocalStore, queue: JobQueue
+    janitor: Janitor, store: JobStore, queue: JobQueue
 ) -> None:
     accepted(store, b"mesh")
     janitor.sweep(0.0)
@@ -72,7 +72,7 @@ def test_a_time_without_knowledge_of_the_queue_does_not_count(
     assert waiting(queue) == []
 
 
-def test_finished_and_deleted_jobs_are_not_put_back(janitor: Janitor, store: LocalStore, queue: JobQueue) -> None:
+def test_finished_and_deleted_jobs_are_not_put_back(janitor: Janitor, store: JobStore, queue: JobQueue) -> None:
     finished, deleted = accepted(store, b"mesh"), accepted(store, b"mesh")
     store.finish(finished.id, Failed(finished_at=finished.created_at, code="c", message="m"))
     store.delete(deleted.id)
@@ -82,7 +82,7 @@ def test_finished_and_deleted_jobs_are_not_put_back(janitor: Janitor, store: Loc
 
 
 def test_a_job_that_took_all_its_workers_along_fails_with_the_last_cause(
-    janitor: Janitor, store: LocalStore, queue: JobQueue
+    janitor: Janitor, store: JobStore, queue: JobQueue
 ) -> None:
     job = accepted(store, b"mesh")
     for cause in ("worker_lost", "worker_lost", "out_of_memory"):
@@ -95,7 +95,7 @@ def test_a_job_that_took_all_its_workers_along_fails_with_the_last_cause(
     assert waiting(queue) == []
 
 
-def test_attempts_that_ended_with_their_worker_count_too(janitor: Janitor, store: LocalStore) -> None:
+def test_attempts_that_ended_with_their_worker_count_too(janitor: Janitor, store: JobStore) -> None:
     job = accepted(store, b"mesh")
     for _ in range(3):
         store.begin_attempt(job.id, "worker")
@@ -107,7 +107,7 @@ def test_attempts_that_ended_with_their_worker_count_too(janitor: Janitor, store
     assert "3 times" in outcome.message
 
 
-def test_of_several_janitors_one_acts(janitor: Janitor, store: LocalStore, queue: JobQueue) -> None:
+def test_of_several_janitors_one_acts(janitor: Janitor, store: JobStore, queue: JobQueue) -> None:
     assert queue.lead("another", lease_s=60)
     accepted(store, b"mesh")
     janitor.sweep(0.0)

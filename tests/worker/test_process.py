@@ -15,7 +15,7 @@ from redis import Redis
 from support import LONG, accepted, children_of, is_alive, sphere, wait_until
 from worker.jobs import Canceled, Failed, Job, Outcome, Succeeded, now
 from worker.queue import JobQueue
-from worker.store import LocalStore
+from worker.store import JobStore
 
 StartWorker = Callable[..., "subprocess.Popen[bytes]"]
 
@@ -40,7 +40,7 @@ def start_worker(tmp_path: Path, queue_url: str, connection: Redis) -> Iterator[
         process.wait()
 
 
-def outcome_of(store: LocalStore, job: Job, within_s: float = 60.0) -> Outcome:
+def outcome_of(store: JobStore, job: Job, within_s: float = 60.0) -> Outcome:
     wait_until(lambda: store.outcome(job.id), within_s)
     outcome = store.outcome(job.id)
     assert outcome is not None
@@ -53,14 +53,14 @@ def horse_of(worker: "subprocess.Popen[bytes]") -> int:
     return children_of(worker.pid)[0]
 
 
-def submitted(store: LocalStore, queue: JobQueue, **parameters: object) -> Job:
+def submitted(store: JobStore, queue: JobQueue, **parameters: object) -> Job:
     job = accepted(store, sphere(100 if parameters else 20), **parameters)
     queue.enqueue(job.id)
     return job
 
 
 def test_a_queued_job_succeeds_and_leaves_nothing_in_redis(
-    start_worker: StartWorker, store: LocalStore, queue: JobQueue, connection: Redis
+    start_worker: StartWorker, store: JobStore, queue: JobQueue, connection: Redis
 ) -> None:
     worker = start_worker()
     job = submitted(store, queue)
@@ -73,7 +73,7 @@ def test_a_queued_job_succeeds_and_leaves_nothing_in_redis(
 
 
 def test_a_running_job_shows_its_stage_and_progress(
-    start_worker: StartWorker, store: LocalStore, queue: JobQueue
+    start_worker: StartWorker, store: JobStore, queue: JobQueue
 ) -> None:
     start_worker()
     job = submitted(store, queue, **LONG)
@@ -85,7 +85,7 @@ def test_a_running_job_shows_its_stage_and_progress(
 
 
 def test_entries_that_name_another_callable_are_dropped_unrun(
-    start_worker: StartWorker, store: LocalStore, queue: JobQueue, connection: Redis, tmp_path: Path
+    start_worker: StartWorker, store: JobStore, queue: JobQueue, connection: Redis, tmp_path: Path
 ) -> None:
     job = accepted(store, sphere(20))
     touched = tmp_path / "touched"
@@ -104,7 +104,7 @@ def test_entries_that_name_another_callable_are_dropped_unrun(
 
 
 def test_a_killed_work_horse_costs_an_attempt_and_not_the_job(
-    start_worker: StartWorker, store: LocalStore, queue: JobQueue
+    start_worker: StartWorker, store: JobStore, queue: JobQueue
 ) -> None:
     worker = start_worker()
     job = submitted(store, queue, **LONG)
@@ -114,7 +114,7 @@ def test_a_killed_work_horse_costs_an_attempt_and_not_the_job(
 
 
 def test_a_job_that_kills_every_work_horse_fails_with_a_reason(
-    start_worker: StartWorker, store: LocalStore, queue: JobQueue
+    start_worker: StartWorker, store: JobStore, queue: JobQueue
 ) -> None:
     worker = start_worker(CLEAVE_MAX_ATTEMPTS="2")
     job = submitted(store, queue, **LONG)
@@ -135,7 +135,7 @@ def test_a_job_that_kills_every_work_horse_fails_with_a_reason(
 
 
 def test_a_job_that_runs_too_long_is_stopped_with_a_reason(
-    start_worker: StartWorker, store: LocalStore, queue: JobQueue
+    start_worker: StartWorker, store: JobStore, queue: JobQueue
 ) -> None:
     start_worker(CLEAVE_MAX_ATTEMPTS="1", CLEAVE_JOB_TIMEOUT_S="0.5")
     outcome = outcome_of(store, submitted(store, queue, **LONG))
@@ -144,7 +144,7 @@ def test_a_job_that_runs_too_long_is_stopped_with_a_reason(
 
 
 def test_a_job_that_needs_too_much_memory_is_stopped_with_a_reason(
-    start_worker: StartWorker, store: LocalStore, queue: JobQueue
+    start_worker: StartWorker, store: JobStore, queue: JobQueue
 ) -> None:
     start_worker(CLEAVE_MAX_ATTEMPTS="1", CLEAVE_JOB_MEMORY_BYTES=str(400 * 2**20))
     outcome = outcome_of(store, accepted_large(store, queue))
@@ -152,13 +152,13 @@ def test_a_job_that_needs_too_much_memory_is_stopped_with_a_reason(
     assert outcome.code == "out_of_memory"
 
 
-def accepted_large(store: LocalStore, queue: JobQueue) -> Job:
+def accepted_large(store: JobStore, queue: JobQueue) -> Job:
     job = accepted(store, sphere(300))
     queue.enqueue(job.id)
     return job
 
 
-def test_a_canceled_job_stops_within_seconds(start_worker: StartWorker, store: LocalStore, queue: JobQueue) -> None:
+def test_a_canceled_job_stops_within_seconds(start_worker: StartWorker, store: JobStore, queue: JobQueue) -> None:
     worker = start_worker()
     job = submitted(store, queue, **LONG)
     horse = horse_of(worker)
@@ -169,7 +169,7 @@ def test_a_canceled_job_stops_within_seconds(start_worker: StartWorker, store: L
 
 
 def test_a_deleted_job_stops_and_the_worker_goes_on(
-    start_worker: StartWorker, store: LocalStore, queue: JobQueue
+    start_worker: StartWorker, store: JobStore, queue: JobQueue
 ) -> None:
     worker = start_worker()
     job = submitted(store, queue, **LONG)
@@ -181,7 +181,7 @@ def test_a_deleted_job_stops_and_the_worker_goes_on(
 
 @pytest.mark.parametrize("to_group", [False, True])
 def test_a_worker_that_is_told_to_stop_hands_its_job_back(
-    start_worker: StartWorker, store: LocalStore, queue: JobQueue, to_group: bool
+    start_worker: StartWorker, store: JobStore, queue: JobQueue, to_group: bool
 ) -> None:
     worker = start_worker(CLEAVE_SHUTDOWN_GRACE_S="0")
     job = submitted(store, queue, **LONG)
@@ -198,7 +198,7 @@ def test_a_worker_that_is_told_to_stop_hands_its_job_back(
 
 
 def test_a_worker_that_is_told_to_stop_lets_a_job_end_within_the_grace(
-    start_worker: StartWorker, store: LocalStore, queue: JobQueue
+    start_worker: StartWorker, store: JobStore, queue: JobQueue
 ) -> None:
     worker = start_worker(CLEAVE_SHUTDOWN_GRACE_S="120")
     job = submitted(store, queue, **LONG)
@@ -209,7 +209,7 @@ def test_a_worker_that_is_told_to_stop_lets_a_job_end_within_the_grace(
 
 
 def test_a_killed_worker_takes_its_work_horse_along(
-    start_worker: StartWorker, store: LocalStore, queue: JobQueue
+    start_worker: StartWorker, store: JobStore, queue: JobQueue
 ) -> None:
     worker = start_worker()
     job = submitted(store, queue, **LONG)
@@ -220,7 +220,7 @@ def test_a_killed_worker_takes_its_work_horse_along(
 
 
 def test_a_job_that_another_worker_holds_is_left_to_it(
-    start_worker: StartWorker, store: LocalStore, queue: JobQueue
+    start_worker: StartWorker, store: JobStore, queue: JobQueue
 ) -> None:
     held = accepted(store, sphere(20))
     queue.take(held.id, "another", lease_s=30)
@@ -232,7 +232,7 @@ def test_a_job_that_another_worker_holds_is_left_to_it(
 
 
 def test_what_passes_through_redis_is_small(
-    start_worker: StartWorker, store: LocalStore, queue: JobQueue, connection: Redis
+    start_worker: StartWorker, store: JobStore, queue: JobQueue, connection: Redis
 ) -> None:
     start_worker()
     job = submitted(store, queue, **LONG)

@@ -12,7 +12,7 @@ from support import accepted
 from worker.durable import create_file, replace_file
 from worker.jobs import Canceled, Failed, Job, Succeeded, new_job_id, now
 from worker.outbox import Outbox
-from worker.store import JobExists, LocalStore, UnknownJob
+from worker.store import JobExists, JobStore, UnknownJob
 
 
 def files_below(folder: Path) -> list[str]:
@@ -23,7 +23,7 @@ def succeeded() -> Succeeded:
     return Succeeded(finished_at=now(), faces=4, vertices=4, max_segments=3, automatic_segments=2)
 
 
-def test_an_accepted_job_is_read_back_as_it_was_written(store: LocalStore) -> None:
+def test_an_accepted_job_is_read_back_as_it_was_written(store: JobStore) -> None:
     job = accepted(store, b"mesh bytes", max_segments=7)
     assert store.job(job.id) == job
     with store.open_mesh(job.id) as mesh:
@@ -32,14 +32,14 @@ def test_an_accepted_job_is_read_back_as_it_was_written(store: LocalStore) -> No
     assert job.sha256 == hashlib.sha256(b"mesh bytes").hexdigest()
 
 
-def test_an_upload_that_breaks_off_leaves_nothing(store: LocalStore, tmp_path: Path) -> None:
+def test_an_upload_that_breaks_off_leaves_nothing(store: JobStore, tmp_path: Path) -> None:
     with store.begin_upload() as upload:
         upload.write(b"half of a mesh")
     assert files_below(tmp_path) == []
     assert list((tmp_path / "data" / "incoming").iterdir()) == []
 
 
-def test_an_upload_whose_process_died_is_removed_when_nobody_touches_it(store: LocalStore, tmp_path: Path) -> None:
+def test_an_upload_whose_process_died_is_removed_when_nobody_touches_it(store: JobStore, tmp_path: Path) -> None:
     orphan = store.begin_upload()
     orphan.write(b"half of a mesh")
     orphan.make_durable()
@@ -51,7 +51,7 @@ def test_an_upload_whose_process_died_is_removed_when_nobody_touches_it(store: L
     assert files_below(tmp_path) == []
 
 
-def test_the_first_outcome_stands(store: LocalStore) -> None:
+def test_the_first_outcome_stands(store: JobStore) -> None:
     job = accepted(store, b"mesh")
     first = Canceled(finished_at=now())
     assert store.finish(job.id, first) == first
@@ -60,7 +60,7 @@ def test_the_first_outcome_stands(store: LocalStore) -> None:
     assert store.unfinished() == {}
 
 
-def test_of_many_writers_at_once_one_gives_the_outcome(store: LocalStore) -> None:
+def test_of_many_writers_at_once_one_gives_the_outcome(store: JobStore) -> None:
     job = accepted(store, b"mesh")
     outcomes = [Failed(finished_at=now(), code=f"writer_{n}", message="") for n in range(16)]
     standing: list[object] = []
@@ -76,14 +76,14 @@ def test_of_many_writers_at_once_one_gives_the_outcome(store: LocalStore) -> Non
     assert standing[0] == store.outcome(job.id)
 
 
-def test_every_kind_of_outcome_is_read_back(store: LocalStore) -> None:
+def test_every_kind_of_outcome_is_read_back(store: JobStore) -> None:
     for outcome in (succeeded(), Canceled(finished_at=now()), Failed(finished_at=now(), code="c", message="m")):
         job = accepted(store, b"mesh")
         store.finish(job.id, outcome)
         assert store.outcome(job.id) == outcome
 
 
-def test_attempts_are_counted_until_they_are_withdrawn(store: LocalStore) -> None:
+def test_attempts_are_counted_until_they_are_withdrawn(store: JobStore) -> None:
     job = accepted(store, b"mesh")
     first = store.begin_attempt(job.id, "worker-1")
     store.end_attempt(job.id, first, "worker_lost")
@@ -94,7 +94,7 @@ def test_attempts_are_counted_until_they_are_withdrawn(store: LocalStore) -> Non
     assert [attempt.worker for attempt in store.attempts(job.id)] == ["worker-1"]
 
 
-def test_a_new_attempt_clears_what_a_killed_one_was_writing(store: LocalStore, tmp_path: Path) -> None:
+def test_a_new_attempt_clears_what_a_killed_one_was_writing(store: JobStore, tmp_path: Path) -> None:
     job = accepted(store, b"mesh")
     torn = tmp_path / "data" / "jobs" / job.id / ".result.cleave.0123.tmp"
     torn.write_bytes(b"half of a result")
@@ -102,7 +102,7 @@ def test_a_new_attempt_clears_what_a_killed_one_was_writing(store: LocalStore, t
     assert not torn.exists()
 
 
-def test_a_deleted_job_is_gone_and_cannot_be_finished(store: LocalStore, tmp_path: Path) -> None:
+def test_a_deleted_job_is_gone_and_cannot_be_finished(store: JobStore, tmp_path: Path) -> None:
     job = accepted(store, b"mesh")
     attempt = store.begin_attempt(job.id, "worker")
     store.delete(job.id)
@@ -120,13 +120,13 @@ def test_a_deleted_job_is_gone_and_cannot_be_finished(store: LocalStore, tmp_pat
 
 
 @pytest.mark.parametrize("name", ["../../etc/passwd", "", ".", "A" * 32, "0" * 31, "0" * 32 + "\n", "é" * 32])
-def test_what_is_no_job_id_is_never_a_path(store: LocalStore, name: str) -> None:
+def test_what_is_no_job_id_is_never_a_path(store: JobStore, name: str) -> None:
     assert store.job(name) is None
     with pytest.raises(ValueError, match="Not the id of a job"):
         store.open_mesh(name)
 
 
-def test_a_marker_without_a_job_is_no_job(store: LocalStore, tmp_path: Path) -> None:
+def test_a_marker_without_a_job_is_no_job(store: JobStore, tmp_path: Path) -> None:
     marker = tmp_path / "data" / "pending" / new_job_id()
     marker.touch()
     assert store.unfinished() == {}
@@ -136,7 +136,7 @@ def test_a_marker_without_a_job_is_no_job(store: LocalStore, tmp_path: Path) -> 
     assert not marker.exists()
 
 
-def test_a_crash_between_the_manifest_and_its_marker_heals(store: LocalStore, tmp_path: Path) -> None:
+def test_a_crash_between_the_manifest_and_its_marker_heals(store: JobStore, tmp_path: Path) -> None:
     job = accepted(store, b"mesh")
     store.finish(job.id, succeeded())
     (tmp_path / "data" / "pending" / job.id).touch()
@@ -144,7 +144,7 @@ def test_a_crash_between_the_manifest_and_its_marker_heals(store: LocalStore, tm
     assert list((tmp_path / "data" / "pending").iterdir()) == []
 
 
-def test_unfinished_jobs_come_oldest_first(store: LocalStore, tmp_path: Path) -> None:
+def test_unfinished_jobs_come_oldest_first(store: JobStore, tmp_path: Path) -> None:
     jobs = [accepted(store, b"mesh") for _ in range(3)]
     for age, job in enumerate(jobs):
         os.utime(tmp_path / "data" / "pending" / job.id, (1000 - age, 1000 - age))
@@ -171,7 +171,7 @@ def test_a_file_is_created_once(tmp_path: Path) -> None:
     assert files_below(tmp_path) == ["file"]
 
 
-def test_jobs_are_paged_newest_first_without_a_gap_or_a_repetition(store: LocalStore) -> None:
+def test_jobs_are_paged_newest_first_without_a_gap_or_a_repetition(store: JobStore) -> None:
     jobs = [accepted(store, b"mesh") for _ in range(7)]
     found: list[str] = []
     cursor = None
@@ -184,7 +184,7 @@ def test_jobs_are_paged_newest_first_without_a_gap_or_a_repetition(store: LocalS
     assert found == [job.id for job in reversed(jobs)]
 
 
-def test_owners_see_their_own_jobs_alone(store: LocalStore) -> None:
+def test_owners_see_their_own_jobs_alone(store: JobStore) -> None:
     mine, theirs, nobodys = (owned(store, owner) for owner in ("me", "them", None))
     for job in (mine, theirs, nobodys):
         assert store.page(job.owner, None, 10).jobs == [job]
@@ -195,7 +195,7 @@ def test_owners_see_their_own_jobs_alone(store: LocalStore) -> None:
     assert store.page("me", None, 10).jobs == [mine]
 
 
-def test_a_second_job_of_the_same_id_leaves_the_first_as_it_is(store: LocalStore, tmp_path: Path) -> None:
+def test_a_second_job_of_the_same_id_leaves_the_first_as_it_is(store: JobStore, tmp_path: Path) -> None:
     first = accepted(store, b"mesh")
     second = replace(first, created_at=now(), size_bytes=12, webhook_url="https://example.com/")
     with store.begin_upload() as upload, pytest.raises(JobExists):
@@ -207,7 +207,7 @@ def test_a_second_job_of_the_same_id_leaves_the_first_as_it_is(store: LocalStore
         assert mesh.read() == b"mesh"
 
 
-def test_a_deletion_is_known_to_its_owner_until_it_is_forgotten(store: LocalStore) -> None:
+def test_a_deletion_is_known_to_its_owner_until_it_is_forgotten(store: JobStore) -> None:
     job = owned(store, "me")
     store.delete(job.id)
     assert store.was_deleted(job.id, "me")
@@ -218,7 +218,7 @@ def test_a_deletion_is_known_to_its_owner_until_it_is_forgotten(store: LocalStor
     assert not store.was_deleted(job.id, "me")
 
 
-def owned(store: LocalStore, owner: str | None) -> Job:
+def owned(store: JobStore, owner: str | None) -> Job:
     with store.begin_upload() as upload:
         job = Job(
             id=new_job_id(),

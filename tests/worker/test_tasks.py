@@ -12,7 +12,7 @@ from segcore.report import mesh_report
 from support import accepted, sphere
 from worker.jobs import Canceled, Failed, Succeeded, now
 from worker.settings import Settings
-from worker.store import LocalStore
+from worker.store import JobStore
 from worker.tasks import perform
 
 TETRAHEDRON = b"OFF\n4 4 0\n0 0 0\n1 0 0\n0 1 0\n0 0 1\n3 0 2 1\n3 0 1 3\n3 1 2 3\n3 0 3 2\n"
@@ -27,7 +27,7 @@ def settings(tmp_path: Path) -> Settings:
     return Settings(data_dir=tmp_path / "data", max_faces=10_000)
 
 
-def test_a_mesh_becomes_the_result_that_segcore_gives(store: LocalStore, settings: Settings, tmp_path: Path) -> None:
+def test_a_mesh_becomes_the_result_that_segcore_gives(store: JobStore, settings: Settings, tmp_path: Path) -> None:
     mesh_file = tmp_path / "mesh.off"
     mesh_file.write_bytes(sphere(20))
     job = accepted(store, mesh_file.read_bytes(), max_segments=9)
@@ -45,7 +45,7 @@ def test_a_mesh_becomes_the_result_that_segcore_gives(store: LocalStore, setting
     assert json.loads(json.dumps(asdict(report))) == outcome.report
 
 
-def test_what_the_file_says_beside_the_shape_is_kept(store: LocalStore, settings: Settings) -> None:
+def test_what_the_file_says_beside_the_shape_is_kept(store: JobStore, settings: Settings) -> None:
     job = accepted(store, b"NOFF\n3 1 0\n0 0 0 0 0 1\n1 0 0 0 0 1\n0 1 0 0 0 1\n3 0 1 2\n")
     perform(store, settings, job.id, ignore)
     with store.open_result(job.id) as file:
@@ -54,7 +54,7 @@ def test_what_the_file_says_beside_the_shape_is_kept(store: LocalStore, settings
     assert appearance.normals.tolist() == [[0, 0, 1]] * 3
 
 
-def test_a_second_run_writes_the_same_bytes(store: LocalStore, settings: Settings) -> None:
+def test_a_second_run_writes_the_same_bytes(store: JobStore, settings: Settings) -> None:
     contents = []
     for _ in range(2):
         job = accepted(store, sphere(12))
@@ -64,7 +64,7 @@ def test_a_second_run_writes_the_same_bytes(store: LocalStore, settings: Setting
     assert contents[0] == contents[1]
 
 
-def test_progress_goes_from_nothing_to_all_and_never_back(store: LocalStore, settings: Settings) -> None:
+def test_progress_goes_from_nothing_to_all_and_never_back(store: JobStore, settings: Settings) -> None:
     seen: list[tuple[str, float]] = []
     perform(store, settings, accepted(store, sphere(12)).id, lambda stage, fraction: seen.append((stage, fraction)))
     fractions = [fraction for _, fraction in seen]
@@ -84,7 +84,7 @@ def test_progress_goes_from_nothing_to_all_and_never_back(store: LocalStore, set
     ],
 )
 def test_what_is_wrong_with_the_input_is_said_at_the_first_attempt(
-    store: LocalStore, settings: Settings, mesh: bytes, parameters: dict[str, object], code: str
+    store: JobStore, settings: Settings, mesh: bytes, parameters: dict[str, object], code: str
 ) -> None:
     job = accepted(store, mesh, **parameters)
     perform(store, settings, job.id, ignore)
@@ -96,7 +96,7 @@ def test_what_is_wrong_with_the_input_is_said_at_the_first_attempt(
 
 
 def test_a_mesh_that_the_store_lost_is_a_failure_with_a_reason(
-    store: LocalStore, settings: Settings, tmp_path: Path
+    store: JobStore, settings: Settings, tmp_path: Path
 ) -> None:
     job = accepted(store, TETRAHEDRON)
     (tmp_path / "data" / "jobs" / job.id / "mesh").unlink()
@@ -106,20 +106,20 @@ def test_a_mesh_that_the_store_lost_is_a_failure_with_a_reason(
     assert outcome.code == "input_lost"
 
 
-def test_a_job_with_an_outcome_is_not_run_again(store: LocalStore, settings: Settings) -> None:
+def test_a_job_with_an_outcome_is_not_run_again(store: JobStore, settings: Settings) -> None:
     job = accepted(store, TETRAHEDRON)
     store.finish(job.id, Canceled(finished_at=now()))
     perform(store, settings, job.id, lambda *_: pytest.fail("it was run"))
     assert isinstance(store.outcome(job.id), Canceled)
 
 
-def test_a_job_that_is_deleted_meanwhile_ends_without_an_error(store: LocalStore, settings: Settings) -> None:
+def test_a_job_that_is_deleted_meanwhile_ends_without_an_error(store: JobStore, settings: Settings) -> None:
     job = accepted(store, TETRAHEDRON)
     perform(store, settings, job.id, lambda stage, _: store.delete(job.id) if stage == "reading" else None)
     assert store.job(job.id) is None
 
 
-def test_an_error_that_nobody_expects_is_not_an_outcome(store: LocalStore, settings: Settings) -> None:
+def test_an_error_that_nobody_expects_is_not_an_outcome(store: JobStore, settings: Settings) -> None:
     job = accepted(store, TETRAHEDRON)
 
     def fail(stage: str, fraction: float) -> None:
