@@ -1,5 +1,8 @@
 """Errors are sentences with a next step, and a server that comes back is used again."""
 
+import os
+import signal
+
 import pytest
 from playwright.sync_api import Route
 
@@ -7,6 +10,7 @@ from browser.conftest import MOST_BYTES
 from browser.meshes import small_burr
 from browser.visit import Visit
 from end_to_end.installation import Installation
+from support import wait_until
 
 
 def problem(visit: Visit) -> tuple[str, str, str]:
@@ -70,6 +74,24 @@ def test_a_server_that_goes_while_a_job_runs_is_waited_for(visit: Visit) -> None
     visit.wait_for_parts()
     assert visit.page.locator("#offline").is_hidden()
     visit.faults = [fault for fault in visit.faults if "ERR_CONNECTION_REFUSED" not in fault]
+
+
+def test_a_service_that_is_killed_is_waited_for_until_it_is_back(visit: Visit, installation: Installation) -> None:
+    visit.open()
+    (worker,) = installation.children("worker.process small")
+    os.kill(worker, signal.SIGSTOP)  # so that the job outlives the service
+    try:
+        with visit.page.expect_response("**/v1/jobs"):
+            visit.drop("survivor.ply", small_burr() + b"       ")
+        (service,) = installation.children("service.server")
+        os.kill(service, signal.SIGKILL)
+        wait_until(lambda: installation.children("service.server") not in ([service], []))
+    finally:
+        os.kill(worker, signal.SIGCONT)
+    visit.wait_for_parts()
+    assert visit.page.locator("#offline").is_hidden()
+    assert len(visit.parts()) == 7
+    visit.faults = [fault for fault in visit.faults if "net::ERR" not in fault]
 
 
 def test_an_upload_that_finds_no_server_can_be_tried_again(visit: Visit) -> None:

@@ -1,0 +1,85 @@
+"""A server that asks for API keys: the page asks for one, keeps it, and shows only the jobs of its owner."""
+
+from collections.abc import Iterator
+
+import httpx
+import pytest
+
+from browser.conftest import NewVisit
+from browser.test_access import violations
+from browser.visit import Visit
+from end_to_end.installation import Installation
+from service.api_keys import key_digest
+
+ANNA, BERTA = "cleave_anna", "cleave_berta"
+
+
+class _Guarded(Installation):
+    settings = Installation.settings | {
+        "CLEAVE_AUTH": "required",
+        "CLEAVE_API_KEYS": f"anna:{key_digest(ANNA)},berta:{key_digest(BERTA)}",
+    }
+
+
+@pytest.fixture(scope="module")
+def installation() -> Iterator[Installation]:
+    with _Guarded(workers=1) as installation:
+        yield installation
+
+
+def enter(visit: Visit, key: str) -> None:
+    visit.page.wait_for_selector("#problem:not([hidden])[data-code=unauthorized]")
+    visit.page.click("#remedy")
+    visit.page.fill("#key", key)
+    visit.page.keyboard.press("Enter")
+
+
+def forgive_refusals(visit: Visit) -> None:
+    """The browser itself reports every answer of 401."""
+    visit.faults = [fault for fault in visit.faults if "401" not in fault]
+
+
+def test_a_wrong_key_is_refused_and_a_right_one_is_kept(visit: Visit, installation: Installation) -> None:
+    visit.open()
+    visit.page.click("[data-sample=dumbbell]")
+    enter(visit, "cleave_nobody")
+    enter(visit, ANNA)
+    visit.wait_for_parts()
+    visit.page.reload()
+    visit.wait_for_parts()
+    job = visit.address("job=")["job"]
+    visit.page.click("#open-jobs")
+    visit.page.locator(f".job-row[data-id='{job}'] img[src^=blob]").wait_for()
+    visit.page.keyboard.press("Escape")
+    visit.page.click("#open-take-away")
+    with visit.page.expect_download() as saved:
+        visit.page.click("[data-format=glb]")
+    assert saved.value.path().read_bytes().startswith(b"glTF")
+    assert "Authorization: Bearer $CLEAVE_KEY" in visit.page.inner_text("#curl")
+    assert ANNA not in visit.page.inner_text("#curl")
+    assert httpx.get(f"{installation.url}/v1/jobs/{job}").status_code == 401
+    forgive_refusals(visit)
+
+
+def test_a_link_asks_for_the_key_and_shows_nothing_to_another_owner(
+    new_visit: NewVisit, installation: Installation, axe: str
+) -> None:
+    headers = {"Authorization": f"Bearer {ANNA}", "Prefer": "wait=60"}
+    sample = httpx.get(f"{installation.url}/samples/dumbbell.ply").content
+    answer = httpx.post(
+        f"{installation.url}/v1/jobs", files={"mesh": ("mine.ply", sample + b" ")}, headers=headers, timeout=90
+    )
+    link = f"#job={answer.json()['id']}"
+    owner, other = new_visit(), new_visit()
+    for visit, key in ((owner, ANNA), (other, BERTA)):
+        visit.open(link)
+        visit.page.wait_for_selector("#problem:not([hidden])")
+        visit.page.click("#remedy")
+        assert violations(visit, axe) == []
+        visit.page.keyboard.press("Escape")
+        enter(visit, key)
+    owner.wait_for_parts()
+    other.page.wait_for_selector("#problem[data-code=job_not_found]")
+    for visit in (owner, other):
+        forgive_refusals(visit)
+    other.faults = [fault for fault in other.faults if "404" not in fault]
