@@ -21,7 +21,8 @@ from service.access import ForeignSites
 from service.api_keys import key_ring
 from service.context import Context, QueueView
 from service.headers import HeadRequests, SecurityHeaders
-from service.metrics import MeasuredRequests, Metrics
+from service.metrics import Metrics
+from service.observed import ObservedRequests
 from service.openapi import complete
 from service.problems import handle_problems
 from service.results import ResultCache
@@ -41,6 +42,7 @@ _EXPOSED_HEADERS = (
     "Preference-Applied",
     "RateLimit",
     "RateLimit-Policy",
+    "traceparent",
 )
 _ROUTES = (
     home,
@@ -89,7 +91,8 @@ def create_app(settings: Settings) -> FastAPI:
     for module in _ROUTES:
         app.include_router(module.router)
     _add_middleware(app, settings)
-    app.add_middleware(MeasuredRequests, metrics=metrics)
+    app.add_middleware(ObservedRequests, metrics=metrics)
+    app.add_middleware(SecurityHeaders)
     app.add_middleware(HeadRequests)
     handle_problems(app)
     complete(app, keys_required=app.state.context.keys_required)
@@ -108,7 +111,6 @@ def _add_middleware(app: FastAPI, settings: Settings) -> None:
             expose_headers=list(_EXPOSED_HEADERS),
             max_age=600,
         )
-    app.add_middleware(SecurityHeaders)
 
 
 def installed_version() -> str:

@@ -139,14 +139,14 @@ def _add_key(commands: "argparse._SubParsersAction[_Parser]") -> None:
 def _serve(choices: argparse.Namespace) -> None:
     from service.serve_command import serve
 
-    configure_logging(load_settings().log_level)
+    _configure_logging()
     serve(choices.host, choices.port, choices.workers, choices.data_dir, _say)
 
 
 def _work(choices: argparse.Namespace) -> None:
     from service.serve_command import work
 
-    configure_logging(load_settings().log_level)
+    _configure_logging()
     work(choices.redis_url, choices.workers, choices.data_dir, _say)
 
 
@@ -192,6 +192,11 @@ def _parameter(text: str) -> tuple[str, object]:
         with suppress(ValueError):
             return name, number(value)
     return name, value
+
+
+def _configure_logging() -> None:
+    settings = load_settings()
+    configure_logging(settings.log_level, settings.log_format, "supervisor")
 
 
 def _say(text: str) -> None:

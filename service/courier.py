@@ -11,7 +11,7 @@ from datetime import UTC, datetime
 from service.webhook import Undeliverable, send, webhook_body
 from worker.installation_secret import InstallationSecret
 from worker.jobs import Job, Outcome
-from worker.logs import configure_logging
+from worker.logs import about, configure_logging
 from worker.opening import open_store
 from worker.outbox import Letter, Outbox
 from worker.queue import JobQueue, QueueError, connect_impatiently
@@ -50,7 +50,8 @@ class Courier:
         elif outcome is not None and self.queue.claim(f"webhook:{job_id}", self.name, _CLAIM_S):
             letter = self.outbox.letters().get(job_id)  # another courier may have delivered it meanwhile
             if letter is not None:
-                self._try(job, outcome, letter, at_s)
+                with about(job_id, job.traceparent):
+                    self._try(job, outcome, letter, at_s)
             self.queue.give_back(f"webhook:{job_id}")
 
     def _try(self, job: Job, outcome: Outcome, letter: Letter, at_s: float) -> None:
@@ -68,6 +69,7 @@ class Courier:
         except Undeliverable as error:
             self._postpone(job, letter, at_s, str(error))
             return
+        log.info("the webhook is told")
         self.outbox.remove(job.id)
 
     def _postpone(self, job: Job, letter: Letter, at_s: float, reason: str) -> None:
@@ -87,7 +89,7 @@ def webhook_secret(secret: InstallationSecret, owner: str | None) -> bytes:
 
 def main() -> None:
     settings = load_settings()
-    configure_logging(settings.log_level)
+    configure_logging(settings.log_level, settings.log_format, "courier")
     assert settings.redis_url, "the parent process sets CLEAVE_REDIS_URL"
     courier = Courier(
         open_store(settings),

@@ -1,5 +1,6 @@
 """A received mesh becomes a job: a new one, or the one that has computed the same before."""
 
+import logging
 from dataclasses import asdict, dataclass
 
 from segcore.parameters import SegmentationParameters
@@ -10,8 +11,11 @@ from service.problems import Problem
 from service.upload import file_label, mesh_format
 from worker.computed import fingerprint
 from worker.jobs import Job, new_job_id, now
+from worker.logs import about, current_traceparent
 from worker.queue import QueueError
 from worker.store import JobExists
+
+log = logging.getLogger("cleave.intake")
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -53,7 +57,9 @@ def take_in(context: Context, caller: Caller, received: ReceivedMesh, wish: Wish
         context.store.accept(job, received.upload)
     except JobExists:
         return _replayed(context, job)
-    enqueue(context, job)
+    with about(job.id, job.traceparent):
+        log.info("accepted", extra={"fields": {"bytes": job.size_bytes, "owner": job.owner}})
+        enqueue(context, job)
     return Taken(job, is_new=True)
 
 
@@ -62,7 +68,7 @@ def enqueue(context: Context, job: Job) -> None:
     try:
         context.admit(job.owner, job.id)
     except QueueError:
-        return  # the janitor will
+        log.warning("the queue did not take the job; the janitor will see to it")
 
 
 def _candidate(context: Context, caller: Caller, received: ReceivedMesh, wish: Wish) -> Job:
@@ -81,6 +87,7 @@ def _candidate(context: Context, caller: Caller, received: ReceivedMesh, wish: W
         owner=caller.owner,
         version=context.version,
         webhook_url=wish.webhook_url,
+        traceparent=current_traceparent(),
     )
 
 

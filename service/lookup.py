@@ -8,6 +8,7 @@ from service.context import Context
 from service.documents import JobDocument, job_document
 from service.problems import JobError, Problem
 from worker.jobs import Canceled, Failed, Job, Outcome, Succeeded
+from worker.logs import note_job
 from worker.store import UnknownJob
 
 
@@ -23,6 +24,7 @@ def known_job(context: Context, caller: Caller, job_id: str) -> Job:
     """
     job = context.store.job(job_id)
     if job is not None and job.owner == caller.owner:
+        note_job(job_id)
         return job
     if context.store.was_deleted(job_id, caller.owner):
         raise Problem("job_deleted", "This job was deleted with its files: submit the mesh again.")

@@ -6,13 +6,11 @@ from collections.abc import Iterator
 from prometheus_client import CollectorRegistry, Counter, Histogram
 from prometheus_client.core import GaugeMetricFamily, Metric
 from prometheus_client.registry import Collector
-from starlette.types import ASGIApp, Message, Receive, Scope, Send
 
 from worker.queue import JobQueue, QueueError
 from worker.store import JobStore
 
 _BUCKETS_S = (0.005, 0.01, 0.025, 0.05, 0.1, 0.25, 0.5, 1.0, 2.5, 5.0, 10.0, 30.0, 60.0)
-_NOWHERE = "none"  # the route of a path that there is not
 
 
 class Metrics:
@@ -57,35 +55,6 @@ class _QueueCollector(Collector):
         yield _gauge("cleave_queue_up", "Whether the queue server answers.", 1)
         yield _gauge("cleave_waiting_jobs", "Jobs in the queue.", waiting)
         yield _gauge("cleave_workers", "Workers that are alive.", workers)
-
-
-class MeasuredRequests:
-    """Counts and times the answers of an application."""
-
-    def __init__(self, app: ASGIApp, metrics: Metrics) -> None:
-        self._app = app
-        self._metrics = metrics
-
-    async def __call__(self, scope: Scope, receive: Receive, send: Send) -> None:
-        if scope["type"] != "http":
-            await self._app(scope, receive, send)
-            return
-        status = 0
-
-        async def noted_send(message: Message) -> None:
-            nonlocal status
-            if message["type"] == "http.response.start":
-                status = message["status"]
-            await send(message)
-
-        began_at = time.perf_counter()
-        try:
-            await self._app(scope, receive, noted_send)
-        finally:
-            route = getattr(scope.get("route"), "path", _NOWHERE)
-            method = scope["method"] if route != _NOWHERE else "any"
-            self._metrics.requests.labels(method, route, status).inc()
-            self._metrics.seconds.labels(route).observe(time.perf_counter() - began_at)
 
 
 def _gauge(name: str, text: str, value: float) -> Metric:

@@ -16,12 +16,12 @@ _DRAIN_S = 3  # for requests that are being answered when the process is told to
 def main() -> None:
     """Serve on the listening socket whose descriptor is the first argument."""
     settings = load_settings()
-    configure_logging(settings.log_level)
+    configure_logging(settings.log_level, settings.log_format, "service")
     config = uvicorn.Config(
         create_app(settings),
         log_config=None,
         log_level="debug" if settings.log_level == "debug" else "warning",
-        access_log=settings.log_level == "debug",
+        access_log=False,  # service.observed logs the requests
         server_header=False,
         http=ImpatientProtocol,
         timeout_graceful_shutdown=_DRAIN_S,

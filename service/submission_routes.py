@@ -26,6 +26,7 @@ from service.submission_contract import ANSWERS, BODY, SUBMISSION_PROBLEMS, Para
 from service.upload import parse_parameters, receive_mesh, requested_format
 from service.waiting import wait_for_end
 from service.webhook import objection_to
+from worker.logs import note_job
 
 router = APIRouter(prefix="/v1/jobs", tags=["jobs"])
 
@@ -111,6 +112,7 @@ def check_webhook(context: Context, url: str | None) -> None:
 
 def _take_in(context: Context, caller: Caller, mesh: ReceivedMesh, wish: Wish) -> Taken:
     taken = take_in(context, caller, mesh, wish)
+    note_job(taken.job.id)
     context.metrics.jobs.labels("accepted" if taken.is_new else "reused").inc()
     context.metrics.upload_bytes.inc(mesh.upload.size_bytes)
     if context.settings.key_upload_bytes_per_hour is not None:

@@ -75,7 +75,7 @@ class Janitor:
 
 def main() -> None:
     settings = load_settings()
-    configure_logging(settings.log_level)
+    configure_logging(settings.log_level, settings.log_format, "janitor")
     assert settings.redis_url, "the parent process sets CLEAVE_REDIS_URL"
     queue = JobQueue(connect_impatiently(settings.redis_url))
     janitor = Janitor(open_store(settings), queue, settings)

@@ -27,6 +27,7 @@ class Job:
     owner: str | None = None  # the name of the API key that it was submitted with; None: without one
     version: str | None = None  # of the software that accepted it
     webhook_url: str | None = None  # who is told that it has ended
+    traceparent: str | None = None  # of the request that brought it, as in W3C Trace Context
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

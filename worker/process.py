@@ -20,7 +20,7 @@ from rq.worker_registration import register
 import segcore
 from worker.admission import admit
 from worker.jobs import Attempt, Cause, exhausted, is_job_id
-from worker.logs import configure_logging
+from worker.logs import about, configure_logging, rename_process
 from worker.opening import open_store
 from worker.parent_death import die_with_parent
 from worker.progress import ProgressReporter
@@ -73,8 +73,9 @@ class JobWorker(Worker):  # type: ignore[misc]  # rq is not analysed
             log.warning("an entry of the queue that is not a job of this installation was dropped: %r", job.id)
             self._queue.forget(job.id)
         elif self._queue.take(job.id, self.name, self._settings.lease_s):
-            self._run_if_open(job, queue)
-            self._settle(job.id)
+            with about(job.id, self._traceparent(job.id)):
+                self._run_if_open(job, queue)
+                self._settle(job.id)
         self.set_state(WorkerStatus.IDLE)
 
     def fork_work_horse(self, job: Entry, queue: Any) -> None:
@@ -84,6 +85,7 @@ class JobWorker(Worker):  # type: ignore[misc]  # rq is not analysed
 
     def main_work_horse(self, job: Entry, queue: Any) -> None:  # noqa: ARG002
         self.setup_work_horse_signals()
+        rename_process("work_horse")
         limit_memory(self._settings.job_memory_bytes)
         reporter = ProgressReporter(self._leases, job.id)
         os._exit(exit_status(lambda: perform(self._store, self._settings, job.id, reporter)))
@@ -118,6 +120,10 @@ class JobWorker(Worker):  # type: ignore[misc]  # rq is not analysed
         """No commands from Redis."""
 
     # One job.
+
+    def _traceparent(self, job_id: str) -> str | None:
+        job = self._store.job(job_id)
+        return job.traceparent if job else None
 
     def _run_if_open(self, entry: Entry, queue: Any) -> None:
         if self._store.job(entry.id) is None:
@@ -212,7 +218,7 @@ def is_allowed(entry: Entry) -> bool:
 
 def main() -> None:
     settings = load_settings()
-    configure_logging(settings.log_level)
+    configure_logging(settings.log_level, settings.log_format, "worker")
     assert settings.redis_url, "the parent process sets CLEAVE_REDIS_URL"
     log.info("loading the kernels; the first time they are compiled, which takes up to a minute")
     segcore.warm_up()

@@ -7,6 +7,8 @@ from platformdirs import user_data_path
 from pydantic import AfterValidator, Field, ValidationError
 from pydantic_settings import BaseSettings, SettingsConfigDict
 
+from worker.logs import LogFormat
+
 LONGEST_WAIT_S = 600.0  # that any installation may hold back an answer
 
 
@@ -89,6 +91,9 @@ class Settings(BaseSettings):
         default=64 * 2**20, ge=0, description="Memory in which it keeps pictures and models that it has made of them."
     )
     log_level: str = Field(default="info", pattern=r"^(debug|info|warning|error)$", description="Least level logged.")
+    log_format: LogFormat = Field(
+        default="auto", description="How lines are logged: text, json, or auto: text at a terminal, JSON elsewhere."
+    )
 
 
 def load_settings(**overrides: Any) -> Settings:

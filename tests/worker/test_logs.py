@@ -1,0 +1,94 @@
+"""The log: every line says what it is about, and none can be forged."""
+
+import json
+import logging
+import os
+from collections.abc import Iterator
+
+import pytest
+
+from worker.logs import JsonFormatter, TextFormatter, about, current_traceparent, note_job
+from worker.trace import Trace, new_trace
+
+log = logging.getLogger("cleave.test")
+
+
+class Lines(logging.Handler):
+    def __init__(self, formatter: logging.Formatter) -> None:
+        super().__init__()
+        self.setFormatter(formatter)
+        self.lines: list[str] = []
+
+    def emit(self, record: logging.LogRecord) -> None:
+        self.lines.append(self.format(record))
+
+
+@pytest.fixture
+def trace() -> Trace:
+    return new_trace()
+
+
+@pytest.fixture(params=[JsonFormatter("worker"), TextFormatter()], ids=["json", "text"])
+def lines(request: pytest.FixtureRequest) -> Iterator[list[str]]:
+    handler = Lines(request.param)
+    log.addHandler(handler)
+    log.setLevel(logging.INFO)
+    yield handler.lines
+    log.removeHandler(handler)
+
+
+def test_a_line_says_which_job_and_which_trace_it_is_about(lines: list[str], trace: Trace) -> None:
+    with about("a" * 32, trace.traceparent()):
+        log.info("inside")
+    log.info("outside")
+    assert "a" * 32 in lines[0]
+    assert trace.trace_id in lines[0]
+    assert "a" * 32 not in lines[1]
+
+
+def test_the_job_of_a_request_is_noted_in_its_course(lines: list[str], trace: Trace) -> None:
+    note_job("ignored")
+    with about(trace=trace) as subject:
+        note_job("b" * 32)
+        log.info("now it is known")
+    assert "b" * 32 in lines[0]
+    assert subject.job_id == "b" * 32
+
+
+def test_a_forked_work_horse_logs_about_the_same(trace: Trace) -> None:
+    reading, writing = os.pipe()
+    with about("c" * 32, trace):
+        pid = os.fork()
+        if pid == 0:
+            record = logging.makeLogRecord({"msg": "from the child"})
+            os.write(writing, JsonFormatter("work_horse").format(record).encode())
+            os._exit(0)
+    os.waitpid(pid, 0)
+    os.close(writing)
+    with open(reading, "rb") as pipe:
+        document = json.loads(pipe.read())
+    assert (document["job_id"], document["trace_id"]) == ("c" * 32, trace.trace_id)
+    assert document["process"] == "work_horse"
+
+
+def test_a_json_line_is_one_line_whatever_is_logged() -> None:
+    handler = Lines(JsonFormatter("service"))
+    log.addHandler(handler)
+    try:
+        log.error('a "name"\n{"level": "info"} \ud800 %s', object(), extra={"fields": {"status": 500, "odd": {1, 2}}})
+        try:
+            raise ValueError("a\nb")
+        except ValueError:
+            log.exception("failed")
+    finally:
+        log.removeHandler(handler)
+    assert all("\n" not in line for line in handler.lines)
+    first, second = (json.loads(line) for line in handler.lines)
+    assert (first["level"], first["process"], first["status"]) == ("error", "service", 500)
+    assert "ValueError" in second["exception"]
+
+
+def test_nobody_is_asked_about_outside_of_a_subject(trace: Trace) -> None:
+    assert current_traceparent() is None
+    with about(trace=trace):
+        assert current_traceparent() == trace.traceparent()
