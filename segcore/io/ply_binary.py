@@ -3,6 +3,7 @@
 from typing import Any, Literal
 
 import numpy as np
+from numpy.typing import NDArray
 
 from segcore.io.ply_header import Element, Lists, Property, Rows, cut_short, empty_rows
 
@@ -52,7 +53,7 @@ class BinaryBody:
                 numbers[entry.name] = table[f"{i} values"]
             elif (table[f"{i} length"] == length).all():
                 sizes = np.broadcast_to(np.int64(length), element.count)
-                lists[entry.name] = Lists(table[f"{i} values"].reshape(-1), sizes)
+                lists[entry.name] = Lists(_joined(table[f"{i} values"]), sizes)
             else:
                 return None
         self._at += element.count * row.itemsize
@@ -105,3 +106,11 @@ class BinaryBody:
             else:
                 lists[entry.name] = Lists(joined, np.array(lengths, dtype=np.int64))
         return Rows(numbers, lists)
+
+
+def _joined(rows: NDArray[Any]) -> NDArray[Any]:
+    """(N * K,) the numbers of rows (N, K) that stand apart; copied row by row, which is much faster than one by one."""
+    if rows.size == 0:
+        return rows.reshape(-1)
+    whole_rows = rows.view(f"V{rows.dtype.itemsize * rows.shape[1]}")
+    return np.ascontiguousarray(whole_rows).view(rows.dtype).reshape(-1)

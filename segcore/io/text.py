@@ -11,7 +11,15 @@ from numpy.typing import NDArray
 
 from segcore.arrays import BoolArray, FloatArray, LongArray
 from segcore.errors import InvalidMesh
-from segcore.io.text_kernels import Offsets, count_words, find_word_starts, parse_floats, parse_integers
+from segcore.io.text_kernels import (
+    Offsets,
+    count_words,
+    find_lines_with,
+    find_word_starts,
+    has_controls,
+    parse_floats,
+    parse_integers,
+)
 
 _WHITE_SPACE = b" \t\n\v\f\r"
 _NO_CONTROLS = _WHITE_SPACE + bytes(range(33, 256))
@@ -19,7 +27,6 @@ _FILLING = b"\0\x1a"  # blocks that were not full, and the end of a file in DOS
 _SPACE = 32  # this byte and all below it separate words
 _NUMBER = re.compile(r"[-+]?((\d+\.?\d*|\.\d+)(e[-+]?\d+)?|nan|inf(inity)?)", re.ASCII | re.IGNORECASE)
 _EXACT = 2.0**53  # whole numbers up to here are exact in float64
-_COMMENT = re.compile(rb"#[^\n]*")
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -88,7 +95,9 @@ class Words:
 
     def lines_with(self, keyword: bytes) -> BoolArray:
         """(L,): the lines whose first word is ``keyword``."""
-        return self.equal(self.line_start[:-1], keyword)
+        found = np.empty(len(self.line_start) - 1, dtype=bool)
+        find_lines_with(self.letters, self.start, self.line_start, np.frombuffer(keyword, np.uint8), found)
+        return found
 
     def text_of_lines(self, selected: BoolArray) -> bytes:
         """The text of the lines for which ``selected``, (L,), is true, one after the other."""
@@ -114,10 +123,9 @@ def plain_text(data: bytes) -> bytes:
         Where there are control characters in it: it is damaged or no text.
     """
     data = data.rstrip(_FILLING)
-    if controls := data.translate(None, _NO_CONTROLS):
-        raise InvalidMesh(
-            f"Byte {data.index(controls[0])}: the file has a control character in its text: it is damaged."
-        )
+    if has_controls(np.frombuffer(data, np.uint8)):
+        first = data.index(data.translate(None, _NO_CONTROLS)[:1])
+        raise InvalidMesh(f"Byte {first}: the file has a control character in its text: it is damaged.")
     if b"\r" in data and b"\n" not in data:
         data = data.replace(b"\r", b"\n")
     return b"   " + data[3:] if data.startswith(b"\xef\xbb\xbf") else data
@@ -125,17 +133,24 @@ def plain_text(data: bytes) -> bytes:
 
 def without_comments(text: bytes) -> bytes:
     """The text with everything from a ``#`` to the end of its line turned into spaces."""
-    return _COMMENT.sub(lambda comment: b" " * len(comment[0]), text) if b"#" in text else text
+    pieces: list[bytes | memoryview] = []
+    at = 0
+    while (begin := text.find(b"#", at)) >= 0:
+        newline = text.find(b"\n", begin)
+        end = newline if newline >= 0 else len(text)
+        pieces += [memoryview(text)[at:begin], b" " * (end - begin)]
+        at = end
+    return b"".join([*pieces, memoryview(text)[at:]]) if pieces else text
 
 
 def find_words(text: bytes, begin: int = 0) -> Words:
     """Find all words of a text from byte ``begin`` on."""
     letters = np.frombuffer(text, np.uint8)
-    words, lines = count_words(letters, begin)
+    words, newlines = count_words(letters[begin:])
     offset = np.int32 if len(text) < 2**31 else np.int64
-    start, line_start = np.empty(words, offset), np.empty(lines + 1, offset)
-    find_word_starts(letters, begin, start, line_start)
-    return Words(text, start, line_start)
+    start, line_start = np.empty(words, offset), np.empty(min(words, newlines + 1) + 1, offset)
+    lines = find_word_starts(letters, begin, start, line_start)
+    return Words(text, start, line_start[: lines + 1])
 
 
 def parse_numbers(text: bytes, count: int, dtype: type[np.generic]) -> NDArray[Any]:

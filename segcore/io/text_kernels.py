@@ -12,8 +12,10 @@ from segcore.arrays import BoolArray, FloatArray, IntArray, LongArray
 Bytes = NDArray[np.uint8]
 Offsets = NDArray[np.signedinteger[Any]]
 
-_SPACE = 32  # this byte and all below it separate words
-_NEWLINE, _PLUS, _MINUS, _POINT, _SLASH, _ZERO, _NINE = 10, 43, 45, 46, 47, 48, 57
+_SPACE = np.uint8(32)  # this byte and all below it separate words
+_TAB, _NEWLINE, _CARRIAGE_RETURN = np.uint8(9), np.uint8(10), np.uint8(13)
+_BLOCK = 255
+_PLUS, _MINUS, _POINT, _SLASH, _ZERO, _NINE = 43, 45, 46, 47, 48, 57
 _UPPER_E, _LOWER_E = 69, 101
 _DIGITS = 18  # that int64 holds, whatever they are
 _EXACT_POWER = 22  # 10**22 is the largest power of ten that float64 holds exactly
@@ -27,40 +29,68 @@ _POWER_REST = np.array([float(power - Fraction(float(power))) for power in _POWE
 
 
 @njit(cache=True)
-def count_words(text: Bytes, begin: int) -> tuple[int, int]:
-    """The number of words from byte ``begin`` on, and of lines with a word."""
-    words = lines = 0
-    in_word = has_word = False
-    for at in range(begin, len(text)):
-        is_letter = text[at] > _SPACE
-        if is_letter and not in_word:
-            words += 1
-            lines += not has_word
-            has_word = True
-        in_word = is_letter
-        if text[at] == _NEWLINE:
-            has_word = False
-    return words, lines
+def has_controls(text: Bytes) -> bool:
+    """Whether there are control characters in a text that are no white space."""
+    found = np.uint8(0)
+    for byte in text:
+        found = np.uint8(found | np.uint8((byte < _TAB) | ((byte > _CARRIAGE_RETURN) & (byte < _SPACE))))
+    return found != 0
 
 
 @njit(cache=True)
-def find_word_starts(text: Bytes, begin: int, start: Offsets, line_start: Offsets) -> None:
-    """Fill (W,) the offset of every word and (L + 1,) the first word of every line that has one, and W."""
-    words = lines = 0
-    in_word = has_word = False
-    for at in range(begin, len(text)):
-        is_letter = text[at] > _SPACE
-        if is_letter and not in_word:
-            if not has_word:
-                line_start[lines] = words
-                lines += 1
-                has_word = True
-            start[words] = at
-            words += 1
-        in_word = is_letter
-        if text[at] == _NEWLINE:
-            has_word = False
+def count_words(text: Bytes) -> tuple[int, int]:
+    """The number of words, and of newlines.
+
+    Blocks are so short that their counts fit in a byte: then the processor counts many bytes at a time.
+    """
+    words, newlines = int(len(text) > 0 and text[0] > _SPACE), int(len(text) > 0 and text[0] == _NEWLINE)
+    for first in range(1, len(text), _BLOCK):
+        block, before = text[first : first + _BLOCK], text[first - 1 : first - 1 + _BLOCK]
+        starts, ends = np.uint8(0), np.uint8(0)
+        for i in range(len(block)):
+            starts = np.uint8(starts + np.uint8((block[i] > _SPACE) & (before[i] <= _SPACE)))
+            ends = np.uint8(ends + np.uint8(block[i] == _NEWLINE))
+        words += int(starts)
+        newlines += int(ends)
+    return words, newlines
+
+
+@njit(cache=True)
+def find_word_starts(text: Bytes, begin: int, start: Offsets, line_start: Offsets) -> int:
+    """Fill the offset of every word, and in (L + 1,) or more the first word of every line that has one, then W.
+
+    Returns
+    -------
+    L, the number of lines that have a word.
+    """
+    at, words, lines = begin, 0, 0
+    is_new_line = True
+    while at < len(text):
+        if text[at] <= _SPACE:
+            is_new_line |= text[at] == _NEWLINE
+            at += 1
+            continue
+        if is_new_line:
+            line_start[lines] = words
+            lines += 1
+            is_new_line = False
+        start[words] = at
+        words += 1
+        while at < len(text) and text[at] > _SPACE:
+            at += 1
     line_start[lines] = words
+    return lines
+
+
+@njit(cache=True)
+def find_lines_with(text: Bytes, start: Offsets, line_start: Offsets, keyword: Bytes, found: BoolArray) -> None:
+    """Mark in ``found`` (L,) the lines whose first word is ``keyword``."""
+    for i in range(len(found)):
+        at = start[line_start[i]]
+        end = at + len(keyword)
+        found[i] = end <= len(text) and (end == len(text) or text[end] <= _SPACE)
+        for k in range(len(keyword)):
+            found[i] = found[i] and text[at + k] == keyword[k]
 
 
 @njit(cache=True)

@@ -1,6 +1,7 @@
 """Numbers in text are read as Python reads them, to the last bit."""
 
 import random
+import re
 
 import numpy as np
 import pytest
@@ -8,7 +9,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from segcore.errors import InvalidMesh
-from segcore.io.text import find_words
+from segcore.io.text import find_words, plain_text, without_comments
 from segcore.io.text_kernels import parse_floats
 
 decimals = st.one_of(
@@ -61,10 +62,27 @@ def test_what_is_no_number_is_refused_with_its_line(word: str) -> None:
         words.floats(0, words.count)
 
 
-@given(st.text(" \t\r\n\vab1", max_size=60), st.integers(0, 5))
-def test_words_and_lines_are_those_of_python(text: str, begin: int) -> None:
-    words = find_words(text.encode(), begin)
-    rest = text[begin:]
+@given(st.text(" \t\r\n\vab1", max_size=60), st.integers(1, 30), st.integers(0, 5))
+def test_words_and_lines_are_those_of_python(text: str, times: int, begin: int) -> None:
+    words = find_words((text * times).encode(), begin)
+    rest = (text * times)[begin:]
     assert [words.word(i) for i in range(words.count)] == rest.split()
     lines = [line for line in rest.split("\n") if line.split()]
     assert np.diff(words.line_start).tolist() == [len(line.split()) for line in lines]
+    assert words.lines_with(b"ab").tolist() == [line.split()[0] == "ab" for line in lines]
+
+
+@given(st.text(" #\nab", max_size=60))
+def test_comments_become_spaces_and_no_word_moves(text: str) -> None:
+    lines = [line.partition("#")[0].ljust(len(line)) for line in text.split("\n")]
+    assert without_comments(text.encode()).decode() == "\n".join(lines)
+
+
+@given(st.binary(max_size=600))
+def test_text_with_a_control_character_is_refused_with_its_byte(data: bytes) -> None:
+    found = re.search(rb"[\x00-\x08\x0e-\x1f]", data.rstrip(b"\0\x1a"))
+    if found is None:
+        assert plain_text(data).split() == data.rstrip(b"\0\x1a").removeprefix(b"\xef\xbb\xbf").split()
+    else:
+        with pytest.raises(InvalidMesh, match=f"^Byte {found.start()}:"):
+            plain_text(data)
