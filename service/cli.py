@@ -77,12 +77,20 @@ def _add_worker(commands: "argparse._SubParsersAction[_Parser]") -> None:
         formatter_class=argparse.RawDescriptionHelpFormatter,
     )
     worker.add_argument("--redis-url", metavar="URL", help="the queue server, in place of CLEAVE_REDIS_URL")
+    worker.add_argument(
+        "--queue", choices=("small", "large", "both"), default="both", help="the jobs to work for (%(default)s)"
+    )
     _add_workers(worker, least=1)
     worker.set_defaults(run=_work)
 
 
 def _add_workers(parser: argparse.ArgumentParser, least: int) -> None:
-    parser.add_argument("--workers", type=_at_least(least), metavar="N", help="jobs at a time (one less than cores)")
+    parser.add_argument(
+        "--workers",
+        type=_at_least(least),
+        metavar="N",
+        help="jobs at a time: one less than cores, but one small and one large job at least",
+    )
     parser.add_argument("--data-dir", type=Path, metavar="DIR", help="the data folder, in place of CLEAVE_DATA_DIR")
 
 
@@ -145,9 +153,11 @@ def _serve(choices: argparse.Namespace) -> None:
 
 def _work(choices: argparse.Namespace) -> None:
     from service.serve_command import work
+    from worker.size_class import SizeClass
 
     _configure_logging()
-    work(choices.redis_url, choices.workers, choices.data_dir, _say)
+    only = None if choices.queue == "both" else SizeClass(choices.queue)
+    work(choices.redis_url, choices.workers, choices.data_dir, _say, only)
 
 
 def _segment(choices: argparse.Namespace) -> None:

@@ -57,8 +57,8 @@ class Context:
     metrics: Metrics
     batches: BatchStore
 
-    def admit(self, owner: str | None, job_id: str | None = None) -> None:
-        admit(self.store, self.queue, owner, self.settings.key_max_running_jobs, job_id)
+    def admit(self, owner: str | None, new: Job | None = None) -> None:
+        admit(self.store, self.queue, self.settings, owner, new)
 
     def discard(self, job: Job) -> None:
         """Remove a job with its files; one that has not finished is canceled first."""

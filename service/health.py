@@ -9,6 +9,7 @@ from service.context import Context, ContextOf
 from service.documents import Health, Readiness
 from service.problems import documented
 from worker.queue import QueueError
+from worker.size_class import SizeClass
 
 router = APIRouter(tags=["health"])
 
@@ -23,7 +24,7 @@ async def get_health() -> Health:
     "/readyz", response_model=Readiness, responses={503: {"model": Readiness, "description": "Something is missing."}}
 )
 def get_readiness(response: Response, context: ContextOf) -> Readiness:
-    """A job that is submitted now would be run: the queue answers, the store is writable and a worker is alive."""
+    """A job that is submitted now would be run: the queue answers, the store is writable, both queues have workers."""
     readiness = _readiness(context)
     response.status_code = 200 if readiness.ready else 503
     return readiness
@@ -43,20 +44,21 @@ def get_metrics(context: ContextOf, caller: CallerOf) -> Response:  # noqa: ARG0
 
 
 def _readiness(context: Context) -> Readiness:
-    workers = _worker_count(context)
+    workers = _worker_counts(context)
     store = _is_writable(context)
     sentences = {
         "The queue server does not answer.": workers is None,
         "The store cannot be written.": not store,
-        "No worker is ready.": not workers,
+        **{f"No worker for {size} jobs is ready.": not (workers or {}).get(size) for size in SizeClass},
     }
     missing = [sentence for sentence, applies in sentences.items() if applies]
-    return Readiness(ready=not missing, queue=workers is not None, store=store, workers=workers or 0, missing=missing)
+    count = sum((workers or {}).values())
+    return Readiness(ready=not missing, queue=workers is not None, store=store, workers=count, missing=missing)
 
 
-def _worker_count(context: Context) -> int | None:
+def _worker_counts(context: Context) -> dict[SizeClass, int] | None:
     try:
-        return context.queue.worker_count()
+        return context.queue.worker_counts()
     except QueueError:
         return None
 

@@ -66,7 +66,7 @@ def take_in(context: Context, caller: Caller, received: ReceivedMesh, wish: Wish
 def enqueue(context: Context, job: Job) -> None:
     """Let a job into the queue as far as its owner may have jobs there."""
     try:
-        context.admit(job.owner, job.id)
+        context.admit(job.owner, job)
     except QueueError:
         log.warning("the queue did not take the job; the janitor will see to it")
 

@@ -8,6 +8,7 @@ from prometheus_client.core import GaugeMetricFamily, Metric
 from prometheus_client.registry import Collector
 
 from worker.queue import JobQueue, QueueError
+from worker.size_class import SizeClass
 from worker.store import JobStore
 
 _BUCKETS_S = (0.005, 0.01, 0.025, 0.05, 0.1, 0.25, 0.5, 1.0, 2.5, 5.0, 10.0, 30.0, 60.0)
@@ -48,13 +49,20 @@ class _QueueCollector(Collector):
             self._store.oldest_s(time.time()),
         )
         try:
-            waiting, workers = self._queue.length(), self._queue.worker_count()
+            waiting, workers = self._queue.lengths(), self._queue.worker_counts()
         except QueueError:
             yield _gauge("cleave_queue_up", "Whether the queue server answers.", 0)
             return
         yield _gauge("cleave_queue_up", "Whether the queue server answers.", 1)
-        yield _gauge("cleave_waiting_jobs", "Jobs in the queue.", waiting)
-        yield _gauge("cleave_workers", "Workers that are alive.", workers)
+        yield _by_queue("cleave_waiting_jobs", "Jobs in a queue.", waiting)
+        yield _by_queue("cleave_workers", "Workers of a queue that are alive.", workers)
+
+
+def _by_queue(name: str, text: str, values: dict[SizeClass, int]) -> Metric:
+    metric = GaugeMetricFamily(name, text, labels=["queue"])
+    for size, value in values.items():
+        metric.add_metric([size], value)
+    return metric
 
 
 def _gauge(name: str, text: str, value: float) -> Metric:

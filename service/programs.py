@@ -3,11 +3,13 @@
 import os
 import sys
 import sysconfig
+from collections.abc import Mapping
 from pathlib import Path
 
 from service.queue_server import QueueServer
 from service.supervisor import Program
 from worker.settings import Settings
+from worker.size_class import SizeClass
 
 _STOP_MARGIN_S = 4.0  # to leave the queue in order when the job has ended or was handed back
 
@@ -20,25 +22,28 @@ def queue_server_program(server: QueueServer) -> Program:
 
 
 def api_program(settings: Settings, listening: int) -> Program:
-    command = [*_python("service.server"), str(listening)]
+    command = _python("service.server", str(listening))
     return Program("service", command, _environment(settings), descriptors=(listening,))
 
 
-def worker_programs(settings: Settings, count: int) -> list[Program]:
+def worker_programs(settings: Settings, counts: Mapping[SizeClass, int]) -> list[Program]:
     """The workers, the janitor without which a lost job would stay lost, and the courier who tells the webhooks."""
     environment = _environment(settings)
     threads = {name: os.environ.get(name, value) for name, value in _ONE_THREAD.items()}
     grace_s = settings.shutdown_grace_s + _STOP_MARGIN_S
     workers = [
-        Program(f"worker {number}", _python("worker.process"), environment | threads, grace_s=grace_s)
+        Program(
+            f"worker {number} for {size} jobs", _python("worker.process", size), environment | threads, grace_s=grace_s
+        )
+        for size, count in counts.items()
         for number in range(1, count + 1)
     ]
     janitor = Program("janitor", _python("worker.janitor"), environment)
     return [*workers, janitor, Program("courier", _python("service.courier"), environment)]
 
 
-def _python(module: str) -> list[str]:
-    return [sys.executable, "-P", "-m", module]
+def _python(module: str, *arguments: str) -> list[str]:
+    return [sys.executable, "-P", "-m", module, *arguments]
 
 
 def _environment(settings: Settings) -> dict[str, str]:

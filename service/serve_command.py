@@ -3,7 +3,7 @@
 import ipaddress
 import os
 import socket
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from contextlib import ExitStack
 from pathlib import Path
 from urllib.parse import urlsplit
@@ -14,6 +14,7 @@ from service.queue_server import NoQueueServer, embedded_queue_server, stop_orph
 from service.supervisor import Program, Supervisor, lock_data
 from worker.opening import open_store
 from worker.settings import InvalidSettings, Settings, load_settings
+from worker.size_class import SizeClass
 
 Say = Callable[[str], None]  # tells the person who gave the command
 
@@ -27,7 +28,7 @@ class CannotListen(Exception):  # noqa: N818
 def serve(host: str, port: int, workers: int | None, data_dir: Path | None, say: Say) -> None:
     """Run the service, its workers and, where no other is named, its queue server, until a signal comes."""
     settings = load_settings(data_dir=data_dir)
-    count = default_workers() if workers is None else workers
+    counts = worker_counts(workers)
     with ExitStack() as stack:
         listening = stack.enter_context(listen(host, port))
         check_guarded(settings, listening.getsockname()[0])
@@ -40,19 +41,21 @@ def serve(host: str, port: int, workers: int | None, data_dir: Path | None, say:
             stack.callback(server.clear_away)
             settings = settings.model_copy(update={"redis_url": server.url})
             support = [queue_server_program(server)]
-        say(_announcement(settings, count, listening, own_queue=bool(support)))
-        programs = [*support, api_program(settings, listening.fileno()), *worker_programs(settings, count)]
+        say(_announcement(settings, counts, listening, own_queue=bool(support)))
+        programs = [*support, api_program(settings, listening.fileno()), *worker_programs(settings, counts)]
         Supervisor(programs).run()
 
 
-def work(redis_url: str | None, workers: int | None, data_dir: Path | None, say: Say) -> None:
-    """Run workers and a janitor against a queue server that runs elsewhere, until a signal comes."""
+def work(
+    redis_url: str | None, workers: int | None, data_dir: Path | None, say: Say, only: SizeClass | None = None
+) -> None:
+    """Run workers, for one of the queues or for both, and a janitor against a queue server that runs elsewhere."""
     settings = load_settings(redis_url=redis_url, data_dir=data_dir)
     if settings.redis_url is None:
         raise NoQueueServer("A worker needs the queue server of its service: set CLEAVE_REDIS_URL or give --redis-url.")
-    count = default_workers() if workers is None else workers
-    say(_announcement(settings, count, None, own_queue=False))
-    Supervisor(worker_programs(settings, count)).run()
+    counts = worker_counts(workers, only)
+    say(_announcement(settings, counts, None, own_queue=False))
+    Supervisor(worker_programs(settings, counts)).run()
 
 
 def check_guarded(settings: Settings, address: str) -> None:
@@ -75,10 +78,20 @@ def check_guarded(settings: Settings, address: str) -> None:
         )
 
 
-def default_workers() -> int:
-    """One for every core but one, which is left for answering."""
-    cores = len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1
-    return max(1, cores - 1)
+def worker_counts(workers: int | None, only: SizeClass | None = None) -> dict[SizeClass, int]:
+    """How many workers each queue gets of a number of them; where none is said, one core is left for answering.
+
+    A quarter is for the large jobs. No queue that is served goes without a worker, so there may be one more than said.
+    """
+    total = max(1, _cores() - 1) if workers is None else workers
+    if only is not None or total == 0:
+        return {size: total for size in SizeClass if size == only}
+    large = max(1, total // 4)
+    return {SizeClass.SMALL: max(1, total - large), SizeClass.LARGE: large}
+
+
+def _cores() -> int:
+    return len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1
 
 
 def listen(host: str, port: int) -> socket.socket:
@@ -96,9 +109,12 @@ def listen(host: str, port: int) -> socket.socket:
         raise CannotListen(f"Cannot listen on {host} port {port}: {error.strerror}.") from error
 
 
-def _announcement(settings: Settings, workers: int, listening: socket.socket | None, *, own_queue: bool) -> str:
+def _announcement(
+    settings: Settings, counts: Mapping[SizeClass, int], listening: socket.socket | None, *, own_queue: bool
+) -> str:
     """Where everything is."""
-    lines = {"data": str(settings.data_dir), "queue": _queue_name(settings, own_queue), "workers": str(workers)}
+    workers = ", ".join(f"{count} for {size} jobs" for size, count in counts.items()) or "none"
+    lines = {"data": str(settings.data_dir), "queue": _queue_name(settings, own_queue), "workers": workers}
     if listening is not None:
         lines = {"listening on": _url(listening), **lines}
     text = "\n".join(f"  {name:<13} {value}" for name, value in lines.items())

@@ -8,6 +8,7 @@ from pathlib import Path
 import numpy as np
 
 from worker.jobs import Job, new_job_id, now
+from worker.size_class import SizeClass
 from worker.store import JobStore
 
 
@@ -62,6 +63,7 @@ def accepted(store: JobStore, mesh: bytes, **parameters: object) -> Job:
     return job
 
 
+SMALL, LARGE = SizeClass
 LONG = {"clusters": 20_000, "max_segments": 400}  # with sphere(100), seconds of work
 
 

@@ -11,6 +11,7 @@ from worker.logs import configure_logging
 from worker.opening import open_store
 from worker.queue import JobQueue, QueueError, connect_impatiently
 from worker.settings import Settings, load_settings
+from worker.size_class import size_class
 from worker.store import JobStore, UnknownJob
 
 log = logging.getLogger("cleave.janitor")
@@ -60,10 +61,13 @@ class Janitor:
         return [job_id for job_id in missing if at_s - self._missing_since[job_id] >= MISSING_S]
 
     def _recover(self, job_id: str) -> None:
+        job = self._store.job(job_id)
+        if job is None:
+            return
         failed = exhausted(self._store.attempts(job_id), self._settings.max_attempts)
         if failed is None:
             log.warning("job %s was lost by the queue and waits again", job_id)
-            self._queue.requeue(job_id)
+            self._queue.requeue(job_id, size_class(job, self._settings.large_job_bytes))
             return
         log.error("job %s failed: %s", job_id, failed.code)
         try:

@@ -6,6 +6,7 @@ import secrets
 import select
 import signal
 import socket
+import sys
 import time
 from types import FrameType
 from typing import Any
@@ -26,6 +27,7 @@ from worker.parent_death import die_with_parent
 from worker.progress import ProgressReporter
 from worker.queue import TASK, JobQueue, QueueError, connect_impatiently, connect_patiently
 from worker.settings import Settings, load_settings
+from worker.size_class import SizeClass
 from worker.store import JobStore, UnknownJob
 from worker.tasks import perform
 from worker.work_horse import cause_of_death, exit_status, limit_memory, out_of_memory_kills
@@ -48,10 +50,10 @@ class JobWorker(Worker):  # type: ignore[misc]  # rq is not analysed
 
     max_connection_wait_time = 2.0
 
-    def __init__(self, store: JobStore, queue: JobQueue, leases: JobQueue, settings: Settings) -> None:
+    def __init__(self, store: JobStore, queue: JobQueue, leases: JobQueue, settings: Settings, size: SizeClass) -> None:
         """``queue`` may wait for Redis as long as it takes, ``leases`` must not."""
         super().__init__(
-            [queue.entries],
+            [queue.entries[size]],
             name=f"{socket.gethostname()}.{os.getpid()}.{secrets.token_hex(4)}",
             connection=queue.connection,
             serializer=JSONSerializer,
@@ -62,6 +64,7 @@ class JobWorker(Worker):  # type: ignore[misc]  # rq is not analysed
         self._queue = queue
         self._leases = leases
         self._settings = settings
+        self._size = size
         self._stop_by = float("inf")  # when a running job is handed back, on the monotonic clock
         self._horse_is_gone = -1  # a descriptor that becomes readable
 
@@ -189,7 +192,7 @@ class JobWorker(Worker):  # type: ignore[misc]  # rq is not analysed
         log.info("job %s: %s", job_id, outcome.status if outcome else "no outcome")
         self._queue.release(job_id, self.name)
         if self._is_open(job_id):
-            self._queue.requeue(job_id, at_front=True)
+            self._queue.requeue(job_id, self._size, at_front=True)
         else:
             self._queue.forget(job_id)
             self._admit_next(job_id)
@@ -198,7 +201,7 @@ class JobWorker(Worker):  # type: ignore[misc]  # rq is not analysed
         """The owner of a job that has ended may have another in the queue."""
         job = self._store.job(job_id)
         if job is not None:
-            admit(self._store, self._queue, job.owner, self._settings.key_max_running_jobs)
+            admit(self._store, self._queue, self._settings, job.owner)
 
     def _is_open(self, job_id: str) -> bool:
         return self._store.job(job_id) is not None and self._store.outcome(job_id) is None
@@ -217,15 +220,17 @@ def is_allowed(entry: Entry) -> bool:
 
 
 def main() -> None:
+    """Work for the queue whose size class is the first argument."""
+    size = SizeClass(sys.argv[1])
     settings = load_settings()
     configure_logging(settings.log_level, settings.log_format, "worker")
     assert settings.redis_url, "the parent process sets CLEAVE_REDIS_URL"
     log.info("loading the kernels; the first time they are compiled, which takes up to a minute")
     segcore.warm_up()
-    log.info("ready for jobs")
+    log.info("ready for %s jobs", size)
     queue = JobQueue(connect_patiently(settings.redis_url))
     leases = JobQueue(connect_impatiently(settings.redis_url))
-    JobWorker(open_store(settings), queue, leases, settings).work(logging_level="WARNING")
+    JobWorker(open_store(settings), queue, leases, settings, size).work(logging_level="WARNING")
 
 
 if __name__ == "__main__":

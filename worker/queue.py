@@ -1,7 +1,8 @@
 """The queue: which job is next, which worker holds which job, how far it is; the store can make all of it again.
 
-A waiting job is an entry in an rq queue. A running job has a lease, a key that its worker renews and that Redis drops
-when the worker falls silent. Only job ids, stage names and numbers pass through Redis.
+A waiting job is an entry in an rq queue; small jobs and large ones have one each. A running job has a lease, a key that
+its worker renews and that Redis drops when the worker falls silent. Only job ids, stage names and numbers pass through
+Redis.
 """
 
 import json
@@ -19,9 +20,11 @@ from rq.exceptions import DuplicateJobError
 from rq.intermediate_queue import IntermediateQueue
 from rq.job import Job as Entry
 from rq.serializers import JSONSerializer
-from rq.worker_registration import clean_worker_registry, get_keys
+from rq.worker_registration import WORKERS_BY_QUEUE_KEY, clean_worker_registry
 
-QUEUE_NAME = "cleave"
+from worker.size_class import SizeClass
+
+QUEUE_NAMES = {size: f"cleave:{size}" for size in SizeClass}
 TASK = "worker.tasks.perform"  # the only callable that an entry may name
 
 QueueError = RedisError
@@ -67,26 +70,29 @@ class JobQueue:
 
     def __init__(self, connection: Redis) -> None:
         self.connection = connection
-        self.entries = Queue(QUEUE_NAME, connection=connection, serializer=JSONSerializer)
-        self._taken_key = IntermediateQueue.get_intermediate_queue_key(self.entries.key)
+        self.entries = {
+            size: Queue(name, connection=connection, serializer=JSONSerializer) for size, name in QUEUE_NAMES.items()
+        }
+        self._waiting_keys = [entries.key for entries in self.entries.values()]
+        self._taken_keys = [IntermediateQueue.get_intermediate_queue_key(key) for key in self._waiting_keys]
 
-    def enqueue(self, job_id: str, *, at_front: bool = False) -> None:
+    def enqueue(self, job_id: str, size: SizeClass, *, at_front: bool = False) -> None:
         """Let a job wait for a worker; without effect where it waits already."""
         with suppress(DuplicateJobError):
-            self.entries.enqueue(
+            self.entries[size].enqueue(
                 TASK, job_id, job_id=job_id, unique=True, at_front=at_front, job_timeout=_FOR_EVER, result_ttl=0
             )
 
-    def requeue(self, job_id: str, *, at_front: bool = False) -> None:
+    def requeue(self, job_id: str, size: SizeClass, *, at_front: bool = False) -> None:
         """Let a job wait for a worker whatever is left of an earlier entry."""
         self.forget(job_id)
-        self.enqueue(job_id, at_front=at_front)
+        self.enqueue(job_id, size, at_front=at_front)
 
     def forget(self, job_id: str) -> None:
         """Remove the entry of a job and its progress."""
         with self.connection.pipeline() as transaction:
-            transaction.lrem(self.entries.key, 0, job_id)
-            transaction.lrem(self._taken_key, 0, job_id)
+            for key in (*self._waiting_keys, *self._taken_keys):
+                transaction.lrem(key, 0, job_id)
             transaction.delete(Entry.key_for(job_id), _progress_key(job_id))
             transaction.execute()
 
@@ -94,7 +100,8 @@ class JobQueue:
         """Begin to hold a job that was dequeued; False where another worker holds it."""
         with self.connection.pipeline() as transaction:
             transaction.set(_lease_key(job_id), worker, nx=True, px=_milliseconds(lease_s))
-            transaction.lrem(self._taken_key, 0, job_id)
+            for key in self._taken_keys:
+                transaction.lrem(key, 0, job_id)
             return bool(transaction.execute()[0])
 
     def renew(self, job_id: str, worker: str, lease_s: float) -> None:
@@ -110,12 +117,14 @@ class JobQueue:
         """Those of the jobs that wait or run, at one moment."""
         asked = list(job_ids)
         with self.connection.pipeline() as transaction:
-            transaction.lrange(self.entries.key, 0, -1)
             for job_id in asked:
                 transaction.exists(_lease_key(job_id))
-            waiting, *leased = transaction.execute()
-        running = {job_id for job_id, lease in zip(asked, leased, strict=True) if lease}
-        return running | ({entry.decode() for entry in waiting} & set(asked))
+            for key in self._waiting_keys:
+                transaction.lrange(key, 0, -1)
+            answers = transaction.execute()
+        running = {job_id for job_id, lease in zip(asked, answers, strict=False) if lease}
+        waiting = {entry.decode() for entries in answers[len(asked) :] for entry in entries}
+        return running | (waiting & set(asked))
 
     def publish(self, job_id: str, progress: Progress) -> None:
         document = json.dumps({"stage": progress.stage, "fraction": progress.fraction})
@@ -127,24 +136,33 @@ class JobQueue:
         with self.connection.pipeline(transaction=False) as pipeline:
             for job_id in asked:
                 pipeline.mget(_lease_key(job_id), _progress_key(job_id))
-                pipeline.lpos(self.entries.key, job_id)
+                for key in self._waiting_keys:
+                    pipeline.lpos(key, job_id)
             answers = pipeline.execute()
+        each = 1 + len(self._waiting_keys)
+        indices = zip(*(answers[1 + number :: each] for number in range(each - 1)), strict=True)
         return {
-            job_id: _activity(lease, document, index)
-            for job_id, (lease, document), index in zip(asked, answers[::2], answers[1::2], strict=True)
+            job_id: _activity(lease, document, found)
+            for job_id, (lease, document), found in zip(asked, answers[::each], indices, strict=True)
         }
 
     def activity(self, job_id: str) -> Activity:
         return self.activities([job_id])[job_id]
 
-    def worker_count(self) -> int:
-        """The workers that gave a sign of life within the last lease time or two."""
-        keys = sorted(get_keys(self.entries))
-        return self.connection.exists(*keys) if keys else 0
+    def worker_counts(self) -> dict[SizeClass, int]:
+        """The workers for each queue that gave a sign of life within the last half a minute."""
+        with self.connection.pipeline(transaction=False) as pipeline:
+            for name in QUEUE_NAMES.values():
+                pipeline.smembers(WORKERS_BY_QUEUE_KEY % name)
+            registered = pipeline.execute()
+        return {
+            size: self.connection.exists(*workers) if workers else 0
+            for size, workers in zip(SizeClass, registered, strict=True)
+        }
 
-    def length(self) -> int:
-        """The jobs that wait here."""
-        return int(self.connection.llen(self.entries.key))
+    def lengths(self) -> dict[SizeClass, int]:
+        """The jobs that wait in each queue."""
+        return {size: int(self.connection.llen(entries.key)) for size, entries in self.entries.items()}
 
     def claim(self, what: str, name: str, lease_s: float) -> bool:
         """Whether this process may do something that one of an installation may do at a time."""
@@ -164,7 +182,8 @@ class JobQueue:
         return leads
 
     def forget_dead_workers(self) -> None:
-        clean_worker_registry(self.entries)
+        for entries in self.entries.values():
+            clean_worker_registry(entries)
 
 
 def _lease_key(job_id: str) -> str:
@@ -179,9 +198,9 @@ def _milliseconds(seconds: float) -> int:
     return max(1, round(1000 * seconds))
 
 
-def _activity(lease: bytes | None, document: bytes | None, index: int | None) -> Activity:
+def _activity(lease: bytes | None, document: bytes | None, indices: tuple[int | None, ...]) -> Activity:
     progress = _progress(document) if lease and document else None
-    position = None if lease or index is None else index + 1
+    position = None if lease else next((index + 1 for index in indices if index is not None), None)
     return Activity(running=lease is not None, progress=progress, position=position)
 
 

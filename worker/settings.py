@@ -25,6 +25,14 @@ class Settings(BaseSettings):
         default_factory=lambda: user_data_path("cleave", appauthor=False),
         description="Folder of the jobs and their files; service and workers share it.",
     )
+    store_url: str | None = Field(
+        default=None,
+        pattern=r"^(s3|gs|az|memory)://",
+        description="The bucket of the jobs, such as s3://bucket/prefix; the data folder where none is set.",
+    )
+    store_cache_bytes: int = Field(
+        default=2**30, ge=0, description="Results of a bucket that are kept in the data folder of a service."
+    )
     redis_url: str | None = Field(
         default=None,
         pattern=r"^(redis|rediss|unix)://",
@@ -68,6 +76,9 @@ class Settings(BaseSettings):
         default=1024, ge=0, description="Least speed of an upload, on average after its first upload_idle_s."
     )
     max_faces: int = Field(default=5_000_000, gt=0, description="Largest number of faces that is segmented.")
+    large_job_bytes: int = Field(
+        default=4 * 2**20, gt=0, description="Mesh files from this size on wait in the queue of the large jobs."
+    )
     max_attempts: int = Field(default=3, ge=1, description="Runs of a job that keeps killing its worker.")
     job_timeout_s: float = Field(default=3600.0, gt=0, description="Longest run of a job.")
     job_memory_bytes: int | None = Field(

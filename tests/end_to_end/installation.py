@@ -23,7 +23,12 @@ START_S = 120.0  # kernels may have to be compiled, on a busy machine
 class Installation:
     """`cleave serve` on a data folder of its own. As a context it is gone afterwards, processes and files."""
 
-    settings: ClassVar = {"CLEAVE_LEASE_S": "5", "CLEAVE_SHUTDOWN_GRACE_S": "0.5", "CLEAVE_LOG_LEVEL": "error"}
+    settings: ClassVar = {
+        "CLEAVE_LEASE_S": "5",
+        "CLEAVE_SHUTDOWN_GRACE_S": "0.5",
+        "CLEAVE_LOG_LEVEL": "error",
+        "CLEAVE_LARGE_JOB_BYTES": "1000000",  # sphere(100) is large
+    }
 
     def __init__(self, workers: int = 2) -> None:
         self.data_dir = Path(tempfile.mkdtemp(prefix="cleave-test-"))

@@ -23,7 +23,7 @@ def kill_one(pids: list[int]) -> None:
 
 
 def test_killing_a_work_horse_a_worker_and_the_queue_server_loses_no_job() -> None:
-    with Installation() as installation:
+    with Installation(workers=3) as installation:
         paths = [installation.submit(sphere(60), SECOND) for _ in range(20)]
         wait_until(installation.horses)
         kill_one(installation.horses())
@@ -38,11 +38,13 @@ def test_killing_a_work_horse_a_worker_and_the_queue_server_loses_no_job() -> No
 
 
 @pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGKILL])
-def test_a_restart_finishes_what_was_queued_and_running(number: signal.Signals) -> None:
+def test_a_restart_finishes_two_jobs_that_ran_and_fifty_that_waited(number: signal.Signals) -> None:
     with Installation() as installation:
-        paths = [installation.submit(sphere(100), json.dumps(LONG)) for _ in range(2)]
-        paths += [installation.submit(sphere(20)) for _ in range(6)]
+        paths = [installation.submit(sphere(rows), json.dumps(LONG)) for rows in (80, 100)]  # a small one, a large one
         wait_until(lambda: len(installation.horses()) == 2)
+        for horse in installation.horses():
+            os.kill(horse, signal.SIGSTOP)  # they run for as long as the test wants
+        paths += [installation.submit(sphere(12)) for _ in range(50)]
         assert installation.stop(number) == (-signal.SIGKILL if number == signal.SIGKILL else 0)
         wait_until(lambda: not installation.processes(), within_s=10)
         installation.start()

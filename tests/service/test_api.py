@@ -8,7 +8,7 @@ import pytest
 from asking import FACES, UNKNOWN, problem, submit, traces
 
 from segcore.io.result import read_result
-from support import sphere
+from support import SMALL, sphere
 from worker.queue import JobQueue, Progress
 from worker.settings import Settings
 from worker.store import JobStore
@@ -27,7 +27,7 @@ def test_a_submitted_mesh_is_a_queued_job_at_its_location(
     assert client.get(answer.headers["Location"]).json() == job
     with store.open_mesh(job["id"]) as mesh:
         assert mesh.read() == b"some bytes"
-    assert queue.entries.get_job_ids() == [job["id"]]
+    assert queue.entries[SMALL].get_job_ids() == [job["id"]]
 
 
 def test_a_job_that_a_worker_holds_is_running_with_its_stage(client: httpx.Client, queue: JobQueue) -> None:
@@ -117,7 +117,7 @@ def test_a_queued_job_is_canceled_at_once_and_for_good(client: httpx.Client, que
     canceled = client.post(f"{path}/cancel")
     assert canceled.status_code == 200
     assert canceled.json()["status"] == "canceled"
-    assert queue.entries.get_job_ids() == []
+    assert queue.entries[SMALL].get_job_ids() == []
     assert client.post(f"{path}/cancel").json() == client.get(path).json()
 
 
@@ -149,7 +149,7 @@ def test_a_deleted_job_is_gone_with_its_files(
         for gone in (client.get(path), client.get(f"{path}/labels"), client.delete(path)):
             problem(gone, 410, "job_deleted")
     assert traces(settings.data_dir) == []
-    assert queue.entries.get_job_ids() == []
+    assert queue.entries[SMALL].get_job_ids() == []
 
 
 @pytest.mark.parametrize("name", ["0" * 32, "x", "..%2f..%2fetc%2fpasswd", "%00", "0" * 31 + "%0a", "%F0%9F%92%A9"])
@@ -173,13 +173,13 @@ def test_a_service_is_ready_when_queue_store_and_worker_are(client: httpx.Client
         "queue": True,
         "store": True,
         "workers": 0,
-        "missing": ["No worker is ready."],
+        "missing": ["No worker for small jobs is ready.", "No worker for large jobs is ready."],
     }
-    key = "rq:worker:test"
-    queue.connection.sadd("rq:workers:cleave", key)
-    queue.connection.hset(key, "state", "idle")
+    for size in ("small", "large"):
+        queue.connection.sadd(f"rq:workers:cleave:{size}", f"rq:worker:{size}")
+        queue.connection.hset(f"rq:worker:{size}", "state", "idle")
     ready = client.get("/readyz")
-    assert (ready.status_code, ready.json()["workers"]) == (200, 1)
+    assert (ready.status_code, ready.json()["workers"]) == (200, 2)
 
 
 def test_without_its_queue_the_service_takes_no_jobs_and_serves_results(
@@ -210,7 +210,7 @@ def test_what_is_accepted_while_the_queue_goes_down_stays_accepted(
     monkeypatch.setattr(JobQueue, "enqueue", fail)
     path = submit(client)
     assert list(store.unfinished()) == [path.rpartition("/")[2]]
-    assert queue.entries.get_job_ids() == []
+    assert queue.entries[SMALL].get_job_ids() == []
 
 
 def test_a_full_disk_is_said_and_leaves_nothing(

@@ -18,7 +18,9 @@ from servers import serving
 from service.api_keys import key_digest, new_key
 from service.contract import DOCS
 from worker.opening import open_store
+from worker.queue import QUEUE_NAMES
 from worker.settings import Settings
+from worker.size_class import SizeClass
 from worker.tasks import perform
 
 
@@ -36,7 +38,8 @@ def service(tmp_path_factory: pytest.TempPathFactory, queue_url: str) -> Iterato
     )
     with Redis.from_url(queue_url) as connection:
         connection.flushall()
-        connection.sadd("rq:workers:cleave", "rq:worker:tester")  # so that it is ready
+        for size in SizeClass:
+            connection.sadd(f"rq:workers:{QUEUE_NAMES[size]}", "rq:worker:tester")  # so that it is ready
         connection.hset("rq:worker:tester", "state", "idle")
     store, stop = open_store(limits), threading.Event()
 

@@ -7,7 +7,7 @@ import httpx
 from asking import problem, submit
 
 from service.documents import Status
-from support import sphere
+from support import SMALL, sphere
 from worker.queue import JobQueue
 
 
@@ -51,7 +51,7 @@ def test_a_deleted_job_is_not_listed(client: httpx.Client) -> None:
 def test_waiting_jobs_know_their_place(client: httpx.Client, queue: JobQueue) -> None:
     paths = [submit(client) for _ in range(3)]
     assert [client.get(path).json()["queue_position"] for path in paths] == [1, 2, 3]
-    first = queue.entries.pop_job_id()
+    first = queue.entries[SMALL].pop_job_id()
     queue.take(first, "worker", lease_s=30)
     assert [client.get(path).json()["queue_position"] for path in paths] == [None, 1, 2]
 

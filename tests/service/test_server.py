@@ -9,6 +9,7 @@ from asking import submit
 from servers import serving
 
 from service.impatience import ImpatientProtocol
+from support import SMALL
 from worker.queue import JobQueue
 from worker.settings import Settings
 
@@ -29,16 +30,17 @@ def test_metrics_count_requests_by_route_and_tell_how_the_queue_is(client: httpx
     assert found['cleave_requests_total{method="GET",route="/v1/jobs/{job_id}",status="200"}'] == 3
     assert found['cleave_requests_total{method="any",route="none",status="404"}'] == 1
     assert found['cleave_jobs_submitted_total{result="accepted"}'] == 1
-    assert found["cleave_unfinished_jobs"] == found["cleave_waiting_jobs"] == 1
+    assert found["cleave_unfinished_jobs"] == found['cleave_waiting_jobs{queue="small"}'] == 1
+    assert found['cleave_waiting_jobs{queue="large"}'] == 0
     assert found["cleave_oldest_unfinished_seconds"] > 0
-    queue.entries.pop_job_id()
-    assert samples(client)["cleave_waiting_jobs"] == 0
+    queue.entries[SMALL].pop_job_id()
+    assert samples(client)['cleave_waiting_jobs{queue="small"}'] == 0
 
 
 def test_metrics_are_told_without_the_queue_too(client_without_queue: httpx.Client) -> None:
     found = samples(client_without_queue)
     assert found["cleave_queue_up"] == 0
-    assert "cleave_waiting_jobs" not in found
+    assert 'cleave_waiting_jobs{queue="small"}' not in found
 
 
 @pytest.mark.parametrize(

@@ -9,7 +9,7 @@ import pytest
 from asking import AGAIN, problem, submit
 
 from service.preference import Preference, read_preference
-from support import sphere, wait_until
+from support import SMALL, sphere, wait_until
 from worker.queue import JobQueue
 from worker.settings import Settings
 from worker.store import JobStore
@@ -37,9 +37,7 @@ def working(store: JobStore, settings: Settings) -> Iterator[None]:
         thread.join()
 
 
-def test_who_waits_gets_the_labels_in_one_round_trip(
-    client: httpx.Client, store: JobStore, settings: Settings
-) -> None:
+def test_who_waits_gets_the_labels_in_one_round_trip(client: httpx.Client, store: JobStore, settings: Settings) -> None:
     with working(store, settings):
         answer = client.post("/v1/jobs?segments=3", content=MESH, headers={"Prefer": "wait=60"})
     assert answer.status_code == 200
@@ -50,9 +48,7 @@ def test_who_waits_gets_the_labels_in_one_round_trip(
     assert {**client.get(job["links"]["self"]).json(), **labels} == job
 
 
-def test_who_waits_gets_the_labels_at_a_granularity(
-    client: httpx.Client, store: JobStore, settings: Settings
-) -> None:
+def test_who_waits_gets_the_labels_at_a_granularity(client: httpx.Client, store: JobStore, settings: Settings) -> None:
     with working(store, settings):
         answer = client.post("/v1/jobs?granularity=1", content=MESH, headers={"Prefer": "wait=60"})
     job = answer.json()
@@ -87,7 +83,7 @@ def test_what_was_computed_is_not_computed_again(
     client: httpx.Client, finished_job: Callable[..., str], queue: JobQueue
 ) -> None:
     path = finished_job(MESH)
-    before = queue.entries.get_job_ids()
+    before = queue.entries[SMALL].get_job_ids()
     form = {"files": {"mesh": ("other.off", MESH)}}
     again = client.post("/v1/jobs", **form)  # type: ignore[arg-type]
     assert again.status_code == 200
@@ -95,7 +91,7 @@ def test_what_was_computed_is_not_computed_again(
     assert again.json()["labels"] is None
     waited = client.post("/v1/jobs", **form, headers={"Prefer": "wait=1"})  # type: ignore[arg-type]
     assert len(waited.json()["labels"]) == waited.json()["mesh"]["faces"]
-    assert queue.entries.get_job_ids() == before
+    assert queue.entries[SMALL].get_job_ids() == before
     for other in (
         client.post("/v1/jobs", **form, headers=AGAIN),  # type: ignore[arg-type]
         client.post("/v1/jobs", **form, data={"parameters": '{"seed": 3}'}),  # type: ignore[arg-type]
@@ -116,7 +112,7 @@ def test_a_request_that_is_sent_again_makes_no_second_job(client: httpx.Client, 
     first = client.post("/v1/jobs", content=MESH, headers=headers)
     again = client.post("/v1/jobs", content=MESH, headers=headers)
     assert first.json() == again.json()
-    assert len(queue.entries.get_job_ids()) == 1
+    assert len(queue.entries[SMALL].get_job_ids()) == 1
     assert len(client.get("/v1/jobs").json()["jobs"]) == 1
     problem(client.post("/v1/jobs", content=sphere(11), headers=headers), 422, "idempotency_key_reused")
     other = client.post('/v1/jobs?parameters={"seed":1}', content=MESH, headers=headers)
@@ -138,7 +134,7 @@ def test_of_many_requests_with_one_key_at_once_one_makes_the_job(client: httpx.C
         thread.join()
     assert {answer.status_code for answer in answers} == {202}
     assert len({answer.headers["Location"] for answer in answers}) == 1
-    assert len(queue.entries.get_job_ids()) == 1
+    assert len(queue.entries[SMALL].get_job_ids()) == 1
 
 
 def test_a_key_that_was_answered_with_an_old_result_stands_for_it(

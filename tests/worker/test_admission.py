@@ -5,7 +5,7 @@ from dataclasses import replace
 
 import pytest
 
-from support import accepted
+from support import SMALL, accepted
 from worker.admission import admit, may_wait_outside
 from worker.janitor import MISSING_S, Janitor
 from worker.jobs import Canceled, Job, new_job_id, now
@@ -28,36 +28,37 @@ def submitted(store: JobStore) -> Callable[[str], Job]:
 
 
 def waiting(queue: JobQueue) -> list[str]:
-    ids: list[str] = queue.entries.get_job_ids()
+    ids: list[str] = queue.entries[SMALL].get_job_ids()
     return ids
 
 
 def test_an_owner_has_no_more_in_the_queue_than_allowed(
     store: JobStore, queue: JobQueue, submitted: Callable[[str], Job]
 ) -> None:
+    two_each = Settings(key_max_running_jobs=2)
     mine = [submitted("me") for _ in range(4)]
     for job in mine:
-        admit(store, queue, "me", 2, job.id)
+        admit(store, queue, two_each, "me", job)
     theirs = submitted("them")
-    admit(store, queue, "them", 2, theirs.id)
+    admit(store, queue, two_each, "them", theirs)
     assert waiting(queue) == [mine[0].id, mine[1].id, theirs.id]
     store.finish(mine[0].id, Canceled(finished_at=now()))
     queue.forget(mine[0].id)
-    admit(store, queue, "me", 2)
+    admit(store, queue, two_each, "me")
     assert waiting(queue) == [mine[1].id, theirs.id, mine[2].id]
 
 
 def test_without_a_limit_every_job_enters(store: JobStore, queue: JobQueue, submitted: Callable[[str], Job]) -> None:
     jobs = [submitted("me") for _ in range(3)]
     for job in jobs:
-        admit(store, queue, "me", None, job.id)
+        admit(store, queue, Settings(), "me", job)
     assert waiting(queue) == [job.id for job in jobs]
 
 
 def test_running_jobs_take_up_room(store: JobStore, queue: JobQueue, submitted: Callable[[str], Job]) -> None:
     first, second = submitted("me"), submitted("me")
     queue.take(first.id, "worker", lease_s=30)
-    admit(store, queue, "me", 1, second.id)
+    admit(store, queue, Settings(key_max_running_jobs=1), "me", second)
     assert waiting(queue) == []
 
 

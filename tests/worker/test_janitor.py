@@ -4,11 +4,13 @@ from pathlib import Path
 
 import pytest
 from redis import Redis
+from rq import Queue
+from rq.serializers import JSONSerializer
 
-from support import accepted
+from support import LARGE, SMALL, accepted
 from worker.janitor import MISSING_S, Janitor
 from worker.jobs import Failed, new_job_id
-from worker.queue import JobQueue
+from worker.queue import TASK, JobQueue
 from worker.settings import Settings
 from worker.store import JobStore
 
@@ -19,13 +21,11 @@ def janitor(store: JobStore, queue: JobQueue, tmp_path: Path) -> Janitor:
 
 
 def waiting(queue: JobQueue) -> list[str]:
-    ids: list[str] = queue.entries.get_job_ids()
+    ids: list[str] = queue.entries[SMALL].get_job_ids()
     return ids
 
 
-def test_a_job_that_the_queue_never_got_waits_after_a_grace(
-    janitor: Janitor, store: JobStore, queue: JobQueue
-) -> None:
+def test_a_job_that_the_queue_never_got_waits_after_a_grace(janitor: Janitor, store: JobStore, queue: JobQueue) -> None:
     job = accepted(store, b"mesh")
     janitor.sweep(0.0)
     assert waiting(queue) == []
@@ -36,16 +36,38 @@ def test_a_job_that_the_queue_never_got_waits_after_a_grace(
 def test_a_wiped_queue_is_filled_again(janitor: Janitor, store: JobStore, queue: JobQueue, connection: Redis) -> None:
     jobs = [accepted(store, b"mesh") for _ in range(5)]
     for job in jobs:
-        queue.enqueue(job.id)
+        queue.enqueue(job.id, SMALL)
     connection.flushall()
     janitor.sweep(0.0)
     janitor.sweep(MISSING_S)
     assert sorted(waiting(queue)) == sorted(job.id for job in jobs)
 
 
+def test_jobs_come_back_to_the_queue_of_their_size(store: JobStore, queue: JobQueue, tmp_path: Path) -> None:
+    janitor = Janitor(store, queue, Settings(data_dir=tmp_path, large_job_bytes=5))
+    small, large = accepted(store, b"1234"), accepted(store, b"12345")
+    janitor.sweep(0.0)
+    janitor.sweep(MISSING_S)
+    assert {size: entries.get_job_ids() for size, entries in queue.entries.items()} == {
+        SMALL: [small.id],
+        LARGE: [large.id],
+    }
+
+
+def test_what_waits_in_the_one_queue_of_an_earlier_version_is_taken_over(
+    janitor: Janitor, store: JobStore, queue: JobQueue, connection: Redis
+) -> None:
+    job = accepted(store, b"mesh")
+    Queue("cleave", connection=connection, serializer=JSONSerializer).enqueue(TASK, job.id, job_id=job.id)
+    janitor.sweep(0.0)
+    janitor.sweep(MISSING_S)
+    assert waiting(queue) == [job.id]
+    assert queue.activity(job.id).position == 1
+
+
 def test_jobs_that_wait_or_run_are_left_alone(janitor: Janitor, store: JobStore, queue: JobQueue) -> None:
     waits, runs = accepted(store, b"mesh"), accepted(store, b"mesh")
-    queue.enqueue(waits.id)
+    queue.enqueue(waits.id, SMALL)
     queue.take(runs.id, "worker", lease_s=30)
     janitor.sweep(0.0)
     janitor.sweep(MISSING_S)
@@ -116,7 +138,7 @@ def test_of_several_janitors_one_acts(janitor: Janitor, store: JobStore, queue: 
 
 
 def test_an_entry_without_a_job_disturbs_nobody(janitor: Janitor, queue: JobQueue) -> None:
-    queue.enqueue(new_job_id())
+    queue.enqueue(new_job_id(), SMALL)
     janitor.sweep(0.0)
     janitor.sweep(MISSING_S)
     assert len(waiting(queue)) == 1

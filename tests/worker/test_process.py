@@ -12,9 +12,10 @@ from pathlib import Path
 import pytest
 from redis import Redis
 
-from support import LONG, accepted, children_of, is_alive, sphere, wait_until
+from support import LARGE, LONG, SMALL, accepted, children_of, is_alive, sphere, wait_until
 from worker.jobs import Canceled, Failed, Job, Outcome, Succeeded, now
 from worker.queue import JobQueue
+from worker.size_class import SizeClass
 from worker.store import JobStore
 
 StartWorker = Callable[..., "subprocess.Popen[bytes]"]
@@ -26,10 +27,12 @@ def start_worker(tmp_path: Path, queue_url: str, connection: Redis) -> Iterator[
     del connection  # an empty queue
     started: list[subprocess.Popen[bytes]] = []
 
-    def start(**environment: str) -> "subprocess.Popen[bytes]":
+    def start(size: SizeClass = SMALL, **environment: str) -> "subprocess.Popen[bytes]":
         settings = {"CLEAVE_DATA_DIR": str(tmp_path / "data"), "CLEAVE_REDIS_URL": queue_url}
         process = subprocess.Popen(
-            [sys.executable, "-m", "worker.process"], env=os.environ | settings | environment, start_new_session=True
+            [sys.executable, "-m", "worker.process", size],
+            env=os.environ | settings | environment,
+            start_new_session=True,
         )
         started.append(process)
         return process
@@ -55,7 +58,7 @@ def horse_of(worker: "subprocess.Popen[bytes]") -> int:
 
 def submitted(store: JobStore, queue: JobQueue, **parameters: object) -> Job:
     job = accepted(store, sphere(100 if parameters else 20), **parameters)
-    queue.enqueue(job.id)
+    queue.enqueue(job.id, SMALL)
     return job
 
 
@@ -66,10 +69,10 @@ def test_a_queued_job_succeeds_and_leaves_nothing_in_redis(
     job = submitted(store, queue)
     assert isinstance(outcome_of(store, job), Succeeded)
     wait_until(lambda: not [key for key in connection.scan_iter() if job.id.encode() in key])
-    assert queue.worker_count() == 1
+    assert queue.worker_counts() == {SMALL: 1, LARGE: 0}
     worker.send_signal(signal.SIGTERM)
     assert worker.wait(30) == 0
-    assert queue.worker_count() == 0
+    assert queue.worker_counts() == {SMALL: 0, LARGE: 0}
 
 
 def test_a_running_job_shows_its_stage_and_progress(
@@ -89,18 +92,18 @@ def test_entries_that_name_another_callable_are_dropped_unrun(
 ) -> None:
     job = accepted(store, sphere(20))
     touched = tmp_path / "touched"
-    queue.entries.enqueue("os.system", f"touch {touched}", job_id=job.id)
-    queue.entries.enqueue("worker.tasks.perform", "x", job_id="not-a-job-id")
-    queue.entries.enqueue("worker.tasks.perform", job.id, job_id="0" * 32)
+    queue.entries[SMALL].enqueue("os.system", f"touch {touched}", job_id=job.id)
+    queue.entries[SMALL].enqueue("worker.tasks.perform", "x", job_id="not-a-job-id")
+    queue.entries[SMALL].enqueue("worker.tasks.perform", job.id, job_id="0" * 32)
     pickled = pickle.dumps(("os.system", None, (f"touch {touched}",), {}))
     connection.hset("rq:job:pickled", mapping={"data": pickled, "created_at": "2026-01-01T00:00:00.000000Z"})
-    connection.rpush(queue.entries.key, "pickled")
+    connection.rpush(queue.entries[SMALL].key, "pickled")
     last = submitted(store, queue)
     start_worker()
     assert isinstance(outcome_of(store, last), Succeeded)
     assert not touched.exists()
     assert store.attempts(job.id) == []
-    assert queue.entries.get_job_ids() == []
+    assert queue.entries[SMALL].get_job_ids() == []
 
 
 def test_a_killed_work_horse_costs_an_attempt_and_not_the_job(
@@ -154,7 +157,7 @@ def test_a_job_that_needs_too_much_memory_is_stopped_with_a_reason(
 
 def accepted_large(store: JobStore, queue: JobQueue) -> Job:
     job = accepted(store, sphere(300))
-    queue.enqueue(job.id)
+    queue.enqueue(job.id, SMALL)
     return job
 
 
@@ -194,7 +197,7 @@ def test_a_worker_that_is_told_to_stop_hands_its_job_back(
     assert not is_alive(horse)
     assert store.outcome(job.id) is None
     assert store.attempts(job.id) == []
-    assert queue.entries.get_job_ids() == [job.id]
+    assert queue.entries[SMALL].get_job_ids() == [job.id]
 
 
 def test_a_worker_that_is_told_to_stop_lets_a_job_end_within_the_grace(
@@ -224,11 +227,23 @@ def test_a_job_that_another_worker_holds_is_left_to_it(
 ) -> None:
     held = accepted(store, sphere(20))
     queue.take(held.id, "another", lease_s=30)
-    queue.enqueue(held.id)
+    queue.enqueue(held.id, SMALL)
     other = submitted(store, queue)
     start_worker()
     assert isinstance(outcome_of(store, other), Succeeded)
     assert store.attempts(held.id) == []
+
+
+def test_a_large_job_holds_up_no_small_one(start_worker: StartWorker, store: JobStore, queue: JobQueue) -> None:
+    start_worker(SMALL)
+    worker = start_worker(LARGE)
+    large = accepted(store, sphere(100), **LONG)
+    queue.enqueue(large.id, LARGE)
+    os.kill(horse_of(worker), signal.SIGSTOP)  # it runs for as long as the test wants
+    for _ in range(3):
+        assert isinstance(outcome_of(store, submitted(store, queue)), Succeeded)
+    assert queue.activity(large.id).running
+    assert store.outcome(large.id) is None
 
 
 def test_what_passes_through_redis_is_small(

@@ -1,0 +1,28 @@
+"""Which processes an installation has."""
+
+import pytest
+
+from service.programs import worker_programs
+from service.serve_command import worker_counts
+from support import LARGE, SMALL
+from worker.settings import Settings
+from worker.size_class import SizeClass
+
+
+@pytest.mark.parametrize(("workers", "small", "large"), [(1, 1, 1), (2, 1, 1), (4, 3, 1), (8, 6, 2)])
+def test_small_and_large_jobs_have_workers_of_their_own(workers: int, small: int, large: int) -> None:
+    assert worker_counts(workers) == {SMALL: small, LARGE: large}
+
+
+def test_one_queue_may_have_all_workers_and_a_service_none() -> None:
+    assert worker_counts(3, LARGE) == {LARGE: 3}
+    assert worker_counts(0) == {}
+    assert set(worker_counts(None)) == set(SizeClass)
+
+
+def test_every_worker_process_is_told_one_queue() -> None:
+    settings = Settings(redis_url="unix:///nowhere.sock")
+    programs = worker_programs(settings, {SMALL: 2, LARGE: 1})
+    last_words = [program.command[-1] for program in programs if "worker.process" in program.command]
+    assert last_words == ["small", "small", "large"]
+    assert len({program.name for program in programs}) == len(programs)
