@@ -94,13 +94,14 @@ class LearnedRule:
         return self.best_of(candidates, self.features(segment, candidates))
 
     def best_of(self, candidates: Sequence[Cut], features: FloatArray) -> Split:
-        """The candidate that people would rather make."""
+        """The candidate that people would rather make; one that waits for everything else only where there is no other."""
         kept = self._model.probability(features)
         size = np.sqrt(self._total)
-        best = int(np.argmin([q + _NCUT_WEIGHT * cut.ncut * size for q, cut in zip(kept, candidates, strict=True)]))
+        late = [min(cut.inside, cut.outside) < SMALLEST_SIDE * self._total for cut in candidates]
+        loss = [q + _NCUT_WEIGHT * cut.ncut * size for q, cut in zip(kept, candidates, strict=True)]
+        best = min(range(len(candidates)), key=lambda i: (late[i], loss[i]))
         cut = candidates[best]
-        late = min(cut.inside, cut.outside) < SMALLEST_SIDE * self._total
-        return Split(cut, cut.ncut * size, float(kept[best]), late)
+        return Split(cut, cut.ncut * size, float(kept[best]), late[best])
 
     def candidates(self, segment: Segment) -> list[Cut]:
         """Different cuts with connected sides. Of a segment that can only be split late there is one."""
