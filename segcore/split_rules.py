@@ -94,7 +94,7 @@ class LearnedRule:
         return self.best_of(candidates, self.features(segment, candidates))
 
     def best_of(self, candidates: Sequence[Cut], features: FloatArray) -> Split:
-        """The candidate that people would rather make; one that waits for everything else only where there is no other."""
+        """The candidate that people would rather make; one that has to wait only where there is no other."""
         kept = self._model.probability(features)
         size = np.sqrt(self._total)
         late = [min(cut.inside, cut.outside) < SMALLEST_SIDE * self._total for cut in candidates]
