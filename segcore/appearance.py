@@ -50,6 +50,12 @@ class Appearance:
         arrays = {"normals": self.normals, "uvs": self.uvs, "colors": self.colors}
         return {name: values for name, values in arrays.items() if values is not None}
 
+    def groups_of(self, faces: IntArray) -> list[str]:
+        """The names of the groups that some of the faces are in; none where there are no groups."""
+        if self.face_group is None:
+            return []
+        return [self.group_names[group] for group in np.unique(self.face_group[faces]).tolist()]
+
     def fits(self, vertex_count: int, face_count: int) -> bool:
         """Whether this can be the appearance of a mesh of that size."""
         rows = vertex_count + len(self.extra_vertex)

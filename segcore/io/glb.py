@@ -10,15 +10,24 @@ from segcore.appearance import Appearance
 from segcore.errors import LimitExceeded
 from segcore.hierarchy import Hierarchy
 from segcore.io.glb_appearance import add_attributes, name_groups
+from segcore.io.glb_features import add_features
 from segcore.io.glb_geometry import group, place
 from segcore.io.glb_scene import all_levels_drawing, level_drawing, scene_document
+from segcore.io.names import SegmentNames, segment_names
 from segcore.mesh import Mesh
 
 _LARGEST_FILE = 2**32 - 1  # the lengths in a GLB file are 32 bits
 
 
 def write_glb(
-    target: BinaryIO, mesh: Mesh, hierarchy: Hierarchy, segments: int | None = None, *, all_levels: bool = False
+    target: BinaryIO,
+    mesh: Mesh,
+    hierarchy: Hierarchy,
+    segments: int | None = None,
+    *,
+    all_levels: bool = False,
+    features: bool = False,
+    names: SegmentNames | None = None,
 ) -> None:
     """Write a mesh as binary glTF 2.0 with a material for each segment and the tree of cuts as nested nodes.
 
@@ -32,6 +41,9 @@ def write_glb(
     With ``all_levels`` the nodes are those of the whole hierarchy and the leaves carry the geometry. Their materials
     are those of this level, and KHR_materials_variants has the ones of every other: variant k - 1 is called
     ``k segments`` (``1 segment`` for one). Material k is that of label k in every variant.
+
+    With ``features`` the faces have feature ids as well (EXT_mesh_features), which are rows of a table with an entry
+    for each node of the whole hierarchy (EXT_structural_metadata): see :mod:`segcore.io.glb_features`.
 
     Where the mesh has an appearance, NORMAL and TEXCOORD_0 are written, and the colours of the vertices as ``_COLOR_0``
     (sRGB and opacity, normalized bytes), as COLOR_0 would tint the materials. Vertices that look different in
@@ -48,6 +60,7 @@ def write_glb(
     ----------
     target : a binary file; needs ``write`` only.
     segments : the number of segments K, by default the automatic one.
+    names : what segments are called in place of ``segment k``.
 
     Raises
     ------
@@ -62,9 +75,12 @@ def write_glb(
     slices = group(drawing.of_face, len(drawing.nodes))
     corners = mesh.faces if look.corners is None else look.corners
     blobs = [placement.positions, corners[slices.faces].astype("<u4"), slices.faces.astype("<u4")]
-    document = scene_document(hierarchy, drawing, placement, slices, [blob.nbytes for blob in blobs])
+    called = segment_names(names, len(drawing.nodes))
+    document = scene_document(hierarchy, drawing, placement, slices, [blob.nbytes for blob in blobs], called)
     add_attributes(document, blobs, look)
     name_groups(document, look, slices)
+    if features:
+        add_features(document, blobs, hierarchy, drawing.nodes, slices, corners)
     _write_container(target, document, blobs)
 
 

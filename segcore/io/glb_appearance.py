@@ -2,11 +2,11 @@
 
 from typing import Any
 
-import numpy as np
 from numpy.typing import NDArray
 
 from segcore.appearance import Appearance
 from segcore.io.glb_geometry import Slices
+from segcore.io.glb_views import append_view
 
 _UNSIGNED_BYTE, _FLOAT = 5121, 5126
 _ARRAY_BUFFER = 34962
@@ -21,12 +21,8 @@ def add_attributes(document: dict[str, Any], blobs: list[NDArray[Any]], look: Ap
     """Give every primitive of a document the attributes of the vertices, and append their data to its blobs."""
     for kind, values in look.row_arrays.items():
         name, dtype, form = _ATTRIBUTES[kind]
-        blob = np.ascontiguousarray(values, dtype)
-        view = {"buffer": 0, "byteOffset": document["buffers"][0]["byteLength"], "byteLength": blob.nbytes}
-        document["bufferViews"].append(view | {"target": _ARRAY_BUFFER})
-        document["buffers"][0]["byteLength"] += blob.nbytes
-        document["accessors"].append({"bufferView": len(document["bufferViews"]) - 1, "count": len(blob), **form})
-        blobs.append(blob)
+        view = append_view(document, blobs, values.astype(dtype), target=_ARRAY_BUFFER)
+        document["accessors"].append({"bufferView": view, "count": len(values), **form})
         for mesh in document["meshes"]:
             mesh["primitives"][0]["attributes"][name] = len(document["accessors"]) - 1
 
@@ -38,5 +34,4 @@ def name_groups(document: dict[str, Any], look: Appearance, slices: Slices) -> N
     for node in document["nodes"]:
         if "mesh" in node:
             first, last = slices.start[node["mesh"]], slices.start[node["mesh"] + 1]
-            present = np.unique(look.face_group[slices.faces[first:last]]).tolist()
-            node["extras"]["groups"] = [look.group_names[group] for group in present]
+            node["extras"]["groups"] = look.groups_of(slices.faces[first:last])

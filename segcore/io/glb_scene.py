@@ -46,9 +46,14 @@ def all_levels_drawing(hierarchy: Hierarchy, segments: int | None) -> Drawing:
 
 
 def scene_document(
-    hierarchy: Hierarchy, drawing: Drawing, placement: Placement, slices: Slices, sizes: list[int]
+    hierarchy: Hierarchy, drawing: Drawing, placement: Placement, slices: Slices, sizes: list[int], names: list[str]
 ) -> dict[str, Any]:
-    """The glTF document over three blobs of ``sizes`` bytes: positions, corners in slices, input faces."""
+    """The glTF document over three blobs of ``sizes`` bytes: positions, corners in slices, input faces.
+
+    Parameters
+    ----------
+    names : (D,) what the parts that carry geometry are called.
+    """
     offsets = [0, sizes[0], sizes[0] + sizes[1]]
     parts = range(len(drawing.nodes))
     colors = linear_rgb(segment_colors(len(drawing.nodes)))
@@ -56,9 +61,9 @@ def scene_document(
         "asset": {"version": "2.0", "generator": "Cleave"},
         "scene": 0,
         "scenes": [{"nodes": [0], "extras": _scene_extras(hierarchy, drawing)}],
-        "nodes": _nodes(hierarchy, drawing, placement, slices),
-        "meshes": [_mesh(drawing, k) for k in parts],
-        "materials": [_material(k, color) for k, color in enumerate(colors)],
+        "nodes": _nodes(hierarchy, drawing, placement, slices, names),
+        "meshes": [_mesh(drawing, k, names[k]) for k in parts],
+        "materials": [_material(name, color) for name, color in zip(names, colors, strict=True)],
         "accessors": [_position_accessor(placement.positions), *(_index_accessor(slices, k) for k in parts)],
         "bufferViews": [
             {"buffer": 0, "byteOffset": offsets[0], "byteLength": sizes[0], "target": _ARRAY_BUFFER},
@@ -84,7 +89,9 @@ def _variants(count: int) -> dict[str, Any]:
     return {"extensionsUsed": [_VARIANTS], "extensions": {_VARIANTS: {"variants": names}}}
 
 
-def _nodes(hierarchy: Hierarchy, drawing: Drawing, placement: Placement, slices: Slices) -> list[dict[str, Any]]:
+def _nodes(
+    hierarchy: Hierarchy, drawing: Drawing, placement: Placement, slices: Slices, names: list[str]
+) -> list[dict[str, Any]]:
     part_of = {node: k for k, node in enumerate(drawing.nodes.tolist())}
     nodes = []
     for entry in node_documents(hierarchy)[: 2 * len(part_of) - 1]:
@@ -93,7 +100,7 @@ def _nodes(hierarchy: Hierarchy, drawing: Drawing, placement: Placement, slices:
             nodes.append({"name": f"group {entry['id']}", "children": entry["children"], "extras": extras})
         else:
             extras |= {"first_face": int(slices.start[k])} | ({} if len(drawing.variants) else {"segment": k})
-            nodes.append({"name": f"segment {k}", "mesh": k, "extras": extras})
+            nodes.append({"name": names[k], "mesh": k, "extras": extras})
     if any(placement.translation):
         nodes[0]["translation"] = placement.translation
     if placement.scale != 1.0:
@@ -101,11 +108,11 @@ def _nodes(hierarchy: Hierarchy, drawing: Drawing, placement: Placement, slices:
     return nodes
 
 
-def _mesh(drawing: Drawing, k: int) -> dict[str, Any]:
+def _mesh(drawing: Drawing, k: int, name: str) -> dict[str, Any]:
     primitive = {"attributes": {"POSITION": 0}, "indices": k + 1, "material": int(drawing.material[k])}
     if len(drawing.variants):
         primitive["extensions"] = {_VARIANTS: {"mappings": _mappings(drawing.variants[:, k])}}
-    return {"name": f"segment {k}", "primitives": [primitive]}
+    return {"name": name, "primitives": [primitive]}
 
 
 def _mappings(materials: IntArray) -> list[dict[str, Any]]:
@@ -116,9 +123,9 @@ def _mappings(materials: IntArray) -> list[dict[str, Any]]:
     ]
 
 
-def _material(k: int, color: FloatArray) -> dict[str, Any]:
+def _material(name: str, color: FloatArray) -> dict[str, Any]:
     return {
-        "name": f"segment {k}",
+        "name": name,
         "doubleSided": True,  # the input may be open or turned inside out
         "pbrMetallicRoughness": {
             "baseColorFactor": [*(round(channel, 6) for channel in color.tolist()), 1.0],

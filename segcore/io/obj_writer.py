@@ -10,15 +10,28 @@ from segcore.arrays import IntArray
 from segcore.hierarchy import Hierarchy
 from segcore.io.glb_geometry import group
 from segcore.io.lines import format_rows
+from segcore.io.names import SegmentNames, comment, group_names
 from segcore.mesh import Mesh
 
 
-def write_obj(target: BinaryIO, mesh: Mesh, hierarchy: Hierarchy, segments: int | None = None) -> None:
+def write_obj(
+    target: BinaryIO,
+    mesh: Mesh,
+    hierarchy: Hierarchy,
+    segments: int | None = None,
+    *,
+    names: SegmentNames | None = None,
+) -> None:
     """Write an OBJ file: all vertices in input order, then group ``segment_k`` for every segment.
 
     A group holds its faces in input order, so triangle t of group k is the t-th input face with label k. Coordinates
     are written as decimal numbers that give the same floating point numbers back. Normals, texture coordinates and the
-    colours of vertices stand where the input had them.
+    colours of vertices stand where the input had them. A comment after the name of a group says which groups of the
+    input reach into it.
+
+    Parameters
+    ----------
+    names : what segments are called in place of ``segment_k``, see :func:`segcore.io.names.group_names`.
 
     Raises
     ------
@@ -28,13 +41,16 @@ def write_obj(target: BinaryIO, mesh: Mesh, hierarchy: Hierarchy, segments: int 
     labels = hierarchy.labels(segments)
     count = len(hierarchy.segment_nodes(segments))
     appearance = mesh.appearance or Appearance()
-    target.write(b"# written by Cleave: group segment_k holds the faces with label k, in input order\n")
+    target.write(b"# written by Cleave: group k, counted from 0, holds the faces with label k, in input order\n")
     for lines in _vertex_lines(mesh, appearance):
         target.write(lines)
     slices = group(labels, count)
-    for label in range(count):
-        target.write(f"g segment_{label}\n".encode("ascii"))
-        for lines in _face_lines(mesh, appearance, slices.faces[slices.start[label] : slices.start[label + 1]]):
+    for label, name in enumerate(group_names(names, count)):
+        faces = slices.faces[slices.start[label] : slices.start[label + 1]]
+        target.write(f"g {name}\n".encode())
+        for of_input in appearance.groups_of(faces):
+            target.write(f"# group of the input: {comment(of_input)}\n".encode())
+        for lines in _face_lines(mesh, appearance, faces):
             target.write(lines)
 
 

@@ -10,6 +10,7 @@ from segcore.errors import InvalidParameters
 from segcore.hierarchy import Hierarchy
 from segcore.io.archive import FAST, member
 from segcore.io.lines import format_rows
+from segcore.io.names import SegmentNames, file_stems, group_names
 from segcore.io.parts import Part, closed_parts, segment_parts
 from segcore.mesh import Mesh, face_normals_and_areas
 
@@ -29,6 +30,7 @@ def write_parts(
     *,
     part_format: PartFormat = "stl",
     capped: bool = False,
+    names: SegmentNames | None = None,
 ) -> None:
     """Write a ZIP archive with a file for every segment: ``segment_0.stl``, ``segment_1.stl``, ...
 
@@ -39,6 +41,7 @@ def write_parts(
     target : a binary file; needs ``write`` and ``flush`` only.
     part_format : binary STL (float32 coordinates) or OBJ (exact ones).
     capped : close each part with caps, for printing; see :func:`segcore.io.parts.closed_parts`.
+    names : what segments are called, for files such as ``segment_3_wheel.stl``.
 
     Raises
     ------
@@ -51,16 +54,15 @@ def write_parts(
         raise InvalidParameters(f"STL files hold coordinates up to {_LARGEST:.3g}: write the parts as OBJ.")
     count = len(hierarchy.segment_nodes(segments))
     parts = (closed_parts if capped else segment_parts)(mesh, hierarchy, segments)
-    digits = len(str(count - 1))
+    stems, called = file_stems(names, count), group_names(names, count)
     with zipfile.ZipFile(target, "w", compresslevel=FAST) as archive:
         for part in parts:
-            info = member(f"segment_{part.label:0{digits}}.{part_format}", compressed=True)
+            info = member(f"{stems[part.label]}.{part_format}", compressed=True)
             with archive.open(info, "w", force_zip64=True) as file:
-                for piece in _PARTS[part_format](part):
-                    file.write(piece)
+                file.writelines(_PARTS[part_format](part, called[part.label]))
 
 
-def _stl(part: Part) -> Iterator[bytes]:
+def _stl(part: Part, _: str) -> Iterator[bytes]:
     yield _STL_NOTE.ljust(80) + np.uint32(len(part.faces)).astype("<u4").tobytes()
     for first in range(0, len(part.faces), _ROWS):
         corners = part.vertices[part.faces[first : first + _ROWS]]
@@ -71,10 +73,10 @@ def _stl(part: Part) -> Iterator[bytes]:
         yield table.tobytes()
 
 
-def _obj(part: Part) -> Iterator[bytes]:
-    yield f"o segment_{part.label}\n".encode("ascii")
+def _obj(part: Part, name: str) -> Iterator[bytes]:
+    yield f"o {name}\n".encode()
     yield from format_rows("v %r %r %r\n", part.vertices)
     yield from format_rows("f %d %d %d\n", part.faces + 1)
 
 
-_PARTS: dict[str, Callable[[Part], Iterator[bytes]]] = {"stl": _stl, "obj": _obj}
+_PARTS: dict[str, Callable[[Part, str], Iterator[bytes]]] = {"stl": _stl, "obj": _obj}

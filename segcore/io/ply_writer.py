@@ -7,6 +7,7 @@ from numpy.typing import NDArray
 
 from segcore.appearance import Appearance
 from segcore.hierarchy import Hierarchy
+from segcore.io.names import SegmentNames, segment_names
 from segcore.io.palette import color_bytes
 from segcore.mesh import Mesh
 
@@ -20,12 +21,23 @@ _APPEARANCE = {
 _FACE = np.dtype([("size", "u1"), ("corners", "<i4", 3), ("color", "u1", 3), ("label", "<i4")])
 
 
-def write_ply(target: BinaryIO, mesh: Mesh, hierarchy: Hierarchy, segments: int | None = None) -> None:
+def write_ply(
+    target: BinaryIO,
+    mesh: Mesh,
+    hierarchy: Hierarchy,
+    segments: int | None = None,
+    *,
+    names: SegmentNames | None = None,
+) -> None:
     """Write a binary little-endian PLY file: all vertices and all faces in input order.
 
     A face has the properties ``vertex_indices``, ``red``, ``green``, ``blue`` and ``int label``. Coordinates are
     ``float`` where that holds them exactly, else ``double``. A vertex keeps its normal, its texture coordinates
     (``s``, ``t``) and its colour where the input had them and had one of each for every vertex.
+
+    Parameters
+    ----------
+    names : what segments are called, for comments such as ``comment label 3 is wheel``.
 
     Raises
     ------
@@ -38,6 +50,7 @@ def write_ply(target: BinaryIO, mesh: Mesh, hierarchy: Hierarchy, segments: int 
         "ply",
         "format binary_little_endian 1.0",
         "comment written by Cleave: label is the segment of a face",
+        *_name_comments(names, len(hierarchy.segment_nodes(segments))),
         f"element vertex {len(mesh.vertices)}",
         *(f"property {_NAMES[dtype]} {name}" for name, dtype, _ in columns),
         f"element face {len(mesh.faces)}",
@@ -46,9 +59,14 @@ def write_ply(target: BinaryIO, mesh: Mesh, hierarchy: Hierarchy, segments: int 
         "property int label",
         "end_header\n",
     ]
-    target.write("\n".join(header).encode("ascii"))
+    target.write("\n".join(header).encode("ascii", "backslashreplace"))
     _write_vertices(target, columns, len(mesh.vertices))
     _write_faces(target, mesh, labels)
+
+
+def _name_comments(names: SegmentNames | None, count: int) -> list[str]:
+    called = segment_names(names, count)
+    return [f"comment label {label} is {called[label]}" for label in sorted(names or {}) if 0 <= label < count]
 
 
 def _vertex_columns(mesh: Mesh) -> list[tuple[str, str, NDArray[Any]]]:

@@ -11,7 +11,7 @@ from hypothesis import strategies as st
 from ply_files import ply
 from samples import DRESSED, INDICES, OBJ, OFF, SAMPLES, SQUARE, XYZ, gltf_square, gltf_with_attributes
 from threemf_files import Model3MF
-from trees import two_strips
+from trees import looks, two_strips
 from written import written
 
 from segcore.appearance import Appearance
@@ -20,8 +20,6 @@ from segcore.hierarchy import Hierarchy
 from segcore.io import read_mesh
 from segcore.io.result import read_result
 from segcore.mesh import Mesh
-
-AXES = np.vstack([np.eye(3), -np.eye(3)]).astype(np.float32)
 
 
 def read_look(data: bytes) -> Appearance:
@@ -36,30 +34,6 @@ def at_corners(mesh: Mesh) -> dict[str, list]:
     assert look is not None
     rows = mesh.faces if look.corners is None else look.corners
     return {name: values[rows].tolist() for name, values in look.row_arrays.items()}
-
-
-@st.composite
-def looks(draw: st.DrawFn) -> tuple[Mesh, Hierarchy]:
-    """Two strips whose corners may each look different."""
-    mesh, hierarchy = two_strips()
-    extra = draw(st.lists(st.sampled_from(mesh.faces.ravel().tolist()), max_size=6))
-    rows = len(mesh.vertices) + len(extra)
-    corners = mesh.faces.copy()
-    for i, vertex in enumerate(extra):
-        face, corner = draw(st.sampled_from(np.argwhere(mesh.faces == vertex).tolist()))
-        corners[face, corner] = len(mesh.vertices) + i
-    pick = st.lists(st.integers(0, 5), min_size=rows, max_size=rows)
-    sixteenths = st.lists(st.tuples(st.integers(-8, 32), st.integers(-8, 32)), min_size=rows, max_size=rows)
-    look = Appearance(
-        normals=AXES[draw(pick)],
-        uvs=np.array(draw(sixteenths), dtype=np.float32).reshape(-1, 2) / 16,
-        colors=np.array(draw(st.lists(st.tuples(*[st.integers(0, 255)] * 4), min_size=rows, max_size=rows)), np.uint8),
-        extra_vertex=np.array(extra, dtype=np.int32),
-        corners=corners if extra else None,
-        face_group=np.array([0, 0, 1, 1], dtype=np.int32),
-        group_names=("left <wheel>", "rïght"),
-    )
-    return Mesh(mesh.vertices, mesh.faces, None, look), hierarchy
 
 
 @given(looks())
@@ -246,7 +220,7 @@ def test_normals_without_direction_are_left_out() -> None:
 def test_an_appearance_of_another_mesh_is_refused() -> None:
     mesh, _ = two_strips()
     for look in (
-        Appearance(normals=AXES),
+        Appearance(normals=np.eye(3, dtype=np.float32)),
         Appearance(face_group=np.zeros(3, np.int32), group_names=("a",)),
         Appearance(uvs=np.zeros((11, 2), np.float32), extra_vertex=np.array([99], np.int32), corners=mesh.faces),
     ):

@@ -14,7 +14,7 @@ import pytest
 import trimesh
 from hypothesis import given, settings
 from soups import read
-from trees import segmentations, two_strips
+from trees import looks, segmentations, two_strips
 
 from segcore.errors import InvalidParameters
 from segcore.hierarchy import Hierarchy
@@ -25,9 +25,9 @@ VALIDATOR = Path(__file__).parent / "gltf_validator"
 Segmented = tuple[Mesh, Hierarchy, int]
 
 
-def glb(mesh: Mesh, hierarchy: Hierarchy, segments: int | None = None, all_levels: bool = False) -> bytes:
+def glb(mesh: Mesh, hierarchy: Hierarchy, segments: int | None = None, **options: bool) -> bytes:
     target = io.BytesIO()
-    write_glb(target, mesh, hierarchy, segments, all_levels=all_levels)
+    write_glb(target, mesh, hierarchy, segments, **options)
     return target.getvalue()
 
 
@@ -248,13 +248,16 @@ def test_the_khronos_validator_finds_no_errors_and_no_warnings(validator: Path, 
     for offset, size in ((0.0, 1.0), (1e7, 1.0), (0.0, 1e-30), (0.0, 1e30)):
         cases += [(*two_strips(offset, size), segments) for segments in (1, 2, 3)]
 
-    @given(segmentations())
-    @settings(max_examples=30, database=None, derandomize=True, deadline=None)
-    def add_case(segmented: Segmented) -> None:
-        cases.append(segmented)
+    @given(segmentations(), looks())
+    @settings(max_examples=20, database=None, derandomize=True, deadline=None)
+    def add_cases(segmented: Segmented, looking: tuple[Mesh, Hierarchy]) -> None:
+        cases.extend([segmented, (*looking, 2)])
 
-    add_case()
-    files = [glb(*segmented, all_levels=all_levels) for segmented in cases for all_levels in (False, True)]
+    add_cases()
+    choices = [
+        {"all_levels": all_levels, "features": features} for all_levels in (False, True) for features in (False, True)
+    ]
+    files = [glb(*segmented, **options) for segmented in cases for options in choices]
     paths = [tmp_path / f"{i}.glb" for i in range(len(files))]
     for path, data in zip(paths, files, strict=True):
         path.write_bytes(data)
