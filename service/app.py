@@ -26,8 +26,6 @@ from service.observed import ObservedRequests
 from service.openapi import complete
 from service.problems import handle_problems
 from service.results import ResultCache
-from worker.batches import BatchStore
-from worker.installation_secret import InstallationSecret
 from worker.opening import open_store
 from worker.queue import JobQueue, connect_impatiently
 from worker.quota import UploadQuota
@@ -82,10 +80,10 @@ def create_app(settings: Settings) -> FastAPI:
         view=QueueView(queue),
         quota=UploadQuota(queue.connection),
         results=ResultCache(store, settings.result_cache_bytes, settings.rendered_cache_bytes),
-        secret=InstallationSecret(settings.data_dir),
+        secret=store.secret,
         keys=keys,
         metrics=metrics,
-        batches=BatchStore(settings.data_dir),
+        batches=store.batches,
         keys_required=settings.auth == "required" or (settings.auth == "auto" and bool(keys.all())),
     )
     for module in _ROUTES:

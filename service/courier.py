@@ -39,7 +39,8 @@ class Courier:
 
     def round(self, at_s: float) -> None:
         """Deliver what is due at a time (in seconds since 1970); one courier of an installation has a letter."""
-        due = [job_id for job_id, letter in self.outbox.letters().items() if letter.due_at <= at_s]
+        letters = self.outbox.letters(but_of=self.store.pending.ids())
+        due = [job_id for job_id, letter in letters.items() if letter.due_at <= at_s]
         with ThreadPoolExecutor(_AT_A_TIME) as pool:
             list(pool.map(lambda job_id: self._deliver(job_id, at_s), due))
 
@@ -48,7 +49,7 @@ class Courier:
         if job is None or job.webhook_url is None:
             self.outbox.remove_old(job_id, _WITHOUT_JOB_S)  # it comes a moment before its job
         elif outcome is not None and self.queue.claim(f"webhook:{job_id}", self.name, _CLAIM_S):
-            letter = self.outbox.letters().get(job_id)  # another courier may have delivered it meanwhile
+            letter = self.outbox.letter(job_id)  # another courier may have delivered it meanwhile
             if letter is not None:
                 with about(job_id, job.traceparent):
                     self._try(job, outcome, letter, at_s)
@@ -91,11 +92,12 @@ def main() -> None:
     settings = load_settings()
     configure_logging(settings.log_level, settings.log_format, "courier")
     assert settings.redis_url, "the parent process sets CLEAVE_REDIS_URL"
+    store = open_store(settings)
     courier = Courier(
-        open_store(settings),
-        Outbox(settings.data_dir),
+        store,
+        store.outbox,
         JobQueue(connect_impatiently(settings.redis_url)),
-        InstallationSecret(settings.data_dir),
+        store.secret,
         settings,
         f"{socket.gethostname()}.{os.getpid()}",
     )
@@ -105,7 +107,7 @@ def main() -> None:
             courier.round(time.time())
         except (QueueError, OSError) as error:
             log.warning("webhooks are not sent at the moment: %s", error)
-        time.sleep(_LOOK_S)
+        time.sleep(max(_LOOK_S, store.look_s))
 
 
 if __name__ == "__main__":

@@ -11,6 +11,7 @@ from hypothesis import settings
 from hypothesis.configuration import set_hypothesis_home_dir
 from redis import Redis
 
+from buckets import CREDENTIALS, s3_server
 from service.queue_server import embedded_queue_server
 from support import wait_until
 from worker.opening import open_folder
@@ -45,6 +46,15 @@ def pytest_unconfigure() -> None:
 @pytest.fixture
 def store(tmp_path: Path) -> JobStore:
     return open_folder(tmp_path / "data")
+
+
+@pytest.fixture(scope="session")
+def s3_url() -> Iterator[str]:
+    """A bucket for this run of the tests, with the credentials for it in the environment."""
+    with pytest.MonkeyPatch.context() as patch, s3_server() as (url, _):
+        for name, value in CREDENTIALS.items():
+            patch.setenv(name, value)
+        yield url
 
 
 @pytest.fixture(scope="session")

@@ -1,16 +1,12 @@
-"""Batches: jobs that somebody wants to ask about together.
-
-<data>/batches/<id>.json
-"""
+"""Batches: jobs that somebody wants to ask about together."""
 
 from dataclasses import dataclass
 from datetime import datetime
-from pathlib import Path
 
 from pydantic import TypeAdapter
 
-from worker.durable import create_file
 from worker.jobs import is_job_id
+from worker.objects import ObjectStorage
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -25,23 +21,19 @@ _BATCH = TypeAdapter(Batch)
 
 
 class BatchStore:
-    def __init__(self, data_dir: Path) -> None:
-        self._folder = data_dir / "batches"
-        self._folder.mkdir(mode=0o700, parents=True, exist_ok=True)
+    def __init__(self, objects: ObjectStorage) -> None:
+        self._objects = objects
 
     def add(self, batch: Batch) -> None:
-        create_file(self._path(batch.id), _BATCH.dump_json(batch))
+        self._objects.create(_key(batch.id), _BATCH.dump_json(batch))
 
     def find(self, batch_id: str) -> Batch | None:
-        if not is_job_id(batch_id):
-            return None
-        try:
-            return _BATCH.validate_json(self._path(batch_id).read_bytes())
-        except FileNotFoundError:
-            return None
+        text = self._objects.get(_key(batch_id)) if is_job_id(batch_id) else None
+        return None if text is None else _BATCH.validate_json(text)
 
     def delete(self, batch_id: str) -> None:
-        self._path(batch_id).unlink(missing_ok=True)
+        self._objects.delete(_key(batch_id))
 
-    def _path(self, batch_id: str) -> Path:
-        return self._folder / f"{batch_id}.json"
+
+def _key(batch_id: str) -> str:
+    return f"batches/{batch_id}.json"

@@ -9,15 +9,19 @@ from typing import BinaryIO
 TEMPORARY_SUFFIX = ".tmp"
 
 
-def replace_file(path: Path, write: Callable[[BinaryIO], object]) -> None:
-    """Write a file so that its name never shows anything but the old bytes or all of the new ones."""
-    temporary = _write_temporary(path, write)
+def replace_file(path: Path, write: Callable[[BinaryIO], object], *, durable: bool = True) -> None:
+    """Write a file so that its name never shows anything but the old bytes or all of the new ones.
+
+    Where it need not be ``durable`` a crash of the machine may leave an empty file.
+    """
+    temporary = _write_temporary(path, write, durable=durable)
     try:
         os.replace(temporary, path)
     except OSError:
         temporary.unlink(missing_ok=True)
         raise
-    sync_folder(path.parent)
+    if durable:
+        sync_folder(path.parent)
 
 
 def create_file(path: Path, data: bytes) -> bool:
@@ -38,6 +42,12 @@ def sync_file(file: BinaryIO) -> None:
     os.fsync(file.fileno())
 
 
+def sync_path(path: Path) -> None:
+    """Make a file durable that somebody has written and closed."""
+    with path.open("rb") as file:
+        os.fsync(file.fileno())
+
+
 def sync_folder(folder: Path) -> None:
     """Make the names in a folder durable."""
     descriptor = os.open(folder, os.O_RDONLY | os.O_DIRECTORY)
@@ -47,12 +57,13 @@ def sync_folder(folder: Path) -> None:
         os.close(descriptor)
 
 
-def _write_temporary(path: Path, write: Callable[[BinaryIO], object]) -> Path:
+def _write_temporary(path: Path, write: Callable[[BinaryIO], object], *, durable: bool = True) -> Path:
     temporary = path.with_name(f".{path.name}.{secrets.token_hex(8)}{TEMPORARY_SUFFIX}")
     try:
         with temporary.open("xb") as file:
             write(file)
-            sync_file(file)
+            if durable:
+                sync_file(file)
     except BaseException:
         temporary.unlink(missing_ok=True)
         raise

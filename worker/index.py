@@ -1,50 +1,40 @@
-"""Which jobs there are, newest first, without a look into any of them: an empty file for each, named by its time.
+"""Which jobs there are, newest first, without a look into any of them: an empty object for each, named by its time.
 
-<data>/index/<owner>/<time>-<id>   an owner of None is the folder "_"
+A bucket lists names in ascending order, and the newest jobs are asked for first. So the names have the digits of the
+time turned around, 0 for 9 and 9 for 0; what others see of them, as cursors, is the time itself.
 """
 
-import heapq
-import os
 import re
-from pathlib import Path
 
-from worker.durable import sync_folder
 from worker.jobs import Job
+from worker.layout import NOBODY, entry_name
+from worker.objects import ObjectStorage
 
 CURSOR = r"^[0-9]{8}T[0-9]{12}-[0-9a-f]{32}$"
-_NOBODY = "_"  # not the name of an owner
+_FOLDER = "index"
+_TURNED = str.maketrans("0123456789", "9876543210")
 
 
 class JobIndex:
     """The entries of every owner's jobs; an entry may be there a moment before its job and after it."""
 
-    def __init__(self, folder: Path) -> None:
-        self._folder = folder
-        folder.mkdir(mode=0o700, parents=True, exist_ok=True)
+    def __init__(self, objects: ObjectStorage) -> None:
+        self._objects = objects
 
     def add(self, job: Job) -> None:
-        folder = self._of(job.owner)
-        folder.mkdir(mode=0o700, exist_ok=True)
-        (folder / entry_name(job)).touch()
-        sync_folder(folder)
+        self._objects.put(_key(job.owner, entry_name(job)), b"")
 
     def remove(self, job: Job) -> None:
-        (self._of(job.owner) / entry_name(job)).unlink(missing_ok=True)
+        self.remove_entry(job.owner, entry_name(job))
+
+    def remove_entry(self, owner: str | None, entry: str) -> None:
+        self._objects.delete(_key(owner, entry))
 
     def page(self, owner: str | None, before: str | None, limit: int) -> list[str]:
         """The names of the newest entries that are older than the entry ``before``, newest first."""
-        try:
-            names = os.listdir(self._of(owner))
-        except FileNotFoundError:
-            return []
-        return heapq.nlargest(limit, (name for name in names if before is None or name < before))
-
-    def _of(self, owner: str | None) -> Path:
-        return self._folder / (owner or _NOBODY)
-
-
-def entry_name(job: Job) -> str:
-    return f"{job.created_at:%Y%m%dT%H%M%S%f}-{job.id}"
+        after = _key(owner, before) if before else ""
+        found = self._objects.list_below(_folder(owner), after, limit)
+        return [turned(one.name) for one in found]
 
 
 def is_entry_name(text: str) -> bool:
@@ -53,3 +43,17 @@ def is_entry_name(text: str) -> bool:
 
 def job_id_of(entry: str) -> str:
     return entry[-32:]
+
+
+def turned(entry: str) -> str:
+    """The name under which an entry is stored, and the other way round."""
+    time, dash, job_id = entry.partition("-")
+    return time.translate(_TURNED) + dash + job_id
+
+
+def _folder(owner: str | None) -> str:
+    return f"{_FOLDER}/{owner or NOBODY}"
+
+
+def _key(owner: str | None, entry: str) -> str:
+    return f"{_folder(owner)}/{turned(entry)}"

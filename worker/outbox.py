@@ -1,18 +1,14 @@
-"""Messages that are still to be sent: one for each job that has a webhook, from its acceptance to its delivery.
+"""Messages that are still to be sent: one for each job that has a webhook, from its acceptance to its delivery."""
 
-<data>/outbox/<id>   {"failures": int, "due_at": seconds since 1970}
-"""
-
-import os
 import time
-from contextlib import suppress
 from dataclasses import dataclass
-from pathlib import Path
 
 from pydantic import TypeAdapter
 
-from worker.durable import replace_file
 from worker.jobs import is_job_id
+from worker.objects import ObjectInfo, ObjectStorage
+
+_FOLDER = "outbox"
 
 
 @dataclass(frozen=True, slots=True)
@@ -27,29 +23,36 @@ _LETTER = TypeAdapter(Letter)
 
 
 class Outbox:
-    def __init__(self, data_dir: Path) -> None:
-        self._folder = data_dir / "outbox"
-        self._folder.mkdir(mode=0o700, parents=True, exist_ok=True)
+    def __init__(self, objects: ObjectStorage) -> None:
+        self._objects = objects
 
     def put(self, job_id: str, letter: Letter) -> None:
-        replace_file(self._folder / job_id, lambda target: target.write(_LETTER.dump_json(letter)))
+        self._objects.put(_key(job_id), _LETTER.dump_json(letter))
 
-    def letters(self) -> dict[str, Letter]:
-        """What is still to be sent, by job."""
-        names = [name for name in os.listdir(self._folder) if is_job_id(name)]
-        found = {name: self._read(name) for name in names}
+    def job_ids(self) -> set[str]:
+        """The jobs about which somebody is still to be told."""
+        return {one.name for one in self._list()}
+
+    def letters(self, but_of: frozenset[str] | set[str] = frozenset()) -> dict[str, Letter]:
+        """What is still to be sent, by job, without that of some jobs."""
+        names = [one.name for one in self._list() if one.name not in but_of]
+        found = dict(zip(names, self._objects.each(self.letter, names), strict=True))
         return {name: letter for name, letter in found.items() if letter is not None}
 
+    def letter(self, job_id: str) -> Letter | None:
+        text = self._objects.get(_key(job_id))
+        return None if text is None else _LETTER.validate_json(text)
+
     def remove(self, job_id: str) -> None:
-        (self._folder / job_id).unlink(missing_ok=True)
+        self._objects.delete(_key(job_id))
 
     def remove_old(self, job_id: str, older_than_s: float) -> None:
-        with suppress(FileNotFoundError):
-            if (self._folder / job_id).stat().st_mtime < time.time() - older_than_s:
-                self.remove(job_id)
+        if any(one.name == job_id and one.modified_at < time.time() - older_than_s for one in self._list()):
+            self.remove(job_id)
 
-    def _read(self, name: str) -> Letter | None:
-        try:
-            return _LETTER.validate_json((self._folder / name).read_bytes())
-        except FileNotFoundError:
-            return None
+    def _list(self) -> list[ObjectInfo]:
+        return [one for one in self._objects.list_below(_FOLDER) if is_job_id(one.name)]
+
+
+def _key(job_id: str) -> str:
+    return f"{_FOLDER}/{job_id}"

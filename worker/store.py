@@ -1,44 +1,32 @@
-"""Where jobs live: one folder for each, the truth about every one of them.
+"""Where jobs live: the truth about every one of them, in whatever place keeps the bytes.
 
-    <data>/incoming/<random>/      a mesh that is being uploaded
-    <data>/pending/<id>[.<owner>]  empty: the job has no outcome yet (an index of jobs/, made before and removed after)
-    <data>/index/<owner>/          which jobs there are, by time
-    <data>/computed/<owner>/       which job has computed what
-    <data>/outbox/<id>             its webhook is still to be told
-    <data>/gone/<id>               the job was deleted; in it, whose it was
-    <data>/jobs/<id>/job.json      the job is accepted
-                    /mesh          the bytes that the client sent
-                    /attempt-<n>.json
-                    /result.cleave mesh and hierarchy
-                    /manifest.json the outcome, written last and once: the job is finished
-
-The folder of a job appears by a rename when all of it is durable, so a job is accepted whole or not at all.
+A job is accepted when its record is created, after everything else that belongs to it, and finished when its manifest
+is, which only the first writer does. The names of the objects are in ``worker.layout``.
 """
 
-import errno
-import os
-import shutil
-import time
-from collections.abc import Callable
-from dataclasses import dataclass, replace
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+from datetime import UTC, datetime, timedelta
 from pathlib import Path
-from typing import BinaryIO, TypeVar
+from typing import BinaryIO
 
-from pydantic import TypeAdapter
-
+from worker.batches import BatchStore
 from worker.computed import ComputedIndex
-from worker.durable import TEMPORARY_SUFFIX, create_file, replace_file, sync_folder
-from worker.index import JobIndex, entry_name, is_entry_name, job_id_of
-from worker.jobs import Attempt, Cause, Job, Outcome, Succeeded, is_job_id, new_job_id, now
+from worker.deletion import Deletions
+from worker.file_cache import FileCache
+from worker.index import JobIndex, is_entry_name, job_id_of
+from worker.installation_secret import InstallationSecret
+from worker.jobs import Attempt, Cause, Job, Outcome, Succeeded
+from worker.layout import MESH, entry_name, job_key, mesh_name
+from worker.objects import ObjectStorage, StoreError
 from worker.outbox import Letter, Outbox
 from worker.pending import PendingJobs
+from worker.records import JobState, Records
+from worker.results import ResultFiles
+from worker.spool import Spool
 from worker.upload import MeshUpload
 
-_JOB = TypeAdapter(Job)
-_ATTEMPT = TypeAdapter(Attempt)
-_OUTCOME: TypeAdapter[Outcome] = TypeAdapter(Outcome)
-
-Document = TypeVar("Document")
+_ON_ITS_WAY = timedelta(hours=1)  # an entry without a job may be of one that is about to come
 
 
 class UnknownJob(LookupError):  # noqa: N818
@@ -58,21 +46,28 @@ class JobPage:
 
 
 class JobStore:
-    """The jobs of a folder; processes and machines that share the folder share the jobs."""
+    """The jobs of an installation; processes and machines that share the place of the objects share the jobs."""
 
-    def __init__(self, data_dir: Path) -> None:
-        self._jobs = data_dir / "jobs"
-        self._incoming = data_dir / "incoming"
-        self._gone = data_dir / "gone"
-        self._index = JobIndex(data_dir / "index")
-        self._computed = ComputedIndex(data_dir / "computed")
-        self._outbox = Outbox(data_dir)
-        self._pending = PendingJobs(data_dir / "pending", self._jobs)
-        for folder in (self._jobs, self._incoming, self._gone):
-            folder.mkdir(mode=0o700, parents=True, exist_ok=True)
+    def __init__(self, objects: ObjectStorage, spool: Spool, cache: FileCache | None = None) -> None:
+        self.objects = objects
+        self.outbox = Outbox(objects)
+        self.batches = BatchStore(objects)
+        self.secret = InstallationSecret(objects)
+        self.pending = PendingJobs(objects)
+        self.deletions = Deletions(objects)
+        self._spool = spool
+        self._records = Records(objects)
+        self._results = ResultFiles(objects, spool, cache)
+        self._index = JobIndex(objects)
+        self._computed = ComputedIndex(objects)
+
+    @property
+    def look_s(self) -> float:
+        """The least pause between two looks for news of a job."""
+        return self.objects.look_s
 
     def begin_upload(self) -> MeshUpload:
-        return MeshUpload(self._incoming / new_job_id())
+        return self._spool.begin_upload()
 
     def accept(self, job: Job, upload: MeshUpload) -> None:
         """Take a job in: when this returns, it will be finished, whatever happens to the queue or the power.
@@ -82,22 +77,20 @@ class JobStore:
         JobExists
             Where there is a job of this id already; it stays as it is.
         """
-        if self._folder(job.id).exists():
+        if self._records.has_job(job.id):
             raise JobExists(job.id)
         upload.make_durable()
-        create_file(upload.folder / "job.json", _JOB.dump_json(job))
-        self._index.add(job)
-        if job.webhook_url is not None:
-            self._outbox.put(job.id, Letter())
-        self._pending.add(job)
         try:
-            os.rename(upload.folder, self._folder(job.id))
-        except OSError as error:
-            self._index.remove(job)
-            if error.errno not in (errno.ENOTEMPTY, errno.EEXIST):
-                raise
-            raise JobExists(job.id) from error
-        sync_folder(self._jobs)
+            self._prepare(job, upload.path)
+            is_new = self._records.create_job(job)
+        except StoreError:
+            raise  # the job may be accepted after all: what is there is left to whoever looks for it later
+        except OSError:
+            self._clear_away(job)
+            raise
+        if not is_new:
+            self._clear_away(job)
+            raise JobExists(job.id)
         self._computed.note(job)
 
     def computed_before(self, job: Job) -> Job | None:
@@ -108,20 +101,27 @@ class JobStore:
     def page(self, owner: str | None, cursor: str | None, limit: int) -> JobPage:
         """The jobs of an owner, newest first, from a cursor on."""
         entries = self._index.page(owner, cursor, limit + 1)
-        found = ((entry, self.job(job_id_of(entry))) for entry in entries[:limit] if is_entry_name(entry))
-        jobs = [job for entry, job in found if job is not None and entry_name(job) == entry]
+        shown = [entry for entry in entries[:limit] if is_entry_name(entry)]
+        found = dict(zip(shown, self._records.jobs([job_id_of(entry) for entry in shown]), strict=True))
+        oldest = f"{datetime.now(UTC) - _ON_ITS_WAY:%Y%m%dT%H%M%S%f}"
+        for entry in (entry for entry, job in found.items() if job is None and entry < oldest):
+            self._index.remove_entry(owner, entry)
+        jobs = [job for entry, job in found.items() if job is not None and entry_name(job) == entry]
         return JobPage(jobs, entries[limit - 1] if len(entries) > limit else None)
 
     def job(self, job_id: str) -> Job | None:
-        return _read(self._folder(job_id) / "job.json", _JOB) if is_job_id(job_id) else None
+        return self._records.job(job_id)
 
     def outcome(self, job_id: str) -> Outcome | None:
-        return _read(self._folder(job_id) / "manifest.json", _OUTCOME)
+        return self._records.outcome(job_id)
+
+    def states(self, jobs: Sequence[Job]) -> dict[str, JobState]:
+        """How some jobs are, by their ids."""
+        return self._records.states([job.id for job in jobs])
 
     def has_ended(self, job_id: str) -> bool:
         """Whether a job has an outcome, or is no longer there: cheap enough to be asked often."""
-        folder = self._folder(job_id)
-        return (folder / "manifest.json").exists() or not (folder / "job.json").exists()
+        return self._records.has_outcome(job_id) or not self._records.has_job(job_id)
 
     def finish(self, job_id: str, outcome: Outcome) -> Outcome:
         """Give a job its outcome, unless it has one; the outcome that stands.
@@ -131,31 +131,30 @@ class JobStore:
         UnknownJob
             Where the job was deleted.
         """
-        folder = self._folder(job_id)
-        try:
-            create_file(folder / "manifest.json", _OUTCOME.dump_json(outcome))
-        except FileNotFoundError as error:
-            raise UnknownJob(job_id) from error
         job = self.job(job_id)
-        if job is not None:
-            self._pending.remove(job)
-        return self.outcome(job_id) or outcome
+        if job is None:
+            raise UnknownJob(job_id)
+        self._records.create_outcome(job_id, outcome)
+        standing = self.outcome(job_id)
+        self._unless_deleted(job_id, lambda: self._records.remove_outcome(job_id))
+        self.pending.remove(job)
+        return standing or outcome
 
     def unfinished(self) -> dict[str, str | None]:
         """The accepted jobs without an outcome, oldest first, and their owners."""
-        return self._pending.all()
+        return self.pending.all()
 
     def unfinished_of(self, owner: str | None) -> list[str]:
         """Those of one owner, oldest first."""
-        return self._pending.of(owner)
+        return self.pending.of(owner)
 
     def count_unfinished(self, owner: str | None) -> tuple[int, int]:
         """How many there are: of everybody, and of one owner; cheap, and now and then one too many."""
-        return self._pending.count(owner)
+        return self.pending.count(owner)
 
     def oldest_s(self, at_s: float) -> float:
         """The age of the oldest of them at a time in seconds since 1970; 0 where there is none."""
-        return self._pending.oldest_s(at_s)
+        return self.pending.oldest_s(at_s)
 
     def begin_attempt(self, job_id: str, worker: str) -> Attempt:
         """Count one more run of a job, before it starts.
@@ -165,14 +164,10 @@ class JobStore:
         UnknownJob
             Where the job was deleted.
         """
-        folder = self._folder(job_id)
-        attempt = Attempt(number=len(self.attempts(job_id)) + 1, worker=worker, started_at=now())
-        try:
-            while not create_file(_attempt_file(folder, attempt), _ATTEMPT.dump_json(attempt)):
-                attempt = replace(attempt, number=attempt.number + 1)
-        except FileNotFoundError as error:
-            raise UnknownJob(job_id) from error
-        _remove_torn_files(folder)
+        self._unless_deleted(job_id)
+        attempt = self._records.begin_attempt(job_id, worker)
+        self._unless_deleted(job_id, lambda: self._records.remove_attempt(job_id, attempt))
+        self._spool.remove_results(job_id)
         return attempt
 
     def end_attempt(self, job_id: str, attempt: Attempt, cause: Cause) -> None:
@@ -183,28 +178,37 @@ class JobStore:
         UnknownJob
             Where the job was deleted.
         """
-        ended = _ATTEMPT.dump_json(replace(attempt, ended_at=now(), cause=cause))
-        try:
-            replace_file(_attempt_file(self._folder(job_id), attempt), lambda target: target.write(ended))
-        except FileNotFoundError as error:
-            raise UnknownJob(job_id) from error
+        self._unless_deleted(job_id)
+        self._records.end_attempt(job_id, attempt, cause)
+        self._unless_deleted(job_id, lambda: self._records.remove_attempt(job_id, attempt))
 
     def withdraw_attempt(self, job_id: str, attempt: Attempt) -> None:
         """Uncount a run that was stopped through no fault of the job."""
-        _attempt_file(self._folder(job_id), attempt).unlink(missing_ok=True)
+        self._records.remove_attempt(job_id, attempt)
 
     def attempts(self, job_id: str) -> list[Attempt]:
         """The runs of a job that count, in order."""
-        files = self._folder(job_id).glob("attempt-*.json")
-        read = (_read(file, _ATTEMPT) for file in files)
-        return sorted((attempt for attempt in read if attempt), key=lambda attempt: attempt.number)
+        return self._records.attempts(job_id)
 
     def open_mesh(self, job_id: str) -> BinaryIO:
-        return (self._folder(job_id) / "mesh").open("rb")
+        """What the client sent; a FileNotFoundError where the store has lost it."""
+        job = self.job(job_id)
+        try:
+            return self.objects.open(job_key(job_id, MESH if job is None else mesh_name(job)))
+        except FileNotFoundError:
+            return self.objects.open(job_key(job_id, MESH))
 
     def write_result(self, job_id: str, write: Callable[[BinaryIO], object]) -> None:
-        """Store the result file, whole; a second writer of the same job writes the same bytes."""
-        replace_file(self._folder(job_id) / "result.cleave", write)
+        """Store the result file, whole; a second writer of the same job writes the same bytes.
+
+        Raises
+        ------
+        UnknownJob
+            Where the job was deleted.
+        """
+        self._unless_deleted(job_id)
+        self._results.write(job_id, write)
+        self._unless_deleted(job_id, lambda: self._results.remove(job_id))
 
     def open_result(self, job_id: str) -> BinaryIO:
         """The result file of a job that succeeded.
@@ -215,9 +219,13 @@ class JobStore:
             Where the job was deleted.
         """
         try:
-            return (self._folder(job_id) / "result.cleave").open("rb")
+            return self._results.open(job_id)
         except FileNotFoundError as error:
             raise UnknownJob(job_id) from error
+
+    def result_url(self, job_id: str, valid_s: float) -> str | None:
+        """An address from which anybody can fetch the result file for a while; None where the store has none."""
+        return self._results.presigned_url(job_id, valid_s)
 
     def delete(self, job_id: str) -> None:
         """Remove a job and all its files; for others it disappears at once. What stays is that it was there.
@@ -227,69 +235,65 @@ class JobStore:
         UnknownJob
             Where there is none.
         """
-        job, doomed = self.job(job_id), self._incoming / new_job_id()
+        job = self.job(job_id)
         if job is None:
             raise UnknownJob(job_id)
-        replace_file(self._gone / job_id, lambda target: target.write((job.owner or "").encode()))
-        try:
-            os.rename(self._folder(job_id), doomed)
-        except FileNotFoundError as error:
-            raise UnknownJob(job_id) from error
-        self._index.remove(job)
-        self._computed.remove(job)
-        self._pending.remove(job)
-        shutil.rmtree(doomed, ignore_errors=True)
+        self.deletions.begin(job)
+        self._remove(job)
+
+    def finish_deletions(self, begun_s: float) -> None:
+        """End the deletions that were begun longer ago than this and not ended, since the process died."""
+        for job in self.deletions.begun_before(begun_s):
+            self._remove(job)
 
     def was_deleted(self, job_id: str, owner: str | None) -> bool:
         """Whether this owner had a job of this id; it is known for some weeks."""
-        try:
-            return is_job_id(job_id) and (self._gone / job_id).read_text() == (owner or "")
-        except FileNotFoundError:
-            return False
+        return self.deletions.was_deleted(job_id, owner)
 
     def forget_deleted(self, deleted_s: float) -> None:
         """Forget the jobs that were deleted longer ago than this."""
-        oldest = time.time() - deleted_s
-        for trace in os.scandir(self._gone):
-            if _modified_at(Path(trace)) < oldest:
-                Path(trace).unlink(missing_ok=True)
+        self.deletions.forget(deleted_s)
 
     def remove_abandoned_uploads(self, untouched_s: float) -> None:
-        """Remove what uploads left behind whose process died in the middle."""
-        oldest = time.time() - untouched_s
-        for folder in self._incoming.iterdir():
-            if max((_modified_at(path) for path in (folder, *folder.glob("*"))), default=0.0) < oldest:
-                shutil.rmtree(folder, ignore_errors=True)
+        """Remove what uploads and runs left on this machine whose process died in the middle."""
+        self._spool.remove_abandoned(untouched_s)
 
     def check_writable(self) -> None:
         """Raise an OSError where jobs cannot be written here."""
+        self.objects.check_writable()
         with self.begin_upload() as probe:
-            create_file(probe.folder / "probe", b"?")
+            probe.write(b"?")
+            probe.make_durable()
 
-    def _folder(self, job_id: str) -> Path:
-        if not is_job_id(job_id):
-            raise ValueError(f"Not the id of a job: {job_id!r}.")
-        return self._jobs / job_id
+    def _prepare(self, job: Job, mesh: Path) -> None:
+        """Write what belongs to a job that is not accepted yet; its marker first, by which all of it is found."""
+        self.pending.add(job)
+        self.objects.put_file(job_key(job.id, mesh_name(job)), mesh)
+        self._index.add(job)
+        if job.webhook_url is not None:
+            self.outbox.put(job.id, Letter())
 
+    def _clear_away(self, job: Job) -> None:
+        """Remove what was prepared for a job that is not accepted, but not what belongs to another of its id."""
+        accepted = self.job(job.id)
+        if accepted is None or mesh_name(accepted) != mesh_name(job):
+            self.objects.delete(job_key(job.id, mesh_name(job)))
+        self._index.remove(job)
+        if accepted is None:
+            self.outbox.remove(job.id)
+        if accepted is None or entry_name(accepted) != entry_name(job):
+            self.pending.remove(job)
 
-def _attempt_file(folder: Path, attempt: Attempt) -> Path:
-    return folder / f"attempt-{attempt.number}.json"
+    def _remove(self, job: Job) -> None:
+        self.deletions.remove_objects(job)
+        self._results.drop(job.id)
+        self._index.remove(job)
+        self._computed.remove(job)
+        self.pending.remove(job)
+        self.deletions.end(job)
 
-
-def _read(path: Path, adapter: TypeAdapter[Document]) -> Document | None:
-    try:
-        return adapter.validate_json(path.read_bytes())
-    except (FileNotFoundError, NotADirectoryError):
-        return None
-
-
-def _remove_torn_files(folder: Path) -> None:
-    for torn in folder.glob(f".*{TEMPORARY_SUFFIX}"):
-        torn.unlink(missing_ok=True)
-
-
-def _modified_at(path: Path) -> float:
-    try:
-        return path.stat().st_mtime
-    except FileNotFoundError:
-        return 0.0
+    def _unless_deleted(self, job_id: str, undo: Callable[[], None] = lambda: None) -> None:
+        """Raise UnknownJob where a job was deleted, and take back what was written for it meanwhile."""
+        if not self._records.has_job(job_id):
+            undo()
+            raise UnknownJob(job_id)

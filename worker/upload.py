@@ -16,9 +16,10 @@ class MeshUpload:
     def __init__(self, folder: Path) -> None:
         folder.mkdir(mode=0o700)
         self.folder = folder
+        self.path = folder / "mesh"
         self.size_bytes = 0
         self._digest = hashlib.sha256()
-        self._file = (folder / "mesh").open("xb")
+        self._file = self.path.open("xb")
 
     def __enter__(self) -> "MeshUpload":
         return self

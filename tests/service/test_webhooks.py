@@ -17,9 +17,8 @@ from standardwebhooks import Webhook, WebhookVerificationError
 from service.courier import BACK_OFF_S, Courier
 from service.webhook import Undeliverable, objection_to, send
 from support import sphere
-from worker.installation_secret import InstallationSecret
 from worker.jobs import now
-from worker.outbox import Outbox
+from worker.opening import open_folder
 from worker.queue import JobQueue
 from worker.settings import Settings
 from worker.store import JobStore
@@ -69,8 +68,7 @@ def inside(settings: Settings) -> Settings:
 
 @pytest.fixture
 def courier(store: JobStore, queue: JobQueue, inside: Settings) -> Courier:
-    folder = inside.data_dir
-    return Courier(store, Outbox(folder), queue, InstallationSecret(folder), inside, "courier")
+    return Courier(store, store.outbox, queue, store.secret, inside, "courier")
 
 
 @pytest.fixture
@@ -179,4 +177,4 @@ def test_what_is_sent_is_kept_until_it_has_arrived(tmp_path: Path, courier: Cour
     """A courier that dies in the middle leaves the letter."""
     with serving(inside) as client:
         client.post("/v1/jobs", params={"webhook": "http://127.0.0.1:1/"}, content=b"abc")
-    assert len(Outbox(tmp_path / "data").letters()) == len(courier.outbox.letters()) == 1
+    assert len(open_folder(tmp_path / "data").outbox.letters()) == len(courier.outbox.letters()) == 1

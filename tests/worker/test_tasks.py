@@ -99,7 +99,7 @@ def test_a_mesh_that_the_store_lost_is_a_failure_with_a_reason(
     store: JobStore, settings: Settings, tmp_path: Path
 ) -> None:
     job = accepted(store, TETRAHEDRON)
-    (tmp_path / "data" / "jobs" / job.id / "mesh").unlink()
+    (tmp_path / "data" / "jobs" / job.id / f"mesh-{job.sha256}").unlink()
     perform(store, settings, job.id, ignore)
     outcome = store.outcome(job.id)
     assert isinstance(outcome, Failed)

@@ -1,0 +1,98 @@
+"""What the store says about a job: its record, its runs, its outcome."""
+
+from collections import OrderedDict
+from dataclasses import dataclass, replace
+from typing import TypeVar
+
+from pydantic import TypeAdapter
+
+from worker.jobs import Attempt, Cause, Job, Outcome, is_job_id, now
+from worker.layout import MANIFEST, RECORD, job_folder, job_key
+from worker.objects import ObjectStorage
+
+JOB = TypeAdapter(Job)
+_ATTEMPT = TypeAdapter(Attempt)
+_OUTCOME: TypeAdapter[Outcome] = TypeAdapter(Outcome)
+_REMEMBERED = 10_000  # outcomes
+
+Document = TypeVar("Document")
+
+
+@dataclass(frozen=True, slots=True)
+class JobState:
+    """How a job is, as far as the store knows."""
+
+    outcome: Outcome | None
+    attempts: list[Attempt]  # those that count, in order
+
+
+class Records:
+    def __init__(self, objects: ObjectStorage) -> None:
+        self._objects = objects
+        self._outcomes: OrderedDict[str, Outcome] = OrderedDict()  # they never change
+
+    def job(self, job_id: str) -> Job | None:
+        return self._read(job_key(job_id, RECORD), JOB) if is_job_id(job_id) else None
+
+    def has_job(self, job_id: str) -> bool:
+        return self._objects.exists(job_key(job_id, RECORD))
+
+    def create_job(self, job: Job) -> bool:
+        """Whether this is now the job of this id."""
+        return self._objects.create(job_key(job.id, RECORD), JOB.dump_json(job))
+
+    def outcome(self, job_id: str) -> Outcome | None:
+        key = job_key(job_id, MANIFEST)
+        known = self._outcomes.get(job_id) if self._objects.look_s else None
+        outcome = known or self._read(key, _OUTCOME)
+        if outcome is not None and self._objects.look_s:
+            self._outcomes[job_id] = outcome
+            if len(self._outcomes) > _REMEMBERED:
+                self._outcomes.popitem(last=False)
+        return outcome
+
+    def has_outcome(self, job_id: str) -> bool:
+        return job_id in self._outcomes or self._objects.exists(job_key(job_id, MANIFEST))
+
+    def create_outcome(self, job_id: str, outcome: Outcome) -> None:
+        """Write it, unless there is one."""
+        self._objects.create(job_key(job_id, MANIFEST), _OUTCOME.dump_json(outcome))
+
+    def remove_outcome(self, job_id: str) -> None:
+        self._objects.delete(job_key(job_id, MANIFEST))
+        self._outcomes.pop(job_id, None)
+
+    def attempts(self, job_id: str) -> list[Attempt]:
+        """The runs that count, in order."""
+        keys = [one.key for one in self._objects.list_below(job_folder(job_id)) if one.name.startswith("attempt-")]
+        found = (self._read(key, _ATTEMPT) for key in keys)
+        return sorted((attempt for attempt in found if attempt), key=lambda attempt: attempt.number)
+
+    def begin_attempt(self, job_id: str, worker: str) -> Attempt:
+        attempt = Attempt(number=len(self.attempts(job_id)) + 1, worker=worker, started_at=now())
+        while not self._objects.create(_attempt_key(job_id, attempt), _ATTEMPT.dump_json(attempt)):
+            attempt = replace(attempt, number=attempt.number + 1)
+        return attempt
+
+    def end_attempt(self, job_id: str, attempt: Attempt, cause: Cause) -> None:
+        ended = replace(attempt, ended_at=now(), cause=cause)
+        self._objects.put(_attempt_key(job_id, attempt), _ATTEMPT.dump_json(ended))
+
+    def remove_attempt(self, job_id: str, attempt: Attempt) -> None:
+        self._objects.delete(_attempt_key(job_id, attempt))
+
+    def states(self, job_ids: list[str]) -> dict[str, JobState]:
+        """How some jobs are."""
+        found = self._objects.each(lambda job_id: JobState(self.outcome(job_id), self.attempts(job_id)), job_ids)
+        return dict(zip(job_ids, found, strict=True))
+
+    def jobs(self, job_ids: list[str]) -> list[Job | None]:
+        return self._objects.each(self.job, job_ids)
+
+    def _read(self, key: str, adapter: TypeAdapter[Document]) -> Document | None:
+        text = self._objects.get(key)
+        return None if text is None else adapter.validate_json(text)
+
+
+def _attempt_key(job_id: str, attempt: Attempt) -> str:
+    return job_key(job_id, f"attempt-{attempt.number}.json")

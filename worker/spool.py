@@ -1,0 +1,52 @@
+"""Files of this machine that are on their way into the store.
+
+<spool>/<random>/mesh          an upload
+<spool>/<id>-<random>.result   what a running job writes
+"""
+
+import secrets
+import shutil
+import time
+from pathlib import Path
+
+from worker.jobs import new_job_id
+from worker.upload import MeshUpload
+
+
+class Spool:
+    def __init__(self, folder: Path) -> None:
+        self.folder = folder
+        folder.mkdir(mode=0o700, parents=True, exist_ok=True)
+
+    def begin_upload(self) -> MeshUpload:
+        return MeshUpload(self.folder / new_job_id())
+
+    def result_file(self, job_id: str) -> Path:
+        """A new place for the result of a job."""
+        return self.folder / f"{job_id}-{secrets.token_hex(8)}.result"
+
+    def remove_results(self, job_id: str) -> None:
+        """Remove what killed runs of a job were writing."""
+        for torn in self.folder.glob(f"{job_id}-*.result"):
+            torn.unlink(missing_ok=True)
+
+    def remove_abandoned(self, untouched_s: float) -> None:
+        """Remove what processes left behind that died while they wrote."""
+        oldest = time.time() - untouched_s
+        for path in self.folder.iterdir():
+            if max((_modified_at(one) for one in (path, *path.glob("*"))), default=0.0) < oldest:
+                _remove(path)
+
+
+def _remove(path: Path) -> None:
+    if path.is_dir():
+        shutil.rmtree(path, ignore_errors=True)
+    else:
+        path.unlink(missing_ok=True)
+
+
+def _modified_at(path: Path) -> float:
+    try:
+        return path.stat().st_mtime
+    except FileNotFoundError:
+        return 0.0
