@@ -96,5 +96,7 @@ def partial_path(target: str | os.PathLike[str]) -> Path:
     return path.with_name(f".{path.name}.{os.getpid()}.part")
 
 
-def texts(params: Mapping[str, object]) -> dict[str, str]:
-    return {name: str(value) for name, value in params.items() if value is not None}
+def texts(params: Mapping[str, object]) -> dict[str, str | list[str]]:
+    """Parameters of an address; those that are lists are given several times, those that are None not at all."""
+    given = {name: value for name, value in params.items() if value is not None}
+    return {name: [*map(str, value)] if isinstance(value, list) else str(value) for name, value in given.items()}

@@ -8,7 +8,9 @@ from fastapi import APIRouter, Query, Request
 from starlette.responses import Response
 
 from segcore.io.glb import write_glb
+from segcore.io.obj_writer import write_obj
 from segcore.io.parts_writer import write_parts
+from segcore.io.ply_writer import write_ply
 from segcore.io.png import write_png
 from segcore.io.result import Segmentation
 from segcore.io.threemf_writer import write_3mf
@@ -19,6 +21,7 @@ from service.answers import Rendition, answer_rendition, rendition_responses
 from service.context import Context, ContextOf
 from service.levels import Level, LevelOf
 from service.lookup import known_job, result_of
+from service.part_names import PartNames, named
 from service.result_routes import LEVEL_PROBLEMS
 from service.routes import JobId
 
@@ -43,6 +46,7 @@ def get_glb(
     context: ContextOf,
     caller: CallerOf,
     level: LevelOf,
+    names: PartNames,
     levels: Annotated[
         Literal["all"] | None,
         Query(description="Every level in one file: a node per node of the hierarchy, a material variant per level."),
@@ -51,21 +55,33 @@ def get_glb(
     """The mesh as binary glTF, a named node and a colour for every segment."""
 
     def write(target: BinaryIO, result: Segmentation, count: int) -> None:
-        write_glb(target, result.mesh, result.hierarchy, count, all_levels=levels == "all")
+        write_glb(target, result.mesh, result.hierarchy, count, all_levels=levels == "all", names=names)
 
-    return _model(request, context, caller, job_id, "glb", level, write, f"levels={levels or 'one'}")
+    return _model(request, context, caller, job_id, "glb", level, write, f"levels={levels or 'one'}{named(names)}")
 
 
 @router.get("/model.ply", response_class=Response, responses=_responses("ply"))
-def get_ply(job_id: JobId, request: Request, context: ContextOf, caller: CallerOf, level: LevelOf) -> Response:
+def get_ply(
+    job_id: JobId, request: Request, context: ContextOf, caller: CallerOf, level: LevelOf, names: PartNames
+) -> Response:
     """The mesh as binary PLY with a colour and a label for every face."""
-    return _model(request, context, caller, job_id, "ply", level, _plain("ply"))
+
+    def write(target: BinaryIO, result: Segmentation, count: int) -> None:
+        write_ply(target, result.mesh, result.hierarchy, count, names=names)
+
+    return _model(request, context, caller, job_id, "ply", level, write, named(names))
 
 
 @router.get("/model.obj", response_class=Response, responses=_responses("obj"))
-def get_obj(job_id: JobId, request: Request, context: ContextOf, caller: CallerOf, level: LevelOf) -> Response:
+def get_obj(
+    job_id: JobId, request: Request, context: ContextOf, caller: CallerOf, level: LevelOf, names: PartNames
+) -> Response:
     """The mesh as OBJ with a group for every segment."""
-    return _model(request, context, caller, job_id, "obj", level, _plain("obj"))
+
+    def write(target: BinaryIO, result: Segmentation, count: int) -> None:
+        write_obj(target, result.mesh, result.hierarchy, count, names=names)
+
+    return _model(request, context, caller, job_id, "obj", level, write, named(names))
 
 
 @router.get("/model.3mf", response_class=Response, responses=_responses("3mf"))
@@ -75,14 +91,15 @@ def get_3mf(
     context: ContextOf,
     caller: CallerOf,
     level: LevelOf,
+    names: PartNames,
     capped: Capped = False,
 ) -> Response:
     """The mesh as 3MF with an object for every segment."""
 
     def write(target: BinaryIO, result: Segmentation, count: int) -> None:
-        write_3mf(target, result.mesh, result.hierarchy, count, capped=capped)
+        write_3mf(target, result.mesh, result.hierarchy, count, capped=capped, names=names)
 
-    return _model(request, context, caller, job_id, "3mf", level, write, f"capped={capped}")
+    return _model(request, context, caller, job_id, "3mf", level, write, f"capped={capped}{named(names)}")
 
 
 @router.get("/parts.zip", response_class=Response, responses=_responses("zip"))
@@ -92,15 +109,17 @@ def get_parts(
     context: ContextOf,
     caller: CallerOf,
     level: LevelOf,
+    names: PartNames,
     part_format: Annotated[Literal["stl", "obj"], Query(description="The format of the files in it.")] = "stl",
     capped: Capped = False,
 ) -> Response:
     """A ZIP archive with a file for every segment."""
 
     def write(target: BinaryIO, result: Segmentation, count: int) -> None:
-        write_parts(target, result.mesh, result.hierarchy, count, part_format=part_format, capped=capped)
+        write_parts(target, result.mesh, result.hierarchy, count, part_format=part_format, capped=capped, names=names)
 
-    return _model(request, context, caller, job_id, "zip", level, write, f"part_format={part_format}&capped={capped}")
+    options = f"part_format={part_format}&capped={capped}{named(names)}"
+    return _model(request, context, caller, job_id, "zip", level, write, options)
 
 
 @router.get(
@@ -141,7 +160,7 @@ def _model(
     name: str,
     level: Level,
     write: Write,
-    options: str = "",
+    options: str,
 ) -> Response:
     job = known_job(context, caller, job_id)
     cut = level.of(result_of(context, job))
@@ -159,10 +178,6 @@ def _model(
             file_name=f"{job.id}{WRITERS[name].extension}",
         ),
     )
-
-
-def _plain(name: str) -> Write:
-    return lambda target, result, count: WRITERS[name].write(target, result.mesh, result.hierarchy, count)
 
 
 def _written(write: Callable[[BinaryIO], object]) -> bytes:

@@ -65,6 +65,13 @@ def test_a_cut_by_hand_comes_out_as_it_is_seen_with_its_names(visit: Visit, job:
     scene = trimesh.load_scene(io.BytesIO(take(visit, "glb")[1]), file_type="glb")
     node = next(name for name in scene.graph.nodes_geometry if name == "Ärm")
     assert len(scene.geometry[scene.graph[node][1]].faces) == by_name["Ärm"]
+    label = labels["names"].index("Ärm")
+    assert f"comment label {label} is ".encode() in take(visit, "ply")[1]
+    assert "g Ärm" in take(visit, "obj")[1].decode().splitlines()
+    _, package = take(visit, "3mf")
+    assert 'name="Ärm"' in zipfile.ZipFile(io.BytesIO(package)).read("3D/3dmodel.model").decode()
+    _, archive = take(visit, "zip")
+    assert f"segment_{label}_Ärm.stl" in zipfile.ZipFile(io.BytesIO(archive)).namelist()
 
 
 @pytest.mark.parametrize("by_hand", [False, True])

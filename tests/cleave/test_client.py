@@ -48,6 +48,8 @@ def test_a_job_can_be_followed_fetched_and_deleted(url: str, mesh: Path, tmp_pat
         assert (job.status, job.file_name, job.max_segments) == ("succeeded", "ball.off", 5)
         assert [other.id for other in client.jobs("succeeded")] == [job.id]
         assert client.hierarchy(job.id)["max_segments"] == 5
+        client.download(job.id, "model.obj", tmp_path / "parts.obj", segments=3, name=["0:ball", "2:arm"])
+        assert "g arm" in (tmp_path / "parts.obj").read_text()
         client.download(job.id, "model.glb", tmp_path / "parts.glb", segments=3)
         assert (tmp_path / "parts.glb").read_bytes().startswith(b"glTF")
         client.delete(job.id)
@@ -56,7 +58,7 @@ def test_a_job_can_be_followed_fetched_and_deleted(url: str, mesh: Path, tmp_pat
         assert (refused.value.status, refused.value.code) == (410, "job_deleted")
         with pytest.raises(RequestRefused):
             client.download(job.id, "model.glb", tmp_path / "other.glb")
-    assert {path.name for path in tmp_path.iterdir() if path.is_file()} == {"ball.off", "parts.glb"}
+    assert {path.name for path in tmp_path.iterdir() if path.is_file()} == {"ball.off", "parts.obj", "parts.glb"}
 
 
 def test_asyncio_does_the_same(url: str, mesh: Path, tmp_path: Path) -> None:

@@ -3,7 +3,6 @@
 import type { CleaveViewer } from "../component/element";
 import { apiKey, getBlob, getMethods, jobPath, request } from "./api";
 import { byId, h, icon, openDialog, save, toast } from "./dom";
-import { renameNodes } from "./glb-names";
 import { explain, problemOf } from "./problems";
 import type { Session } from "./session";
 import { plural, stem } from "./text";
@@ -81,16 +80,12 @@ export class TakeAway {
     const { job, fileName: from, session } = this.#shown()!;
     const address = jobPath(job, `/${path}${query(session)}`);
     const fileName = `${stem(from)}-${session.parts.length}${ending}`;
-    const { names } = session.work;
-    if (path === "model.glb" && names.size > 0) {
-      const data = await (await request(address)).arrayBuffer();
-      save(renameNodes(data, partNames(session)), fileName);
-    } else if (path === "labels") {
+    if (path === "labels") {
       const document = (await (await request(address)).json()) as object;
-      const text = JSON.stringify({ ...document, names: partNames(session) });
-      save(new Blob([text], { type: "application/json" }), fileName);
+      const names = session.parts.map((id) => session.nameOf(id));
+      save(new Blob([JSON.stringify({ ...document, names })], { type: "application/json" }), fileName);
     } else {
-      save(await getBlob(address), fileName);
+      save(await getBlob(address + nameQuery(session)), fileName);
     }
   }
 
@@ -99,16 +94,17 @@ export class TakeAway {
   }
 }
 
-/** The names of the parts by their labels in a file: 0, 1, ... in the order of the labels. */
-function partNames(session: Session): string[] {
-  return session.parts.map((id) => session.nameOf(id));
-}
-
 /** What the cut that is shown is called in the address of a result. */
 function query(session: Session): string {
   const { tree, work } = session;
   const level = tree.levelOf(work.cut);
   return level === null ? `?splits=${tree.splitsOf(work.cut).join(",")}` : `?segments=${level}`;
+}
+
+/** The names that parts were given, by their labels in a file: 0, 1, ... in the order of the parts. */
+function nameQuery({ parts, work }: Session): string {
+  const named = parts.flatMap((id, label) => (work.names.has(id) ? [`${label}:${work.names.get(id)}`] : []));
+  return named.map((name) => `&name=${encodeURIComponent(name)}`).join("");
 }
 
 /** The parameters that are not the defaults; all of them where the defaults cannot be asked for. */
@@ -123,7 +119,7 @@ function curlLines({ job, fileName, session }: Shown, chosen: [string, unknown][
   const form = [`mesh=@${fileName}`, ...(chosen.length === 0 ? [] : [`parameters=${JSON.stringify(Object.fromEntries(chosen))}`])];
   return [
     `curl -f${key} ${form.map((field) => `-F ${shellWord(field)}`).join(" ")} ${root}v1/jobs`,
-    `curl -f${key} -o ${shellWord(`${stem(fileName)}.glb`)} "${root}${jobPath(job)}/model.glb${query(session)}"`,
+    `curl -f${key} -o ${shellWord(`${stem(fileName)}.glb`)} "${root}${jobPath(job)}/model.glb${query(session)}${nameQuery(session)}"`,
     `curl -f${key} "${root}${jobPath(job)}/labels${query(session)}"`,
   ].join("\n");
 }

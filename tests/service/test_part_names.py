@@ -1,0 +1,45 @@
+"""Names that a client gives to segments stand in the files that it fetches."""
+
+import io
+import zipfile
+from collections.abc import Callable
+
+import httpx
+import pytest
+from asking import problem
+
+NAMES = [("segments", "2"), ("name", "1:left arm"), ("name", "7:nobody")]
+
+
+def test_every_model_holds_the_names(client: httpx.Client, finished_job: Callable[..., str]) -> None:
+    job = finished_job()
+    for path, words in {
+        "model.glb": b'"left arm"',
+        "model.ply": b"comment label 1 is left arm",
+        "model.obj": b"g left_arm",
+    }.items():
+        named = client.get(f"{job}/{path}", params=NAMES)
+        assert words in named.content
+        plain = client.get(f"{job}/{path}", params=NAMES[:1])
+        assert words not in plain.content
+        assert plain.headers["ETag"] != named.headers["ETag"]
+    with zipfile.ZipFile(io.BytesIO(client.get(f"{job}/model.3mf", params=NAMES).content)) as package:
+        assert b'"left arm"' in package.read("3D/3dmodel.model")
+    with zipfile.ZipFile(io.BytesIO(client.get(f"{job}/parts.zip", params=NAMES).content)) as archive:
+        assert archive.namelist() == ["segment_0.stl", "segment_1_left_arm.stl"]
+
+
+@pytest.mark.parametrize("name", ["left arm", "1:", "-1:x", ":x", "1: "])
+def test_what_names_nothing_is_refused(client: httpx.Client, finished_job: Callable[..., str], name: str) -> None:
+    answer = client.get(f"{finished_job()}/model.obj", params={"name": name})
+    problem(answer, 422, "invalid_parameters")
+    assert "LABEL:NAME" in answer.json()["detail"]
+
+
+def test_a_name_cannot_leave_its_place(client: httpx.Client, finished_job: Callable[..., str]) -> None:
+    name = '0:../../etc/x"\n<a b="'
+    job = finished_job()
+    with zipfile.ZipFile(io.BytesIO(client.get(f"{job}/parts.zip", params={"name": name}).content)) as archive:
+        assert archive.namelist()[0] == "segment_0_etc_x_a_b.stl"
+    lines = client.get(f"{job}/model.obj", params={"name": name}).text.splitlines()
+    assert next(line for line in lines if line.startswith("g ")).startswith('g ../../etc/x"')
