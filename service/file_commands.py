@@ -38,6 +38,9 @@ def add_outputs(parser: argparse.ArgumentParser, required: bool = False) -> None
         help=f"what to write, by its extension: {OUTPUTS}; may be given again",
     )
     parser.add_argument("--all-levels", action="store_true", help="GLB: every number of segments in one file")
+    parser.add_argument(
+        "--features", action="store_true", help="GLB: the hierarchy as EXT_structural_metadata, with EXT_mesh_features"
+    )
     parser.add_argument("--capped", action="store_true", help="3MF and ZIP: close every part, for printing")
     parser.add_argument("--parts", choices=("stl", "obj"), default="stl", help="ZIP: the files in it (%(default)s)")
 

@@ -20,12 +20,15 @@ class OutputOptions:
     """What some of the formats can do beside the usual."""
 
     all_levels: bool = False  # GLB: every level as a variant of the materials
+    features: bool = False  # GLB: the hierarchy as a property table, and feature ids that lead to it
     capped: bool = False  # 3MF and ZIP: every part closed
     part_format: PartFormat = "stl"  # of the files in a ZIP archive
 
 
 def output_options(choices: argparse.Namespace) -> OutputOptions:
-    return OutputOptions(all_levels=choices.all_levels, capped=choices.capped, part_format=choices.parts)
+    return OutputOptions(
+        all_levels=choices.all_levels, features=choices.features, capped=choices.capped, part_format=choices.parts
+    )
 
 
 def check_outputs(paths: Sequence[Path]) -> None:
@@ -65,7 +68,7 @@ def _write(
 ) -> None:
     match path.suffix.lower():
         case ".glb":
-            write_glb(target, mesh, hierarchy, segments, all_levels=options.all_levels)
+            write_glb(target, mesh, hierarchy, segments, all_levels=options.all_levels, features=options.features)
         case ".3mf":
             write_3mf(target, mesh, hierarchy, segments, capped=options.capped)
         case ".zip":

@@ -48,9 +48,9 @@ def test_several_outputs_at_once_and_the_options_of_formats(
 ) -> None:
     glb, archive, labels = (tmp_path / name for name in ("ball.glb", "parts.zip", "ball.npy"))
     outputs = ["-o", str(glb), "-o", str(archive), "-o", str(labels)]
-    options = ["--all-levels", "--capped", "--parts", "obj"]
+    options = ["--all-levels", "--features", "--capped", "--parts", "obj"]
     assert main(["convert", str(folder / "ball.cleave"), "--segments", "4", *outputs, *options]) == 0
-    assert b"KHR_materials_variants" in glb.read_bytes()
+    assert all(word in glb.read_bytes() for word in (b"KHR_materials_variants", b"EXT_structural_metadata"))
     with zipfile.ZipFile(archive) as parts:
         assert parts.namelist() == [f"segment_{k}.obj" for k in range(4)]
         for name in parts.namelist():
