@@ -9,6 +9,7 @@ from typing import NoReturn
 
 from service.cli_submit import add_submit
 from service.file_commands import add_convert, add_fineness, add_inspect, add_outputs
+from service.kernel_cache import prepare_kernel_cache
 from worker.logs import configure_logging
 from worker.settings import InvalidSettings, Settings, load_settings
 
@@ -27,6 +28,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
     """Run a command; what was expected to go wrong is one line and exit status 2."""
     choices = _parser().parse_args(arguments)
     try:
+        prepare_kernel_cache(lambda: load_settings().data_dir)
         return choices.run(choices) or 0
     except KeyboardInterrupt:
         return 130

@@ -53,6 +53,4 @@ def _environment(settings: Settings) -> dict[str, str]:
     root = Path(__file__).parent.parent
     if root != Path(sysconfig.get_path("purelib")):  # a checkout: -P keeps the working folder off the path
         environment["PYTHONPATH"] = os.pathsep.join(filter(None, [str(root), os.environ.get("PYTHONPATH")]))
-    if not os.access(root / "segcore", os.W_OK) and "NUMBA_CACHE_DIR" not in os.environ:
-        environment["NUMBA_CACHE_DIR"] = str(settings.data_dir / "kernels")
     return environment
