@@ -67,5 +67,6 @@ def _is_writable(context: Context) -> bool:
     try:
         context.store.check_writable()
     except OSError:
+        context.metrics.store_failed()
         return False
     return True

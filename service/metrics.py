@@ -1,14 +1,9 @@
-"""Metrics for Prometheus: what this process has answered, and how the queue is."""
-
-import time
-from collections.abc import Iterator
+"""Metrics for Prometheus: what this process has answered, how the queue is, and what all workers have done."""
 
 from prometheus_client import CollectorRegistry, Counter, Histogram
-from prometheus_client.core import GaugeMetricFamily, Metric
-from prometheus_client.registry import Collector
 
-from worker.queue import JobQueue, QueueError
-from worker.size_class import SizeClass
+from service.metric_sources import QueueCollector, StoreCollector, TallyCollector
+from worker.queue import JobQueue
 from worker.store import JobStore
 
 _BUCKETS_S = (0.005, 0.01, 0.025, 0.05, 0.1, 0.25, 0.5, 1.0, 2.5, 5.0, 10.0, 30.0, 60.0)
@@ -33,37 +28,11 @@ class Metrics:
             "cleave_jobs_submitted", "Jobs by what became of the request.", ["result"], registry=self.registry
         )
         self.upload_bytes = Counter("cleave_upload_bytes", "Bytes of meshes taken in.", registry=self.registry)
-        self.registry.register(_QueueCollector(store, queue))
+        self._store_errors = 0
+        self.registry.register(StoreCollector(store, self.store_failed))
+        self.registry.register(QueueCollector(queue))
+        self.registry.register(TallyCollector(queue.connection, lambda: self._store_errors))
 
-
-class _QueueCollector(Collector):
-    def __init__(self, store: JobStore, queue: JobQueue) -> None:
-        self._store = store
-        self._queue = queue
-
-    def collect(self) -> Iterator[Metric]:
-        yield _gauge("cleave_unfinished_jobs", "Jobs without an outcome.", self._store.count_unfinished(None)[0])
-        yield _gauge(
-            "cleave_oldest_unfinished_seconds",
-            "Age of the oldest of them.",
-            self._store.oldest_s(time.time()),
-        )
-        try:
-            waiting, workers = self._queue.lengths(), self._queue.worker_counts()
-        except QueueError:
-            yield _gauge("cleave_queue_up", "Whether the queue server answers.", 0)
-            return
-        yield _gauge("cleave_queue_up", "Whether the queue server answers.", 1)
-        yield _by_queue("cleave_waiting_jobs", "Jobs in a queue.", waiting)
-        yield _by_queue("cleave_workers", "Workers of a queue that are alive.", workers)
-
-
-def _by_queue(name: str, text: str, values: dict[SizeClass, int]) -> Metric:
-    metric = GaugeMetricFamily(name, text, labels=["queue"])
-    for size, value in values.items():
-        metric.add_metric([size], value)
-    return metric
-
-
-def _gauge(name: str, text: str, value: float) -> Metric:
-    return GaugeMetricFamily(name, text, value=value)
+    def store_failed(self) -> None:
+        """This process could not read or write the store."""
+        self._store_errors += 1

@@ -140,7 +140,9 @@ def translate(exception: Exception) -> Problem:
 def handle_problems(app: FastAPI) -> None:
     """Have every error of an application answered as a problem."""
 
-    def answer(_: Request, exception: Exception) -> Response:
+    def answer(request: Request, exception: Exception) -> Response:
+        if isinstance(exception, OSError):
+            request.app.state.context.metrics.store_failed()
         return translate(exception).response(getattr(exception, "headers", None))
 
     kinds: tuple[type[Exception], ...] = (

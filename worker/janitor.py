@@ -6,13 +6,14 @@ import socket
 import time
 
 from worker.admission import may_wait_outside
-from worker.jobs import exhausted
-from worker.logs import configure_logging
+from worker.jobs import Job, exhausted
+from worker.logs import about, configure_logging
 from worker.opening import open_store
 from worker.queue import JobQueue, QueueError, connect_impatiently
 from worker.settings import Settings, load_settings
 from worker.size_class import size_class
 from worker.store import JobStore, UnknownJob
+from worker.tallies import Tallies
 
 log = logging.getLogger("cleave.janitor")
 
@@ -30,6 +31,7 @@ class Janitor:
     def __init__(self, store: JobStore, queue: JobQueue, settings: Settings) -> None:
         self._store = store
         self._queue = queue
+        self._tallies = Tallies(queue.connection)
         self._settings = settings
         self._name = f"{socket.gethostname()}.{os.getpid()}"
         self._missing_since: dict[str, float] = {}
@@ -43,7 +45,10 @@ class Janitor:
             self._missing_since.clear()
             return
         for job_id in self._lost(at_s):
-            self._recover(job_id)
+            job = self._store.job(job_id)
+            if job is not None:
+                with about(job_id, job.traceparent):
+                    self._recover(job)
         self._queue.forget_dead_workers()
         self._store.remove_abandoned_uploads(_UPLOAD_UNTOUCHED_S)
         self._store.forget_deleted(_DELETED_S)
@@ -60,21 +65,20 @@ class Janitor:
         self._missing_since = {job_id: self._missing_since.get(job_id, at_s) for job_id in missing}
         return [job_id for job_id in missing if at_s - self._missing_since[job_id] >= MISSING_S]
 
-    def _recover(self, job_id: str) -> None:
-        job = self._store.job(job_id)
-        if job is None:
-            return
-        failed = exhausted(self._store.attempts(job_id), self._settings.max_attempts)
+    def _recover(self, job: Job) -> None:
+        failed = exhausted(self._store.attempts(job.id), self._settings.max_attempts)
         if failed is None:
-            log.warning("job %s was lost by the queue and waits again", job_id)
-            self._queue.requeue(job_id, size_class(job, self._settings.large_job_bytes))
+            log.warning("job %s was lost by the queue and waits again", job.id)
+            self._tallies.job_recovered()
+            self._queue.requeue(job.id, size_class(job, self._settings.large_job_bytes))
             return
-        log.error("job %s failed: %s", job_id, failed.code)
+        log.error("job %s failed: %s", job.id, failed.code)
         try:
-            self._store.finish(job_id, failed)
+            self._store.finish(job.id, failed)
         except UnknownJob:
             return
-        self._queue.forget(job_id)
+        self._tallies.job_given_up(failed.code)
+        self._queue.forget(job.id)
 
 
 def main() -> None:

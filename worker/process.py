@@ -29,6 +29,7 @@ from worker.queue import TASK, JobQueue, QueueError, connect_impatiently, connec
 from worker.settings import Settings, load_settings
 from worker.size_class import SizeClass
 from worker.store import JobStore, UnknownJob
+from worker.tallies import Tallies
 from worker.tasks import perform
 from worker.work_horse import cause_of_death, exit_status, limit_memory, out_of_memory_kills
 
@@ -63,6 +64,7 @@ class JobWorker(Worker):  # type: ignore[misc]  # rq is not analysed
         self._store = store
         self._queue = queue
         self._leases = leases
+        self._tallies = Tallies(leases.connection)
         self._settings = settings
         self._size = size
         self._stop_by = float("inf")  # when a running job is handed back, on the monotonic clock
@@ -90,8 +92,7 @@ class JobWorker(Worker):  # type: ignore[misc]  # rq is not analysed
         self.setup_work_horse_signals()
         rename_process("work_horse")
         limit_memory(self._settings.job_memory_bytes)
-        reporter = ProgressReporter(self._leases, job.id)
-        os._exit(exit_status(lambda: perform(self._store, self._settings, job.id, reporter)))
+        os._exit(exit_status(lambda: self._perform(job.id)))
 
     def setup_work_horse_signals(self) -> None:
         """A signal to the whole group is for the worker to decide about; its death is the end of the work-horse."""
@@ -124,6 +125,11 @@ class JobWorker(Worker):  # type: ignore[misc]  # rq is not analysed
 
     # One job.
 
+    def _perform(self, job_id: str) -> None:
+        work = perform(self._store, self._settings, job_id, ProgressReporter(self._leases, job_id))
+        if work is not None:
+            self._tallies.job_ended(work.job, work.outcome, work.stage_seconds)
+
     def _traceparent(self, job_id: str) -> str | None:
         job = self._store.job(job_id)
         return job.traceparent if job else None
@@ -137,6 +143,7 @@ class JobWorker(Worker):  # type: ignore[misc]  # rq is not analysed
         try:
             if failed is not None:
                 self._store.finish(entry.id, failed)
+                self._tallies.job_given_up(failed.code)
             else:
                 self._attempt(entry, queue, self._store.begin_attempt(entry.id, self.name))
         except UnknownJob:
@@ -156,6 +163,7 @@ class JobWorker(Worker):  # type: ignore[misc]  # rq is not analysed
             return
         self.handle_work_horse_killed(entry, pid, status, usage)
         cause: Cause = "timed_out" if stopped_for == "timeout" else cause_of_death(status, kills_before)
+        self._tallies.attempt_lost(cause)
         self._store.end_attempt(entry.id, attempt, cause)
 
     def _watch(self, job_id: str) -> str | None:

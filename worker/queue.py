@@ -9,6 +9,7 @@ import json
 from collections.abc import Iterable
 from contextlib import suppress
 from dataclasses import dataclass
+from datetime import datetime
 from typing import Any
 
 from redis import Redis
@@ -164,6 +165,23 @@ class JobQueue:
         """The jobs that wait in each queue."""
         return {size: int(self.connection.llen(entries.key)) for size, entries in self.entries.items()}
 
+    def ages_s(self, at: datetime) -> dict[SizeClass, float]:
+        """For how long the next job of each queue has been waiting, in seconds; 0 where none waits."""
+        heads = {size: self.connection.lindex(entries.key, 0) for size, entries in self.entries.items()}
+        since = {
+            size: self.connection.hget(Entry.key_for(text_of(job_id)), "enqueued_at") if job_id else None
+            for size, job_id in heads.items()
+        }
+        return {
+            size: max(0.0, (at - datetime.fromisoformat(text_of(time))).total_seconds()) if time else 0.0
+            for size, time in since.items()
+        }
+
+    def running(self) -> list[str]:
+        """The jobs that have a lease. It walks over every key of Redis: for now and then."""
+        prefix = _lease_key("")
+        return [key.decode().removeprefix(prefix) for key in self.connection.scan_iter(f"{prefix}*", count=1000)]
+
     def claim(self, what: str, name: str, lease_s: float) -> bool:
         """Whether this process may do something that one of an installation may do at a time."""
         return bool(self.connection.set(f"cleave:claim:{what}", name, nx=True, px=_milliseconds(lease_s)))
@@ -184,6 +202,10 @@ class JobQueue:
     def forget_dead_workers(self) -> None:
         for entries in self.entries.values():
             clean_worker_registry(entries)
+
+
+def text_of(answer: bytes | str) -> str:
+    return answer.decode() if isinstance(answer, bytes) else answer
 
 
 def _lease_key(job_id: str) -> str:

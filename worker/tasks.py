@@ -1,7 +1,7 @@
 """The work itself: a mesh from the store becomes a result file in the store, and the job gets its outcome."""
 
-from collections.abc import Callable
-from dataclasses import asdict
+import logging
+from dataclasses import asdict, dataclass
 
 import segcore
 from segcore.io import ReadLimits
@@ -10,37 +10,56 @@ from segcore.report import mesh_report
 from segcore.surface import build_surface
 from worker.jobs import Failed, Job, Outcome, Succeeded, now
 from worker.settings import Settings
+from worker.stage_clock import OnProgress, StageClock
 from worker.store import JobStore, UnknownJob
 
-OnProgress = Callable[[str, float], None]
+log = logging.getLogger("cleave.work_horse")
 
 
-def perform(store: JobStore, settings: Settings, job_id: str, on_progress: OnProgress) -> None:
-    """Bring a job to its outcome; without effect where it has one or was deleted."""
+@dataclass(frozen=True, slots=True)
+class Work:
+    """What was done for a job that had no outcome before."""
+
+    job: Job
+    outcome: Outcome
+    stage_seconds: dict[str, float]
+
+
+def perform(store: JobStore, settings: Settings, job_id: str, on_progress: OnProgress) -> Work | None:
+    """Bring a job to its outcome; None where it has another one or was deleted."""
     job = store.job(job_id)
     if job is None or store.outcome(job_id) is not None:
-        return
+        return None
+    clock = StageClock(on_progress)
     try:
-        store.finish(job_id, segment_stored_mesh(store, job, read_limits(settings), on_progress))
+        outcome = segment_stored_mesh(store, job, read_limits(settings), clock)
+        if store.finish(job_id, outcome).finished_at != outcome.finished_at:
+            return None
     except UnknownJob:
-        return
+        return None
+    work = Work(job, outcome, clock.stop())
+    log.info(
+        outcome.status, extra={"fields": {"stage_seconds": {k: round(s, 4) for k, s in work.stage_seconds.items()}}}
+    )
+    return work
 
 
-def segment_stored_mesh(store: JobStore, job: Job, limits: ReadLimits, on_progress: OnProgress) -> Outcome:
+def segment_stored_mesh(store: JobStore, job: Job, limits: ReadLimits, clock: StageClock) -> Outcome:
     """Read, segment, write the result file: what was expected to go wrong is a value, the rest is raised."""
     try:
-        on_progress("reading", 0.0)
+        clock("reading", 0.0)
         with store.open_mesh(job.id) as source:
             mesh = segcore.read_mesh(source, job.mesh_format, limits=limits, appearance=True)
         surface = build_surface(mesh)
         parameters = segcore.SegmentationParameters.from_mapping(job.parameters)
-        hierarchy = segcore.segment(mesh, parameters, on_progress, surface)
+        hierarchy = segcore.segment(mesh, parameters, clock, surface)
     except segcore.CleaveError as error:
         return Failed(finished_at=now(), code=error.code, message=str(error))
     except FileNotFoundError:
         return Failed(
             finished_at=now(), code="input_lost", message="The mesh is no longer in the store: send it again."
         )
+    clock.begin("storing")
     store.write_result(job.id, lambda target: write_result(target, mesh, hierarchy))
     return Succeeded(
         finished_at=now(),
