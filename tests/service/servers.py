@@ -1,4 +1,4 @@
-"""The application on a real server in a thread of the tests."""
+"""The application on a real server in a thread of the tests, and somebody who does its jobs in another."""
 
 import socket
 import threading
@@ -11,6 +11,8 @@ import uvicorn
 from service.app import create_app
 from service.impatience import ImpatientProtocol
 from worker.settings import Settings
+from worker.store import JobStore
+from worker.tasks import perform
 
 
 @contextmanager
@@ -27,3 +29,22 @@ def serving(settings: Settings) -> Iterator[httpx.Client]:
         server.should_exit = True
         thread.join()
         listening.close()
+
+
+@contextmanager
+def working(store: JobStore, settings: Settings) -> Iterator[None]:
+    """Somebody does what is submitted."""
+    stop = threading.Event()
+
+    def work() -> None:
+        while not stop.wait(0.01):
+            for job_id in store.unfinished():
+                perform(store, settings, job_id, lambda *_: None)
+
+    thread = threading.Thread(target=work)
+    thread.start()
+    try:
+        yield
+    finally:
+        stop.set()
+        thread.join()

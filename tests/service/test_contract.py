@@ -1,7 +1,6 @@
 """The OpenAPI document is kept: by the service, as schemathesis finds out, and from one commit to the next."""
 
 import json
-import threading
 from collections.abc import Iterator
 from contextlib import suppress
 from typing import Any
@@ -13,7 +12,7 @@ from hypothesis import HealthCheck, given, seed, settings
 from hypothesis.errors import Flaky
 from redis import Redis
 from schemathesis.config import SchemathesisConfig
-from servers import serving
+from servers import serving, working
 
 from service.api_keys import key_digest, new_key
 from service.contract import DOCS
@@ -21,7 +20,6 @@ from worker.opening import open_store
 from worker.queue import QUEUE_NAMES
 from worker.settings import Settings
 from worker.size_class import SizeClass
-from worker.tasks import perform
 
 
 @pytest.fixture(scope="module")
@@ -41,19 +39,8 @@ def service(tmp_path_factory: pytest.TempPathFactory, queue_url: str) -> Iterato
         for size in SizeClass:
             connection.sadd(f"rq:workers:{QUEUE_NAMES[size]}", "rq:worker:tester")  # so that it is ready
         connection.hset("rq:worker:tester", "state", "idle")
-    store, stop = open_store(limits), threading.Event()
-
-    def work() -> None:
-        while not stop.wait(0.02):
-            for job_id in store.unfinished():
-                perform(store, limits, job_id, lambda *_: None)
-
-    worker = threading.Thread(target=work)
-    worker.start()
-    with serving(limits) as client:
+    with working(open_store(limits), limits), serving(limits) as client:
         yield client
-    stop.set()
-    worker.join()
 
 
 pytestmark = pytest.mark.timeout(900)  # with as many examples as CI asks for

@@ -1,40 +1,20 @@
 """Ways to submit: to wait for the labels, to say it twice, to be given what was computed before."""
 
 import threading
-from collections.abc import Callable, Iterator
-from contextlib import contextmanager
+from collections.abc import Callable
 
 import httpx
 import pytest
 from asking import AGAIN, problem, submit
+from servers import working
 
 from service.preference import Preference, read_preference
 from support import SMALL, sphere, wait_until
 from worker.queue import JobQueue
 from worker.settings import Settings
 from worker.store import JobStore
-from worker.tasks import perform
 
 MESH = sphere(12)
-
-
-@contextmanager
-def working(store: JobStore, settings: Settings) -> Iterator[None]:
-    """Somebody does what is submitted."""
-    stop = threading.Event()
-
-    def work() -> None:
-        while not stop.wait(0.01):
-            for job_id in store.unfinished():
-                perform(store, settings, job_id, lambda *_: None)
-
-    thread = threading.Thread(target=work)
-    thread.start()
-    try:
-        yield
-    finally:
-        stop.set()
-        thread.join()
 
 
 def test_who_waits_gets_the_labels_in_one_round_trip(client: httpx.Client, store: JobStore, settings: Settings) -> None:
