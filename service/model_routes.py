@@ -51,13 +51,18 @@ def get_glb(
         Literal["all"] | None,
         Query(description="Every level in one file: a node per node of the hierarchy, a material variant per level."),
     ] = None,
+    features: Annotated[
+        bool, Query(description="The hierarchy as EXT_structural_metadata, and EXT_mesh_features that lead to it.")
+    ] = False,
 ) -> Response:
     """The mesh as binary glTF, a named node and a colour for every segment."""
 
     def write(target: BinaryIO, result: Segmentation, count: int) -> None:
-        write_glb(target, result.mesh, result.hierarchy, count, all_levels=levels == "all", names=names)
+        choices = {"all_levels": levels == "all", "features": features}
+        write_glb(target, result.mesh, result.hierarchy, count, **choices, names=names)
 
-    return _model(request, context, caller, job_id, "glb", level, write, f"levels={levels or 'one'}{named(names)}")
+    options = f"levels={levels or 'one'}&features={features}{named(names)}"
+    return _model(request, context, caller, job_id, "glb", level, write, options)
 
 
 @router.get("/model.ply", response_class=Response, responses=_responses("ply"))

@@ -110,12 +110,16 @@ def test_the_curve_has_a_point_for_every_cut(client: httpx.Client, finished_job:
 
 def test_one_model_can_hold_every_level(client: httpx.Client, finished_job: Callable[..., str]) -> None:
     path = finished_job()
-    data = client.get(f"{path}/model.glb", params={"levels": "all"}).content
+    data = client.get(f"{path}/model.glb", params={"levels": "all", "features": True}).content
     (length,) = struct.unpack_from("<I", data, 12)
     model = json.loads(data[20 : 20 + length])
     most = client.get(path).json()["max_segments"]
     assert len(model["nodes"]) == 2 * most - 1
     assert len(model["extensions"]["KHR_materials_variants"]["variants"]) == most
+    (table,) = model["extensions"]["EXT_structural_metadata"]["propertyTables"]
+    assert table["count"] == 2 * most - 1
+    plain = client.get(f"{path}/model.glb", params={"levels": "all"}).content
+    assert b"EXT_structural_metadata" not in plain
     problem(client.get(f"{path}/model.glb?levels=some"), 422, "invalid_request")
 
 
