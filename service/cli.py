@@ -53,6 +53,7 @@ def _parser() -> argparse.ArgumentParser:
     add_inspect(commands, _say)
     _add_submit(commands)
     _add_key(commands)
+    _add_doctor(commands)
     return parser
 
 
@@ -81,6 +82,9 @@ def _add_worker(commands: "argparse._SubParsersAction[_Parser]") -> None:
     worker.add_argument("--redis-url", metavar="URL", help="the queue server, in place of CLEAVE_REDIS_URL")
     worker.add_argument(
         "--queue", choices=("small", "large", "both"), default="both", help="the jobs to work for (%(default)s)"
+    )
+    worker.add_argument(
+        "--check", action="store_true", help="run none, but say whether workers of this machine are alive (for health checks)"
     )
     _add_workers(worker, least=1)
     worker.set_defaults(run=_work)
@@ -143,6 +147,20 @@ def _add_key(commands: "argparse._SubParsersAction[_Parser]") -> None:
     key.set_defaults(run=_key)
 
 
+def _add_doctor(commands: "argparse._SubParsersAction[_Parser]") -> None:
+    doctor = commands.add_parser(
+        "doctor",
+        help="check an installation and say what to mend",
+        description="Check the queue server, the store, the workers and this machine against the settings, and say what "
+        "to mend.",
+        epilog="exit status: 0 nothing has to be mended, 1 something has, 2 the settings cannot be used",
+    )
+    doctor.add_argument("--host", default="127.0.0.1", help="the address that the service listens on (%(default)s)")
+    doctor.add_argument("--data-dir", type=Path, metavar="DIR", help="the data folder, in place of CLEAVE_DATA_DIR")
+    doctor.add_argument("--json", action="store_true", help="tell it as JSON")
+    doctor.set_defaults(run=_examine)
+
+
 # Each command imports what it needs when it runs: `cleave --help` does not wait for the numerics.
 
 
@@ -153,13 +171,18 @@ def _serve(choices: argparse.Namespace) -> None:
     serve(choices.host, choices.port, choices.workers, choices.data_dir, _say)
 
 
-def _work(choices: argparse.Namespace) -> None:
+def _work(choices: argparse.Namespace) -> int | None:
+    if choices.check:
+        from service.doctor_command import check_workers
+
+        return check_workers(load_settings(redis_url=choices.redis_url, data_dir=choices.data_dir), _say)
     from service.serve_command import work
     from worker.size_class import SizeClass
 
     _configure_logging()
     only = None if choices.queue == "both" else SizeClass(choices.queue)
     work(choices.redis_url, choices.workers, choices.data_dir, _say, only)
+    return None
 
 
 def _segment(choices: argparse.Namespace) -> None:
@@ -204,6 +227,12 @@ def _parameter(text: str) -> tuple[str, object]:
         with suppress(ValueError):
             return name, number(value)
     return name, value
+
+
+def _examine(choices: argparse.Namespace) -> int:
+    from service.doctor_command import examine
+
+    return examine(load_settings(data_dir=choices.data_dir), choices.host, in_json=choices.json, say=_say)
 
 
 def _configure_logging() -> None:

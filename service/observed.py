@@ -13,6 +13,7 @@ from worker.trace import new_trace, parse_traceparent
 
 log = logging.getLogger("cleave.requests")
 
+_PROBES = ("/healthz", "/readyz", "/metrics")
 _NOWHERE = "none"  # the route of a path that there is not
 
 
@@ -55,11 +56,11 @@ class ObservedRequests:
         self._metrics.seconds.labels(route).observe(took_s)
         subject.job_id = subject.job_id or scope.get("path_params", {}).get("job_id")
         fields = {"method": scope["method"], "route": route, "status": status, "seconds": round(took_s, 4)}
-        log.log(_level(scope["method"], status), "%s %s", scope["method"], route, extra={"fields": fields})
+        log.log(_level(scope["method"], route, status), "%s %s", scope["method"], route, extra={"fields": fields})
 
 
-def _level(method: str, status: int) -> int:
-    """Polls and probes are many and say little: they are for debugging, as long as they succeed."""
-    if status >= 500 or not status:
+def _level(method: str, route: str, status: int) -> int:
+    """Polls and probes are many and say little: they are for debugging, polls as long as they succeed."""
+    if (status >= 500 or not status) and route not in _PROBES:
         return logging.WARNING
     return logging.DEBUG if method in ("GET", "HEAD", "OPTIONS") else logging.INFO
