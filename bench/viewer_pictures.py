@@ -27,7 +27,8 @@ def take_pictures(browser: Browser, url: str, large_job: str, folder: Path) -> N
     jobs = {name: _sample(page, url, name) for name in ("jack", "pawn", "stool")}
     shots: list[tuple[str, dict[str, Any], str, str]] = [
         ("start", _DESKTOP, "", ""),
-        ("desktop", _DESKTOP, f"#job={jobs['pawn']}&sel=3&explode=0", ""),
+        ("desktop", _DESKTOP, f"#job={jobs['pawn']}", ""),
+        ("selected", _DESKTOP, f"#job={jobs['pawn']}&sel=3", ""),
         ("dark", _DARK, f"#job={jobs['jack']}&explode=0.8&view=0.7_1.1_3.3_0_0_0", ""),
         ("thirty", _DESKTOP, f"#job={jobs['jack']}&k=30", ""),
         ("concavity", _DESKTOP, f"#job={jobs['jack']}&k=1&show=concavity.nolines", ""),
