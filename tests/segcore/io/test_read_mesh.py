@@ -5,15 +5,18 @@ import io
 import struct
 import subprocess
 import sys
+from importlib.util import find_spec
 from pathlib import Path
 
 import numpy as np
 import pytest
+from compressed_gltf import draco_asset, meshopt_asset
 from gltf_files import FLOAT, Asset
 from hypothesis import given
 from hypothesis import strategies as st
-from samples import ASCII_STL, BINARY_STL, OBJ, OFF, PLY, SAMPLES, gltf_square
+from samples import ASCII_STL, BINARY_STL, DRESSED, OBJ, OFF, PLY, SAMPLES, SQUARE, gltf_square
 from soups import read, read_or_none
+from threemf_files import RELATIONSHIPS, Model3MF, package
 
 from segcore.errors import CleaveError, InvalidMesh, InvalidParameters, LimitExceeded, UnsupportedFormat
 from segcore.io import FORMATS, ReadLimits, read_mesh
@@ -209,11 +212,12 @@ pages = int(open("/proc/self/statm").read().split()[0])
 room = pages * resource.getpagesize() + 200 * 10**6
 resource.setrlimit(resource.RLIMIT_AS, (room, room))
 for path in sys.argv[1:]:
-    try:
-        read_mesh(path)
-        print(path, "was read")
-    except CleaveError:
-        pass
+    for appearance in (False, True):
+        try:
+            read_mesh(path, appearance=appearance)
+            print(path, "was read")
+        except CleaveError:
+            pass
 """
     if not Path("/proc/self/statm").exists():
         pytest.skip("the size of a process is found in /proc")
@@ -232,9 +236,25 @@ def outward_files() -> dict[str, bytes]:
     asset.document["images"] = [{"uri": "/etc/passwd"}]
     files["a.glb"] = asset.glb()
     files["a.ply"] = PLY["ascii"].replace(b"comment ", b"comment TextureFile /etc/passwd\ncomment ")
+    files["a.3mf"] = threemf_that_looks_outside()
+    entity = '<!DOCTYPE model [<!ENTITY a SYSTEM "file:///etc/passwd">]><model'
+    files["b.3mf"] = package({"3D/3dmodel.model": Model3MF().xml().replace("<model", entity, 1)})
+    for name, (data, *_) in DRESSED.items():  # with names and attributes, which only some readers look at
+        files[f"dressed.{name}"] = data
+    files["meshopt.glb"] = meshopt_asset().glb()
+    if find_spec("DracoPy"):
+        files["draco.glb"] = draco_asset()[0].glb()
     files["a.off"], files["a.stl"], files["b.stl"] = OFF, ASCII_STL, BINARY_STL
     files["a.off.gz"] = gzip.compress(OFF)
     return files
+
+
+def threemf_that_looks_outside() -> bytes:
+    model = Model3MF()
+    model.item(model.mesh(SQUARE))
+    model.item(model.add('<components><component p:path="/../../../etc/passwd" objectid="1"/></components>'))
+    outside = RELATIONSHIPS.format(target="http://localhost:9/a.model").replace("Id=", 'TargetMode="External" Id=')
+    return model.package(**{"3D/_rels/3dmodel.model.rels": outside})
 
 
 def test_no_reader_opens_a_file_or_a_socket_that_it_was_not_given(tmp_path: Path) -> None:
@@ -248,10 +268,13 @@ from segcore.errors import CleaveError
 from segcore.io import read_mesh
 
 def read(source):
-    try:
-        read_mesh(source)
-    except CleaveError:
-        pass
+    for appearance in (False, True):
+        try:
+            read_mesh(source, appearance=appearance)
+        except CleaveError:
+            pass
+        if hasattr(source, "seek"):
+            source.seek(0)
 
 contents = [open(path, "rb").read() for path in sys.argv[1:]]
 for content in contents:  # imports what is imported late

@@ -1,9 +1,10 @@
-// Writes arrays and what the reference encoder of meshoptimizer makes of them.
+// Writes arrays, what the reference encoder of meshoptimizer makes of them, and what its decoder makes of that.
 
 import fs from "node:fs";
-import { MeshoptEncoder } from "meshoptimizer";
+import { MeshoptDecoder, MeshoptEncoder } from "meshoptimizer";
 
 await MeshoptEncoder.ready;
+await MeshoptDecoder.ready;
 
 const side = 20;
 let seed = 12345;
@@ -33,6 +34,16 @@ for (let i = 0; i < 4 * count; i += 4) {
 }
 
 const encode = (...all) => base64(MeshoptEncoder.encodeGltfBuffer(...all));
+const octahedral = (size) =>
+  MeshoptEncoder.encodeGltfBuffer(MeshoptEncoder.encodeFilterOct(normals, count, size, 2 * size), count, size, "ATTRIBUTES", 0);
+const exponential = MeshoptEncoder.encodeGltfBuffer(
+  MeshoptEncoder.encodeFilterExp(positions, count, 12, 15), count, 12, "ATTRIBUTES", 0,
+);
+function decode(source, size, filter) {
+  const target = new Uint8Array(count * size);
+  MeshoptDecoder.decodeGltfBuffer(target, count, size, source, "ATTRIBUTES", filter);
+  return base64(target);
+}
 const samples = {
   positions: Array.from(positions),
   shorts: Array.from(shorts),
@@ -45,8 +56,14 @@ const samples = {
     shorts_1: base64(MeshoptEncoder.encodeVertexBufferLevel(bytes(shorts), count, 8, 3, 1)),
     triangles: encode(bytes(indices), indices.length, 4, "TRIANGLES"),
     indices: encode(bytes(indices), indices.length, 4, "INDICES"),
-    exponential: encode(MeshoptEncoder.encodeFilterExp(positions, count, 12, 15), count, 12, "ATTRIBUTES", 0),
-    octahedral: encode(MeshoptEncoder.encodeFilterOct(normals, count, 8, 16), count, 8, "ATTRIBUTES", 0),
+    exponential: base64(exponential),
+    octahedral_4: base64(octahedral(4)),
+    octahedral_8: base64(octahedral(8)),
+  },
+  decoded: {
+    exponential: decode(exponential, 12, "EXPONENTIAL"),
+    octahedral_4: decode(octahedral(4), 4, "OCTAHEDRAL"),
+    octahedral_8: decode(octahedral(8), 8, "OCTAHEDRAL"),
   },
 };
 fs.writeFileSync(process.argv[2], JSON.stringify(samples) + "\n");
