@@ -1,6 +1,7 @@
 """What the tests of the worker, of the service and of both together have in common."""
 
 import io
+import subprocess
 import time
 from collections.abc import Callable
 from pathlib import Path
@@ -10,6 +11,8 @@ import numpy as np
 from worker.jobs import Job, new_job_id, now
 from worker.size_class import SizeClass
 from worker.store import JobStore
+
+StartWorker = Callable[..., "subprocess.Popen[bytes]"]  # a size class, and settings as keywords
 
 
 def wait_until(condition: Callable[[], object], within_s: float = 60.0) -> None:

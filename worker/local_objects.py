@@ -19,6 +19,7 @@ _TRIES = 10  # to write into a folder that others remove because it is empty
 class LocalObjects:
     """The files below a folder; the file system must have hard links."""
 
+    is_local = True
     look_s = 0.0
 
     def __init__(self, folder: Path) -> None:

@@ -33,6 +33,10 @@ class ObjectStorage(Protocol):
     """Named objects. Every method raises an OSError, a StoreError where it is a remote one, when it cannot be done."""
 
     @property
+    def is_local(self) -> bool:
+        """Whether the objects are files of this machine, which also a forked process can read."""
+
+    @property
     def look_s(self) -> float:
         """The pause between two looks for news that this place bears from many callers; 0 where looking is cheap."""
 

@@ -8,6 +8,9 @@ import signal
 import socket
 import sys
 import time
+from collections.abc import Iterator
+from contextlib import ExitStack, contextmanager, suppress
+from threading import Event, Thread
 from types import FrameType
 from typing import Any
 
@@ -28,15 +31,17 @@ from worker.progress import ProgressReporter
 from worker.queue import TASK, JobQueue, QueueError, connect_impatiently, connect_patiently
 from worker.settings import Settings, load_settings
 from worker.size_class import SizeClass
+from worker.staging import Desk, desk_for
 from worker.store import JobStore, UnknownJob
 from worker.tallies import Tallies
 from worker.tasks import perform
-from worker.work_horse import cause_of_death, exit_status, limit_memory, out_of_memory_kills
+from worker.work_horse import cannot_store, cause_of_death, exit_status, limit_memory, out_of_memory_kills
 
 log = logging.getLogger("cleave.worker")
 
 _TICK_S = 1.0  # how often a running job is looked at
 _REGISTERED_S = 30  # how long a worker counts as alive after its last sign of life
+_STORE_PAUSE_S = 2.0  # after the store was full or did not answer
 _DEQUEUE_TTL_S = 20  # rq blocks for 15 s less, and gives a sign of life in between
 
 
@@ -67,6 +72,8 @@ class JobWorker(Worker):  # type: ignore[misc]  # rq is not analysed
         self._tallies = Tallies(leases.connection)
         self._settings = settings
         self._size = size
+        self._desk: Desk | None = None  # of the job that runs
+        self._uncounted: list[tuple[str, Attempt]] = []  # attempts that the store would not withdraw yet
         self._stop_by = float("inf")  # when a running job is handed back, on the monotonic clock
         self._horse_is_gone = -1  # a descriptor that becomes readable
 
@@ -78,9 +85,12 @@ class JobWorker(Worker):  # type: ignore[misc]  # rq is not analysed
             log.warning("an entry of the queue that is not a job of this installation was dropped: %r", job.id)
             self._queue.forget(job.id)
         elif self._queue.take(job.id, self.name, self._settings.lease_s):
-            with about(job.id, self._traceparent(job.id)):
-                self._run_if_open(job, queue)
-                self._settle(job.id)
+            try:
+                with about(job.id, self._traceparent(job.id)):
+                    self._run_if_open(job, queue)
+                    self._settle(job.id)
+            except OSError as error:
+                self._hand_back(job.id, error)
         self.set_state(WorkerStatus.IDLE)
 
     def fork_work_horse(self, job: Entry, queue: Any) -> None:
@@ -126,7 +136,8 @@ class JobWorker(Worker):  # type: ignore[misc]  # rq is not analysed
     # One job.
 
     def _perform(self, job_id: str) -> None:
-        work = perform(self._store, self._settings, job_id, ProgressReporter(self._leases, job_id))
+        assert self._desk, "it was laid out before the fork"
+        work = perform(self._desk.store, self._settings, job_id, ProgressReporter(self._leases, job_id))
         if work is not None:
             self._tallies.job_ended(work.job, work.outcome, work.stage_seconds)
 
@@ -139,6 +150,7 @@ class JobWorker(Worker):  # type: ignore[misc]  # rq is not analysed
             log.warning("job %s is not in the store: it was deleted, or CLEAVE_DATA_DIR is another's", entry.id)
         if not self._is_open(entry.id):
             return
+        self._withdraw_uncounted()
         failed = exhausted(self._store.attempts(entry.id), self._settings.max_attempts)
         try:
             if failed is not None:
@@ -151,16 +163,31 @@ class JobWorker(Worker):  # type: ignore[misc]  # rq is not analysed
 
     def _attempt(self, entry: Entry, queue: Any, attempt: Attempt) -> None:
         log.info("job %s: attempt %d", entry.id, attempt.number)
+        try:
+            with ExitStack() as stack:
+                with self._keeping_the_lease(entry.id):
+                    self._desk = stack.enter_context(desk_for(self._store, entry.id))
+                self._run(entry, queue, attempt)
+        except OSError:  # through no fault of the job
+            self._uncounted.append((entry.id, attempt))
+            raise
+
+    def _run(self, entry: Entry, queue: Any, attempt: Attempt) -> None:
+        assert self._desk, "the job is laid out"
         kills_before = out_of_memory_kills()
         self.fork_work_horse(entry, queue)
         stopped_for = self._watch(entry.id)
         pid, status, usage = self.wait_for_horse()
         self._horse_pid = 0
+        with self._keeping_the_lease(entry.id):
+            self._desk.publish()
         if not self._is_open(entry.id):
             return
         if stopped_for == "shutdown":
             self._store.withdraw_attempt(entry.id, attempt)
             return
+        if cannot_store(status):
+            raise OSError("what the work-horse wrote could not be stored")
         self.handle_work_horse_killed(entry, pid, status, usage)
         cause: Cause = "timed_out" if stopped_for == "timeout" else cause_of_death(status, kills_before)
         self._tallies.attempt_lost(cause)
@@ -179,8 +206,9 @@ class JobWorker(Worker):  # type: ignore[misc]  # rq is not analysed
         return stopped_for
 
     def _reason_to_stop(self, job_id: str, ends_at: float) -> str | None:
-        if not self._is_open(job_id):
-            return "canceled"
+        with suppress(OSError):  # a store that does not answer now may do so when the work is done
+            if not self._is_open(job_id):
+                return "canceled"
         if time.monotonic() > ends_at:
             return "timeout"
         return "shutdown" if time.monotonic() > self._stop_by else None
@@ -193,6 +221,39 @@ class JobWorker(Worker):  # type: ignore[misc]  # rq is not analysed
                 pipeline.execute()
         except QueueError as error:
             log.warning("the lease of job %s was not renewed: %s", job_id, error)
+
+    @contextmanager
+    def _keeping_the_lease(self, job_id: str) -> Iterator[None]:
+        """Renew the lease from a thread while this one waits for a store that is not of this machine."""
+        has_ended = Event()
+
+        def renew() -> None:
+            while not has_ended.wait(_TICK_S):
+                self._renew_lease(job_id)
+
+        thread = Thread(target=renew, daemon=True)
+        if not self._store.is_local:
+            thread.start()
+        try:
+            yield
+        finally:
+            has_ended.set()
+            if thread.ident:
+                thread.join()
+
+    def _hand_back(self, job_id: str, error: OSError) -> None:
+        """Leave a job that the store keeps from being done to the next worker, or to this one in a moment."""
+        log.warning("job %s waits again: %s", job_id, error)
+        with suppress(OSError):  # before the next attempt it is tried again
+            self._withdraw_uncounted()
+        time.sleep(max(0.0, min(_STORE_PAUSE_S, self._stop_by - time.monotonic())))
+        self._queue.release(job_id, self.name)
+        self._queue.requeue(job_id, self._size)
+
+    def _withdraw_uncounted(self) -> None:
+        while self._uncounted:
+            self._store.withdraw_attempt(*self._uncounted[-1])
+            self._uncounted.pop()
 
     def _settle(self, job_id: str) -> None:
         """Leave the queue as the store says: nothing of a job that has ended, another entry for one that has not."""

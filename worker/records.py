@@ -43,9 +43,8 @@ class Records:
 
     def outcome(self, job_id: str) -> Outcome | None:
         key = job_key(job_id, MANIFEST)
-        known = self._outcomes.get(job_id) if self._objects.look_s else None
-        outcome = known or self._read(key, _OUTCOME)
-        if outcome is not None and self._objects.look_s:
+        outcome = self._outcomes.get(job_id) or self._read(key, _OUTCOME)
+        if outcome is not None and not self._objects.is_local:
             self._outcomes[job_id] = outcome
             if len(self._outcomes) > _REMEMBERED:
                 self._outcomes.popitem(last=False)

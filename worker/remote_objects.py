@@ -25,6 +25,7 @@ class RemoteObjects:
     A process that has used it cannot go on using it after a fork: its connections live in threads.
     """
 
+    is_local = False
     look_s = 0.5
 
     def __init__(self, bucket: Bucket, spool: Path) -> None:

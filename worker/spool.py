@@ -1,12 +1,17 @@
 """Files of this machine that are on their way into the store.
 
-<spool>/<random>/mesh          an upload
-<spool>/<id>-<random>.result   what a running job writes
+    <spool>/<random>/mesh          an upload
+    <spool>/<id>-<random>.result   what a running job writes
+    <spool>/stage-<random>/        a running job that was fetched from another machine, locked while it runs
 """
 
+import fcntl
+import os
 import secrets
 import shutil
 import time
+from collections.abc import Iterator
+from contextlib import contextmanager
 from pathlib import Path
 
 from worker.jobs import new_job_id
@@ -30,6 +35,19 @@ class Spool:
         for torn in self.folder.glob(f"{job_id}-*.result"):
             torn.unlink(missing_ok=True)
 
+    @contextmanager
+    def stage(self) -> Iterator[Path]:
+        """A folder that is there as long as this process wants, and no longer than it lives and for an hour."""
+        folder = self.folder / f"stage-{secrets.token_hex(16)}"
+        folder.mkdir(mode=0o700)
+        lock = os.open(folder, os.O_RDONLY | os.O_DIRECTORY)
+        try:
+            fcntl.flock(lock, fcntl.LOCK_EX)
+            yield folder
+        finally:
+            os.close(lock)
+            shutil.rmtree(folder, ignore_errors=True)
+
     def remove_abandoned(self, untouched_s: float) -> None:
         """Remove what processes left behind that died while they wrote."""
         oldest = time.time() - untouched_s
@@ -39,10 +57,25 @@ class Spool:
 
 
 def _remove(path: Path) -> None:
-    if path.is_dir():
-        shutil.rmtree(path, ignore_errors=True)
-    else:
+    """Remove a file, or a folder that nobody has locked."""
+    if not path.is_dir():
         path.unlink(missing_ok=True)
+    elif not _is_locked(path):
+        shutil.rmtree(path, ignore_errors=True)
+
+
+def _is_locked(folder: Path) -> bool:
+    try:
+        descriptor = os.open(folder, os.O_RDONLY | os.O_DIRECTORY)
+    except FileNotFoundError:
+        return False
+    try:
+        fcntl.flock(descriptor, fcntl.LOCK_EX | fcntl.LOCK_NB)
+    except BlockingIOError:
+        return True
+    finally:
+        os.close(descriptor)
+    return False
 
 
 def _modified_at(path: Path) -> float:

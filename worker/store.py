@@ -10,6 +10,7 @@ from datetime import UTC, datetime, timedelta
 from pathlib import Path
 from typing import BinaryIO
 
+from worker.acceptance import Acceptance
 from worker.batches import BatchStore
 from worker.computed import ComputedIndex
 from worker.deletion import Deletions
@@ -18,8 +19,8 @@ from worker.index import JobIndex, is_entry_name, job_id_of
 from worker.installation_secret import InstallationSecret
 from worker.jobs import Attempt, Cause, Job, Outcome, Succeeded
 from worker.layout import MESH, entry_name, job_key, mesh_name
-from worker.objects import ObjectStorage, StoreError
-from worker.outbox import Letter, Outbox
+from worker.objects import ObjectStorage
+from worker.outbox import Outbox
 from worker.pending import PendingJobs
 from worker.records import JobState, Records
 from worker.results import ResultFiles
@@ -31,10 +32,6 @@ _ON_ITS_WAY = timedelta(hours=1)  # an entry without a job may be of one that is
 
 class UnknownJob(LookupError):  # noqa: N818
     """The store has no such job (any more)."""
-
-
-class JobExists(Exception):  # noqa: N818
-    """There is a job of this id already."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -55,11 +52,17 @@ class JobStore:
         self.secret = InstallationSecret(objects)
         self.pending = PendingJobs(objects)
         self.deletions = Deletions(objects)
-        self._spool = spool
+        self.spool = spool
         self._records = Records(objects)
         self._results = ResultFiles(objects, spool, cache)
         self._index = JobIndex(objects)
         self._computed = ComputedIndex(objects)
+        self._acceptance = Acceptance(objects, self.pending, self.outbox)
+
+    @property
+    def is_local(self) -> bool:
+        """Whether the jobs are files that every process of this machine can open by itself."""
+        return self.objects.is_local
 
     @property
     def look_s(self) -> float:
@@ -67,7 +70,7 @@ class JobStore:
         return self.objects.look_s
 
     def begin_upload(self) -> MeshUpload:
-        return self._spool.begin_upload()
+        return self.spool.begin_upload()
 
     def accept(self, job: Job, upload: MeshUpload) -> None:
         """Take a job in: when this returns, it will be finished, whatever happens to the queue or the power.
@@ -77,21 +80,8 @@ class JobStore:
         JobExists
             Where there is a job of this id already; it stays as it is.
         """
-        if self._records.has_job(job.id):
-            raise JobExists(job.id)
         upload.make_durable()
-        try:
-            self._prepare(job, upload.path)
-            is_new = self._records.create_job(job)
-        except StoreError:
-            raise  # the job may be accepted after all: what is there is left to whoever looks for it later
-        except OSError:
-            self._clear_away(job)
-            raise
-        if not is_new:
-            self._clear_away(job)
-            raise JobExists(job.id)
-        self._computed.note(job)
+        self._acceptance.accept(job, upload.path)
 
     def computed_before(self, job: Job) -> Job | None:
         """A job of the same owner that has succeeded with the same mesh, parameters and software."""
@@ -167,7 +157,7 @@ class JobStore:
         self._unless_deleted(job_id)
         attempt = self._records.begin_attempt(job_id, worker)
         self._unless_deleted(job_id, lambda: self._records.remove_attempt(job_id, attempt))
-        self._spool.remove_results(job_id)
+        self.spool.remove_results(job_id)
         return attempt
 
     def end_attempt(self, job_id: str, attempt: Attempt, cause: Cause) -> None:
@@ -208,6 +198,18 @@ class JobStore:
         """
         self._unless_deleted(job_id)
         self._results.write(job_id, write)
+        self._unless_deleted(job_id, lambda: self._results.remove(job_id))
+
+    def put_result(self, job_id: str, path: Path) -> None:
+        """Store the result file from another file, which may be gone afterwards.
+
+        Raises
+        ------
+        UnknownJob
+            Where the job was deleted.
+        """
+        self._unless_deleted(job_id)
+        self._results.put(job_id, path)
         self._unless_deleted(job_id, lambda: self._results.remove(job_id))
 
     def open_result(self, job_id: str) -> BinaryIO:
@@ -256,7 +258,7 @@ class JobStore:
 
     def remove_abandoned_uploads(self, untouched_s: float) -> None:
         """Remove what uploads and runs left on this machine whose process died in the middle."""
-        self._spool.remove_abandoned(untouched_s)
+        self.spool.remove_abandoned(untouched_s)
 
     def check_writable(self) -> None:
         """Raise an OSError where jobs cannot be written here."""
@@ -264,25 +266,6 @@ class JobStore:
         with self.begin_upload() as probe:
             probe.write(b"?")
             probe.make_durable()
-
-    def _prepare(self, job: Job, mesh: Path) -> None:
-        """Write what belongs to a job that is not accepted yet; its marker first, by which all of it is found."""
-        self.pending.add(job)
-        self.objects.put_file(job_key(job.id, mesh_name(job)), mesh)
-        self._index.add(job)
-        if job.webhook_url is not None:
-            self.outbox.put(job.id, Letter())
-
-    def _clear_away(self, job: Job) -> None:
-        """Remove what was prepared for a job that is not accepted, but not what belongs to another of its id."""
-        accepted = self.job(job.id)
-        if accepted is None or mesh_name(accepted) != mesh_name(job):
-            self.objects.delete(job_key(job.id, mesh_name(job)))
-        self._index.remove(job)
-        if accepted is None:
-            self.outbox.remove(job.id)
-        if accepted is None or entry_name(accepted) != entry_name(job):
-            self.pending.remove(job)
 
     def _remove(self, job: Job) -> None:
         self.deletions.remove_objects(job)

@@ -1,5 +1,6 @@
 """What a work-horse may use, and what its end says to the process that waits for it."""
 
+import errno
 import logging
 import os
 import resource
@@ -12,6 +13,8 @@ from worker.jobs import Cause
 log = logging.getLogger("cleave.work_horse")
 
 EXIT_OUT_OF_MEMORY = 71
+_EXIT_CANNOT_STORE = os.EX_TEMPFAIL
+_DISK_FULL = (errno.ENOSPC, errno.EDQUOT)
 
 
 def exit_status(work: Callable[[], None]) -> int:
@@ -21,10 +24,21 @@ def exit_status(work: Callable[[], None]) -> int:
     except MemoryError:
         log.error("the job needs more memory than it may have")
         return EXIT_OUT_OF_MEMORY
+    except OSError as error:
+        if error.errno not in _DISK_FULL:
+            log.exception("the job stopped at an error of the system")
+            return os.EX_SOFTWARE
+        log.error("the disk is full")
+        return _EXIT_CANNOT_STORE
     except Exception:
         log.exception("the job stopped at an error that it does not expect")
         return os.EX_SOFTWARE
     return os.EX_OK
+
+
+def cannot_store(status: int) -> bool:
+    """Whether a work-horse ended with this wait status because the disk is full."""
+    return os.WIFEXITED(status) and os.WEXITSTATUS(status) == _EXIT_CANNOT_STORE
 
 
 def cause_of_death(status: int, kills_before: int) -> Cause:

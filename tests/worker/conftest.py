@@ -1,13 +1,19 @@
-"""The store in every place where it can be."""
+"""The store in every place where it can be, and the worker process."""
 
+import os
+import subprocess
+import sys
 from collections.abc import Iterator
 from pathlib import Path
 
 import pytest
+from redis import Redis
 
 from buckets import below
+from support import SMALL, StartWorker
 from worker.jobs import new_job_id
 from worker.opening import open_folder, open_url
+from worker.size_class import SizeClass
 from worker.store import JobStore
 
 PLACES = ("local", "memory", "s3")
@@ -23,3 +29,25 @@ def placed(request: pytest.FixtureRequest, tmp_path: Path) -> Iterator[JobStore]
             yield open_url("memory://", tmp_path / "data", 2**20)
         case _:
             yield open_url(below(request.getfixturevalue("s3_url"), new_job_id()), tmp_path / "data", 2**20)
+
+
+@pytest.fixture
+def start_worker(tmp_path: Path, queue_url: str, connection: Redis) -> Iterator[StartWorker]:
+    """Start worker processes with settings of the environment; they are dead after the test."""
+    del connection  # an empty queue
+    started: list[subprocess.Popen[bytes]] = []
+
+    def start(size: SizeClass = SMALL, **environment: str) -> "subprocess.Popen[bytes]":
+        settings = {"CLEAVE_DATA_DIR": str(tmp_path / "data"), "CLEAVE_REDIS_URL": queue_url}
+        process = subprocess.Popen(
+            [sys.executable, "-m", "worker.process", size],
+            env=os.environ | settings | environment,
+            start_new_session=True,
+        )
+        started.append(process)
+        return process
+
+    yield start
+    for process in started:
+        process.kill()
+        process.wait()

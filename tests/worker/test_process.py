@@ -4,43 +4,16 @@ import os
 import pickle
 import signal
 import subprocess
-import sys
 import time
-from collections.abc import Callable, Iterator
 from pathlib import Path
 
 import pytest
 from redis import Redis
 
-from support import LARGE, LONG, SMALL, accepted, children_of, is_alive, sphere, wait_until
+from support import LARGE, LONG, SMALL, StartWorker, accepted, children_of, is_alive, sphere, wait_until
 from worker.jobs import Canceled, Failed, Job, Outcome, Succeeded, now
 from worker.queue import JobQueue
-from worker.size_class import SizeClass
 from worker.store import JobStore
-
-StartWorker = Callable[..., "subprocess.Popen[bytes]"]
-
-
-@pytest.fixture
-def start_worker(tmp_path: Path, queue_url: str, connection: Redis) -> Iterator[StartWorker]:
-    """Start worker processes with settings of the environment; they are dead after the test."""
-    del connection  # an empty queue
-    started: list[subprocess.Popen[bytes]] = []
-
-    def start(size: SizeClass = SMALL, **environment: str) -> "subprocess.Popen[bytes]":
-        settings = {"CLEAVE_DATA_DIR": str(tmp_path / "data"), "CLEAVE_REDIS_URL": queue_url}
-        process = subprocess.Popen(
-            [sys.executable, "-m", "worker.process", size],
-            env=os.environ | settings | environment,
-            start_new_session=True,
-        )
-        started.append(process)
-        return process
-
-    yield start
-    for process in started:
-        process.kill()
-        process.wait()
 
 
 def outcome_of(store: JobStore, job: Job, within_s: float = 60.0) -> Outcome:

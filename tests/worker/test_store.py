@@ -8,6 +8,7 @@ from pathlib import Path
 import pytest
 
 from support import accepted
+from worker.acceptance import JobExists
 from worker.index import turned
 from worker.installation_secret import InstallationSecret
 from worker.jobs import Canceled, Failed, Job, Succeeded, new_job_id, now
@@ -15,7 +16,7 @@ from worker.layout import entry_name
 from worker.opening import open_folder
 from worker.outbox import Letter
 from worker.spool import Spool
-from worker.store import JobExists, JobStore, UnknownJob
+from worker.store import JobStore, UnknownJob
 
 
 def keys(store: JobStore) -> list[str]:

@@ -1,0 +1,87 @@
+"""A real worker process and its store: in a bucket, on a full disk, and away for a while."""
+
+import os
+import signal
+import subprocess
+import time
+from collections.abc import Iterator
+from pathlib import Path
+
+import pytest
+
+from buckets import s3_server
+from support import LONG, StartWorker, accepted, children_of, sphere, wait_until
+from worker.jobs import Succeeded
+from worker.opening import open_folder, open_url
+from worker.queue import JobQueue
+from worker.size_class import SizeClass
+from worker.store import JobStore
+
+
+def submitted(store: JobStore, queue: JobQueue, mesh: bytes, **parameters: object) -> str:
+    job = accepted(store, mesh, **parameters)
+    queue.enqueue(job.id, SizeClass.SMALL)
+    return job.id
+
+
+def succeeds(store: JobStore, job_id: str) -> bool:
+    wait_until(lambda: store.outcome(job_id))
+    return isinstance(store.outcome(job_id), Succeeded)
+
+
+def test_a_worker_does_its_jobs_by_way_of_a_bucket_also_one_that_hangs_meanwhile(
+    start_worker: StartWorker, queue: JobQueue, tmp_path: Path, s3_url: str
+) -> None:
+    del s3_url  # the credentials
+    with s3_server() as (url, server):
+        store = open_url(url, tmp_path / "service", 2**20)
+        worker = start_worker(CLEAVE_STORE_URL=url)
+        jobs = [submitted(store, queue, sphere(20)), submitted(store, queue, b"no mesh")]
+        assert succeeds(store, jobs[0])
+        assert not succeeds(store, jobs[1])
+        with store.open_result(jobs[0]) as result:
+            assert result.read(4)
+        jobs.append(submitted(store, queue, sphere(100), **LONG))
+        wait_until(lambda: children_of(worker.pid))
+        os.kill(server.pid, signal.SIGSTOP)
+        time.sleep(4)
+        os.kill(server.pid, signal.SIGCONT)
+        assert succeeds(store, jobs[2])
+        assert store.unfinished() == {}
+        assert [len(store.attempts(job_id)) for job_id in jobs] == [1, 1, 1]
+        wait_until(lambda: list((tmp_path / "data" / "incoming").iterdir()) == [])
+        assert worker.poll() is None
+
+
+@pytest.fixture
+def small_disk(tmp_path: Path) -> Iterator[Path]:
+    """A file system of 2 MB."""
+    folder = tmp_path / "data"
+    folder.mkdir()
+    mounted = subprocess.run(["mount", "-t", "tmpfs", "-o", "size=2m", "tmpfs", str(folder)], capture_output=True)
+    if mounted.returncode:
+        pytest.skip("a file system cannot be mounted here")
+    yield folder
+    subprocess.run(["umount", "--lazy", str(folder)], check=True)
+
+
+def test_a_full_disk_makes_a_job_wait_and_not_fail(
+    start_worker: StartWorker, queue: JobQueue, small_disk: Path
+) -> None:
+    store = open_folder(small_disk)
+    job_id = submitted(store, queue, sphere(60))
+    ballast = small_disk / "ballast"
+    status = os.statvfs(small_disk)
+    ballast.write_bytes(bytes(status.f_bavail * status.f_frsize))
+    worker = start_worker()
+    wait_until(lambda: any(queue.worker_counts().values()))
+    time.sleep(3)
+    assert store.attempts(job_id) == []
+    os.truncate(ballast, ballast.stat().st_size - 24 * 1024)  # room for records, not for a result
+    wait_until(lambda: store.attempts(job_id))
+    wait_until(lambda: not store.attempts(job_id))
+    assert store.outcome(job_id) is None
+    ballast.unlink()
+    assert succeeds(store, job_id)
+    assert len(store.attempts(job_id)) == 1
+    assert worker.poll() is None
