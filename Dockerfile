@@ -6,11 +6,11 @@ COPY cleave cleave
 COPY segcore segcore
 COPY worker worker
 COPY service service
-RUN python -m venv /opt/cleave && /opt/cleave/bin/pip install --no-cache-dir .
+RUN python -m venv /opt/cleave && /opt/cleave/bin/pip install --no-cache-dir ".[cloud,draco]"
 # The kernels are compiled here, so that no container compiles them again.
 ENV NUMBA_CACHE_DIR=/opt/cleave/kernels \
     NUMBA_CPU_NAME=generic
-RUN /opt/cleave/bin/python -c "import segcore; segcore.warm_up()"
+RUN /opt/cleave/bin/python -P -c "import segcore; segcore.warm_up()"
 
 FROM python:3.13-slim-bookworm
 RUN groupadd --system --gid 10001 cleave \
@@ -26,6 +26,7 @@ USER 10001:10001
 VOLUME /data
 EXPOSE 8000
 STOPSIGNAL SIGTERM
+# What runs workers alone answers no HTTP: docker-compose.yml has their check.
 HEALTHCHECK --interval=10s --timeout=5s --start-period=60s \
     CMD ["python", "-c", "import urllib.request; urllib.request.urlopen('http://127.0.0.1:8000/healthz', timeout=4)"]
 ENTRYPOINT ["cleave"]

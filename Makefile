@@ -1,8 +1,12 @@
 .DEFAULT_GOAL := help
-.PHONY: help check static format lint types imports containers viewer test
+.PHONY: help check static format lint types imports containers viewer test image-check
+
+# What stands for the image that the Dockerfile begins with, and what pip needs of this machine to find packages.
+IMAGE_BASE ?= /var/tmp/cleave-image-base
+IMAGE_CHECK_OPTIONS ?= $(foreach path,$(wildcard /etc/pip.conf /etc/ssl/certs),--bind $(path))
 
 help:  ## show the targets
-	@grep -hE '^[a-z]+:.*##' $(MAKEFILE_LIST) | sed -E 's/^([a-z]+):.*## /\1\t/' | expand -t 14
+	@grep -hE '^[a-z-]+:.*##' $(MAKEFILE_LIST) | sed -E 's/^([a-z-]+):.*## /\1\t/' | expand -t 14
 
 check: static test  ## everything that must pass before a change lands
 
@@ -26,6 +30,11 @@ containers:  ## Dockerfile and compose file, without a container engine
 
 viewer:  ## types of the viewer, and whether service/viewer is what its sources make (`npm run build` in viewer/ mends it)
 	cd viewer && npm ci --ignore-scripts --no-audit --no-fund --loglevel=error && npm run --silent check
+
+image-check:  ## the Dockerfile's steps in a clean Debian, and a mesh through the result (root, debootstrap, minutes)
+	test -x $(IMAGE_BASE)/usr/bin/python3 || debootstrap --variant=minbase --include=python3,python3-venv,ca-certificates bookworm $(IMAGE_BASE)
+	test -e $(IMAGE_BASE)/usr/local/bin/python || ln -s /usr/bin/python3 $(IMAGE_BASE)/usr/local/bin/python
+	python -m deploy.image_check $(IMAGE_BASE) $(IMAGE_CHECK_OPTIONS)
 
 test:  ## the tests
 	python -m pytest

@@ -1,0 +1,154 @@
+"""Builds the image without a container engine, serves from it as its user on a read-only root, and segments a mesh.
+
+    python -m deploy.image_check BASE
+
+BASE is the root of a Debian with Python, which stands for the image that the Dockerfile begins with; `make image-check`
+makes one. It needs root, and leaves nothing mounted.
+"""
+
+import argparse
+import http.client
+import json
+import os
+import shutil
+import signal
+import subprocess
+import sys
+import tempfile
+import time
+from pathlib import Path
+from typing import Any
+
+from deploy.image_build import Builder, BuiltStage
+from segcore.shapes import burr
+
+_WORK = "CLEAVE_IMAGE_CHECK_WORK"
+_START_S, _STOP_S = 120.0, 30.0
+_PORT = 8000
+
+
+def main() -> int:
+    choices = _parser().parse_args()
+    if _WORK not in os.environ:
+        return _run_isolated(choices.work)
+    context, work = Path(__file__).parent.parent, Path(os.environ[_WORK])
+    variables = {name: value for name, value in os.environ.items() if name.startswith("PIP_") or "CERT" in name}
+    check(Builder(context, choices.base, work, tuple(choices.bind), variables, _say).build())
+    return 0
+
+
+def check(image: BuiltStage) -> None:
+    """Start a container's command in the image and use it.
+
+    Raises
+    ------
+    AssertionError
+        Where it does not do what an image must.
+    """
+    image.root.make_read_only(["/tmp", image.stage.last("VOLUME").text])
+    entry = image.stage.last("ENTRYPOINT").words()
+    said = image.root.run([*entry, "key", "check"], image.environment, user=image.user)
+    key, digest = (line.split()[1] for line in said.splitlines()[:2])
+    environment = {**image.environment, "CLEAVE_API_KEYS": digest}
+    command = [*entry, *image.stage.last("CMD").words()]
+    began_at = time.monotonic()
+    with subprocess.Popen(image.root.command(command, environment, user=image.user)) as process:
+        try:
+            _wait_until_ready(process)
+            _say(f"ready after {time.monotonic() - began_at:.1f} s")
+            _use(image, process, key)
+        finally:
+            process.send_signal(signal.SIGTERM)
+            status = process.wait(_STOP_S)
+    assert status == 0, f"SIGTERM: exit status {status}"
+    _say("stopped by SIGTERM with exit status 0")
+
+
+def _use(image: BuiltStage, process: "subprocess.Popen[bytes]", key: str) -> None:
+    owner = Path(f"/proc/{process.pid}").stat().st_uid
+    assert f"{owner}:" in image.user, f"it runs as user {owner}"
+    written = subprocess.run(image.root.command(["touch", "/opt/cleave/new"], image.environment), check=False)
+    assert written.returncode != 0, "root can write to the image"
+    *_, health = image.stage.last("HEALTHCHECK").text.partition("CMD ")
+    image.root.run(json.loads(health), image.environment, user=image.user)
+    _say(f"runs as user {owner} on a read-only root, and its health check passes")
+    job = _ask("POST", "/v1/jobs?format=off&segments=7", key, burr_in_off())
+    assert job["status"] == "succeeded", job
+    assert len(set(job["labels"])) == 7, job
+    _say(f"cut a mesh of {len(job['labels'])} faces into 7 segments in one request")
+    shipped = _kernels(image.root.path(image.environment["NUMBA_CACHE_DIR"]))
+    used = _kernels(image.root.path(image.stage.last("VOLUME").text))
+    assert used == shipped, f"kernels were compiled anew: {sorted(used - shipped)}"
+    _say(f"compiled no kernel: all {len(shipped)} came with the image")
+
+
+def _kernels(folder: Path) -> set[str]:
+    return {f"{path.parent.name}/{path.name}" for path in folder.rglob("*.nbi")}
+
+
+def burr_in_off() -> bytes:
+    """A ball with six arms."""
+    mesh = burr().mesh
+    lines = [f"OFF\n{len(mesh.vertices)} {len(mesh.faces)} 0"]
+    lines += [" ".join(f"{number:.6f}" for number in vertex) for vertex in mesh.vertices]
+    lines += ["3 " + " ".join(str(index) for index in face) for face in mesh.faces]
+    return "\n".join(lines).encode()
+
+
+def _wait_until_ready(process: "subprocess.Popen[bytes]") -> None:
+    gives_up_at = time.monotonic() + _START_S
+    while True:
+        assert process.poll() is None, f"it ended with {process.returncode}"
+        assert time.monotonic() < gives_up_at, "it did not become ready"
+        try:
+            if _ask("GET", "/readyz")["ready"]:
+                return
+        except OSError:
+            pass
+        time.sleep(0.2)
+
+
+def _ask(method: str, path: str, key: str = "", body: bytes | None = None) -> dict[str, Any]:
+    connection = http.client.HTTPConnection("127.0.0.1", _PORT, timeout=90)
+    try:
+        connection.request(method, path, body, {"Authorization": f"Bearer {key}", "Prefer": "wait=60"})
+        document: dict[str, Any] = json.load(connection.getresponse())
+        return document
+    finally:
+        connection.close()
+
+
+def _run_isolated(where: Path | None) -> int:
+    """Do all of it where mounts and processes are gone afterwards, and only then remove what was made."""
+    own = ["unshare", "--mount", "--propagation", "private", "--pid", "--fork", "--kill-child", "--mount-proc"]
+    command = [*own, sys.executable, "-m", "deploy.image_check", *sys.argv[1:]]
+    work = Path(tempfile.mkdtemp(prefix="cleave-image-", dir=where))
+    status = subprocess.run(command, env={**os.environ, _WORK: str(work)}, check=False).returncode
+    if str(work) in Path("/proc/self/mountinfo").read_text():
+        raise RuntimeError(
+            f"Something is still mounted in {work}: it is not removed, since that would remove it there."
+        )
+    shutil.rmtree(work)
+    return status
+
+
+def _parser() -> argparse.ArgumentParser:
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("base", type=Path)
+    parser.add_argument("--work", type=Path, help="where the roots of the stages go (the folder for temporary files)")
+    parser.add_argument(
+        "--bind",
+        type=Path,
+        action="append",
+        default=[],
+        help="a path of this machine that commands see, such as /etc/pip.conf",
+    )
+    return parser
+
+
+def _say(text: str) -> None:
+    print(text, flush=True)
+
+
+if __name__ == "__main__":
+    sys.exit(main())
