@@ -183,20 +183,10 @@ def decode_triangles(source: Bytes, target: LongArray) -> bool:
             else:
                 at, last = _moved(source, at, last)
                 a = last
-            b = vertices[(vertex - high) & 15]
-            if high == 0:
-                b = following
-                following += 1
-            elif high == 15 and explicit:
-                at, last = _moved(source, at, last)
-                b = last
-            c = vertices[(vertex - low) & 15]
-            if low == 0:
-                c = following
-                following += 1
-            elif low == 15 and explicit:
-                at, last = _moved(source, at, last)
-                c = last
+            b, at, following, last = _listed(
+                source, at, high, explicit, vertices[(vertex - high) & 15], following, last
+            )
+            c, at, following, last = _listed(source, at, low, explicit, vertices[(vertex - low) & 15], following, last)
             vertices[vertex & 15] = a
             vertex += 1
             if high == 0 or (high == 15 and explicit):
@@ -212,6 +202,19 @@ def decode_triangles(source: Bytes, target: LongArray) -> bool:
         edge += 2
         target[3 * t], target[3 * t + 1], target[3 * t + 2] = a, b, c
     return at == end
+
+
+@njit(cache=True)
+def _listed(
+    source: Bytes, at: int, place: int, explicit: bool, known: int, following: int, last: int
+) -> tuple[int, int, int, int]:
+    """A corner that is new (place 0), written out (15) or ``known``; ``at``, ``following`` and ``last`` moved on."""
+    if place == 0:
+        return following, at, following + 1, last
+    if place == 15 and explicit:
+        at, last = _moved(source, at, last)
+        return last, at, following, last
+    return known, at, following, last
 
 
 @njit(cache=True)
