@@ -11,9 +11,10 @@ from segcore.errors import LimitExceeded
 from segcore.hierarchy import Hierarchy
 from segcore.io.glb_appearance import add_attributes, name_groups
 from segcore.io.glb_features import add_features
-from segcore.io.glb_geometry import group, place
+from segcore.io.glb_geometry import place
 from segcore.io.glb_scene import all_levels_drawing, level_drawing, scene_document
 from segcore.io.names import SegmentNames, segment_names
+from segcore.io.slices import group
 from segcore.mesh import Mesh
 
 _LARGEST_FILE = 2**32 - 1  # the lengths in a GLB file are 32 bits

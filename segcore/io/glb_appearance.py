@@ -5,8 +5,8 @@ from typing import Any
 from numpy.typing import NDArray
 
 from segcore.appearance import Appearance
-from segcore.io.glb_geometry import Slices
 from segcore.io.glb_views import append_view
+from segcore.io.slices import Slices
 
 _UNSIGNED_BYTE, _FLOAT = 5121, 5126
 _ARRAY_BUFFER = 34962
@@ -33,5 +33,4 @@ def name_groups(document: dict[str, Any], look: Appearance, slices: Slices) -> N
         return
     for node in document["nodes"]:
         if "mesh" in node:
-            first, last = slices.start[node["mesh"]], slices.start[node["mesh"] + 1]
-            node["extras"]["groups"] = look.groups_of(slices.faces[first:last])
+            node["extras"]["groups"] = look.groups_of(slices[node["mesh"]])

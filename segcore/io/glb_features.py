@@ -12,9 +12,9 @@ from numpy.typing import NDArray
 
 from segcore.arrays import IntArray
 from segcore.hierarchy import Hierarchy
-from segcore.io.glb_geometry import Slices
 from segcore.io.glb_views import append_view
 from segcore.io.labels import node_documents
+from segcore.io.slices import Slices
 
 _FEATURES, _METADATA = "EXT_mesh_features", "EXT_structural_metadata"
 _FLOAT, _ARRAY_BUFFER = 5126, 34962
@@ -85,7 +85,7 @@ def _layers(
     layers: list[NDArray[np.float32]] = []
     layer_of = []
     for part, node in enumerate(nodes.tolist()):
-        used = corners[slices.faces[slices.start[part] : slices.start[part + 1]]]
+        used = corners[slices[part]]
         free = (k for k, ids in enumerate(layers) if (ids[used] == nothing).all())
         layer = next(free, len(layers))
         if layer == len(layers):

@@ -1,11 +1,10 @@
-"""The arrays of a GLB file: positions that float32 can hold, and faces in slices, one for each part."""
+"""The positions of a GLB file, as float32 can hold them."""
 
 from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
 
-from segcore.arrays import IntArray
 from segcore.mesh import Mesh
 
 _FAR_OUT = 16.0  # distance from the origin, in extents of the mesh, at which float32 coordinates lose four bits
@@ -19,14 +18,6 @@ class Placement:
     positions: NDArray[np.float32]  # (A, 3) of the vertices, then of the further rows of the appearance
     translation: list[float]
     scale: float
-
-
-@dataclass(frozen=True, slots=True, eq=False)
-class Slices:
-    """The faces grouped by part, in input order within each."""
-
-    faces: IntArray  # (F,) input face ids
-    start: IntArray  # (K + 1,) part k owns faces[start[k]:start[k + 1]]
 
 
 def place(mesh: Mesh) -> Placement:
@@ -46,11 +37,3 @@ def place(mesh: Mesh) -> Placement:
     if mesh.appearance is not None and len(mesh.appearance.extra_vertex):
         rows = np.concatenate([rows, rows[mesh.appearance.extra_vertex]])
     return Placement(rows, translation.tolist(), scale)
-
-
-def group(part_of_face: IntArray, count: int) -> Slices:
-    """The faces of each of ``count`` parts."""
-    keys = part_of_face.astype(np.uint16) if count <= 2**16 else part_of_face  # 16-bit keys are sorted by radix
-    order = np.argsort(keys, kind="stable").astype(np.int32)
-    start = np.concatenate([[0], np.cumsum(np.bincount(part_of_face, minlength=count))]).astype(np.int32)
-    return Slices(order, start)

@@ -8,9 +8,10 @@ from numpy.typing import NDArray
 
 from segcore.arrays import FloatArray, IntArray
 from segcore.hierarchy import Hierarchy
-from segcore.io.glb_geometry import Placement, Slices
+from segcore.io.glb_geometry import Placement
 from segcore.io.labels import node_documents
 from segcore.io.palette import linear_rgb, segment_colors
+from segcore.io.slices import Slices
 
 _UNSIGNED_INT, _FLOAT = 5125, 5126
 _ARRAY_BUFFER, _ELEMENT_ARRAY_BUFFER = 34962, 34963

@@ -8,9 +8,9 @@ import numpy as np
 from segcore.appearance import Appearance
 from segcore.arrays import IntArray
 from segcore.hierarchy import Hierarchy
-from segcore.io.glb_geometry import group
 from segcore.io.lines import format_rows
 from segcore.io.names import SegmentNames, comment, group_names
+from segcore.io.slices import segment_slices
 from segcore.mesh import Mesh
 
 
@@ -38,15 +38,13 @@ def write_obj(
     InvalidParameters
         Where ``segments`` is not in 1..max_segments.
     """
-    labels = hierarchy.labels(segments)
-    count = len(hierarchy.segment_nodes(segments))
+    slices = segment_slices(hierarchy, segments)
     appearance = mesh.appearance or Appearance()
     target.write(b"# written by Cleave: group k, counted from 0, holds the faces with label k, in input order\n")
     for lines in _vertex_lines(mesh, appearance):
         target.write(lines)
-    slices = group(labels, count)
-    for label, name in enumerate(group_names(names, count)):
-        faces = slices.faces[slices.start[label] : slices.start[label + 1]]
+    for label, name in enumerate(group_names(names, len(slices))):
+        faces = slices[label]
         target.write(f"g {name}\n".encode())
         for of_input in appearance.groups_of(faces):
             target.write(f"# group of the input: {comment(of_input)}\n".encode())

@@ -8,7 +8,7 @@ import numpy as np
 from segcore.arrays import FloatArray, IntArray
 from segcore.hierarchy import Hierarchy
 from segcore.io.caps import close_borders
-from segcore.io.glb_geometry import group
+from segcore.io.slices import Slices, group, segment_slices
 from segcore.mesh import Mesh
 from segcore.surface import build_surface
 
@@ -30,7 +30,7 @@ def segment_parts(mesh: Mesh, hierarchy: Hierarchy, segments: int | None = None)
     InvalidParameters
         Where ``segments`` is not in 1..max_segments.
     """
-    yield from _parts(mesh.vertices, mesh.faces, hierarchy.labels(segments), len(hierarchy.segment_nodes(segments)))
+    yield from _parts(mesh.vertices, mesh.faces, segment_slices(hierarchy, segments))
 
 
 def closed_parts(mesh: Mesh, hierarchy: Hierarchy, segments: int | None = None) -> Iterator[Part]:
@@ -51,16 +51,15 @@ def closed_parts(mesh: Mesh, hierarchy: Hierarchy, segments: int | None = None) 
     vertices = surface.vertices * surface.unit + (0.5 * low + 0.5 * high)  # the surface is centred on the box
     label_of_face = np.zeros(len(surface.faces), dtype=np.int32)
     label_of_face[surface.face_of_input[::-1]] = labels[::-1]  # where they differ, the first input face decides
-    for part in _parts(vertices, surface.faces, label_of_face, count):
+    for part in _parts(vertices, surface.faces, group(label_of_face, count)):
         closed = close_borders(part.vertices, part.faces)
         yield Part(part.label, closed.vertices, closed.faces)
 
 
-def _parts(vertices: FloatArray, faces: IntArray, labels: IntArray, count: int) -> Iterator[Part]:
-    slices = group(labels, count)
+def _parts(vertices: FloatArray, faces: IntArray, slices: Slices) -> Iterator[Part]:
     place = np.empty(len(vertices), dtype=np.int32)
-    for label in range(count):
-        corners = faces[slices.faces[slices.start[label] : slices.start[label + 1]]]
+    for label in range(len(slices)):
+        corners = faces[slices[label]]
         used = np.unique(corners)
         place[used] = np.arange(len(used))
         if len(corners):

@@ -2,19 +2,17 @@
 
 import zipfile
 from collections.abc import Iterator
-from itertools import pairwise
 from typing import BinaryIO
 from xml.sax.saxutils import escape, quoteattr
 
 from segcore.appearance import Appearance
-from segcore.arrays import IntArray
 from segcore.hierarchy import Hierarchy
 from segcore.io.archive import FAST, member
-from segcore.io.glb_geometry import group
 from segcore.io.lines import format_rows
 from segcore.io.names import SegmentNames, one_line, segment_names
 from segcore.io.palette import color_bytes
 from segcore.io.parts import Part, closed_parts, segment_parts
+from segcore.io.slices import Slices, segment_slices
 from segcore.mesh import Mesh
 
 _CORE = "http://schemas.microsoft.com/3dmanufacturing/core/2015/02"
@@ -65,7 +63,7 @@ def write_3mf(
     count = len(hierarchy.segment_nodes(segments))
     parts = (closed_parts if capped else segment_parts)(mesh, hierarchy, segments)
     called = [quoteattr(name) for name in segment_names(names, count)]
-    described = _descriptions(mesh, hierarchy.labels(segments), count)
+    described = _descriptions(mesh.appearance or Appearance(), segment_slices(hierarchy, segments))
     with zipfile.ZipFile(target, "w", compresslevel=FAST) as archive:
         for name, text in _PACKAGE.items():
             archive.writestr(member(name, compressed=True), text, compresslevel=FAST)
@@ -73,12 +71,11 @@ def write_3mf(
             model.writelines(_model(parts, called, described))
 
 
-def _descriptions(mesh: Mesh, labels: IntArray, count: int) -> list[str]:
+def _descriptions(look: Appearance, slices: Slices) -> list[str]:
     """The XML of what is known about every segment beside its shape."""
-    look, slices = mesh.appearance or Appearance(), group(labels, count)
     result = []
-    for first, end in pairwise(slices.start.tolist()):
-        groups = ", ".join(map(one_line, look.groups_of(slices.faces[first:end])))
+    for label in range(len(slices)):
+        groups = ", ".join(map(one_line, look.groups_of(slices[label])))
         text = f'<metadata name="Description">groups of the input: {escape(groups)}</metadata>'
         result.append(f"<metadatagroup>{text}</metadatagroup>\n" if groups else "")
     return result

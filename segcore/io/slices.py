@@ -1,0 +1,42 @@
+"""The faces of a mesh in slices, one for each part."""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from segcore.arrays import IntArray
+from segcore.hierarchy import Hierarchy
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Slices:
+    """The faces grouped by part, in input order within each."""
+
+    faces: IntArray  # (F,) input face ids
+    start: IntArray  # (K + 1,) part k owns faces[start[k]:start[k + 1]]
+
+    def __len__(self) -> int:
+        return len(self.start) - 1
+
+    def __getitem__(self, part: int) -> IntArray:
+        """The input faces of a part."""
+        return self.faces[self.start[part] : self.start[part + 1]]
+
+
+def group(part_of_face: IntArray, count: int) -> Slices:
+    """The faces of each of ``count`` parts."""
+    keys = part_of_face.astype(np.uint16) if count <= 2**16 else part_of_face  # 16-bit keys are sorted by radix
+    order = np.argsort(keys, kind="stable").astype(np.int32)
+    start = np.concatenate([[0], np.cumsum(np.bincount(part_of_face, minlength=count))]).astype(np.int32)
+    return Slices(order, start)
+
+
+def segment_slices(hierarchy: Hierarchy, segments: int | None = None) -> Slices:
+    """The faces of each segment of a level, by default the automatic one.
+
+    Raises
+    ------
+    InvalidParameters
+        Where ``segments`` is not in 1..max_segments.
+    """
+    return group(hierarchy.labels(segments), len(hierarchy.segment_nodes(segments)))
