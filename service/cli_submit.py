@@ -7,19 +7,8 @@ from collections.abc import Callable
 from pathlib import Path
 
 from service.file_commands import add_fineness
+from service.saved_results import RESULTS
 
-# What is saved of every file: the ending of its name, and the path below the job.
-RESULTS = {
-    "seg": ("seg", "labels?format=seg"),
-    "npy": ("npy", "labels?format=npy"),
-    "json": ("json", "hierarchy"),
-    "glb": ("glb", "model.glb"),
-    "ply": ("ply", "model.ply"),
-    "obj": ("obj", "model.obj"),
-    "3mf": ("3mf", "model.3mf"),
-    "zip": ("zip", "parts.zip"),
-    "png": ("png", "preview.png"),
-}
 SOME_FAILED = 1  # exit status
 
 _DEFAULT_SERVER = "http://127.0.0.1:8000"

@@ -12,8 +12,8 @@ from pathlib import Path
 from cleave.client import Client
 from cleave.documents import Job
 from cleave.errors import ClientError, JobEnded, RequestRefused
-from service.cli_submit import RESULTS
 from service.progress_board import ProgressBoard
+from service.saved_results import RESULTS
 
 _AT_A_TIME = 4
 _POLL_S = 1.0
