@@ -1,0 +1,128 @@
+"""The manifests for Kubernetes: valid, and true to the product that they start."""
+
+from pathlib import Path
+from typing import Any
+
+import kubernetes_validate
+import pytest
+import yaml
+
+from worker.queue import QUEUE_NAMES
+from worker.settings import Settings
+from worker.size_class import SizeClass
+
+FOLDER = Path(__file__).parents[2] / "deploy" / "kubernetes"
+KUSTOMIZATION = yaml.safe_load((FOLDER / "kustomization.yaml").read_text())
+DOCUMENTS: list[dict[str, Any]] = [
+    document for file in KUSTOMIZATION["resources"] for document in yaml.safe_load_all((FOLDER / file).read_text())
+]
+BUILT_IN = [one for one in DOCUMENTS if not one["apiVersion"].startswith("keda.sh/")]
+WORKLOADS = {one["metadata"]["name"]: one for one in DOCUMENTS if one["kind"] in ("Deployment", "StatefulSet")}
+OWN = ["service", "worker-small", "worker-large"]
+SECRET_KEYS = {"redis-password", "aws-access-key-id", "aws-secret-access-key", "api-keys"}
+VERSION = "1.33"
+
+
+def name_of(document: dict[str, Any]) -> str:
+    return f"{document['kind']}-{document['metadata']['name']}"
+
+
+def named(kind: str) -> dict[str, dict[str, Any]]:
+    return {one["metadata"]["name"]: one["spec"] for one in DOCUMENTS if one["kind"] == kind}
+
+
+def pod(name: str) -> dict[str, Any]:
+    spec: dict[str, Any] = WORKLOADS[name]["spec"]["template"]["spec"]
+    return spec
+
+
+def container(name: str) -> dict[str, Any]:
+    (only,) = pod(name)["containers"]
+    assert isinstance(only, dict)
+    return only
+
+
+def variables(name: str) -> dict[str, str]:
+    return {one["name"]: str(one.get("value", "")) for one in container(name)["env"]}
+
+
+@pytest.mark.parametrize("document", BUILT_IN, ids=name_of)
+def test_every_manifest_is_valid(document: dict[str, Any]) -> None:
+    kubernetes_validate.validate(document, VERSION, strict=True)
+
+
+def test_every_file_belongs_to_the_kustomization() -> None:
+    assert {path.name for path in FOLDER.iterdir()} == {*KUSTOMIZATION["resources"], "kustomization.yaml"}
+
+
+@pytest.mark.parametrize("name", WORKLOADS)
+def test_no_pod_runs_as_root_changes_its_image_or_speaks_to_the_cluster(name: str) -> None:
+    assert pod(name)["securityContext"]["runAsNonRoot"] is True
+    assert pod(name)["securityContext"]["seccompProfile"] == {"type": "RuntimeDefault"}
+    assert pod(name)["automountServiceAccountToken"] is False
+    assert container(name)["securityContext"] == {
+        "allowPrivilegeEscalation": False,
+        "readOnlyRootFilesystem": True,
+        "capabilities": {"drop": ["ALL"]},
+    }
+    assert "readinessProbe" in container(name)
+    assert set(container(name)["resources"]) == {"requests", "limits"}
+    assert WORKLOADS[name]["spec"]["template"]["metadata"]["labels"]["app.kubernetes.io/name"] == name
+
+
+@pytest.mark.parametrize("name", OWN)
+def test_only_settings_that_there_are_are_set_and_secrets_are_by_reference(name: str) -> None:
+    known = {f"CLEAVE_{field.upper()}" for field in Settings.model_fields}
+    literals = [literal.partition("=")[0] for literal in KUSTOMIZATION["configMapGenerator"][0]["literals"]]
+    given = [*variables(name), *literals]
+    assert {variable for variable in given if variable.startswith("CLEAVE_")} <= known
+    referred = [one["valueFrom"]["secretKeyRef"] for one in container(name)["env"] if "valueFrom" in one]
+    assert {one["name"] for one in referred} == {"cleave"}
+    assert {one["key"] for one in referred} <= SECRET_KEYS
+    assert "Secret" not in {one["kind"] for one in DOCUMENTS}
+    assert variables(name)["CLEAVE_REDIS_URL"] == "redis://:$(REDIS_PASSWORD)@redis:6379/0"
+    assert {mount["mountPath"] for mount in container(name)["volumeMounts"]} == {"/data", "/tmp"}
+
+
+@pytest.mark.parametrize("size", SizeClass)
+def test_a_worker_is_scaled_by_its_queue_and_may_finish_its_job(size: SizeClass) -> None:
+    name = f"worker-{size}"
+    assert container(name)["args"][:3] == ["worker", "--queue", size]
+    grace_s = float(variables(name)["CLEAVE_SHUTDOWN_GRACE_S"])
+    assert grace_s >= float(variables(name)["CLEAVE_JOB_TIMEOUT_S"])
+    assert pod(name)["terminationGracePeriodSeconds"] > grace_s + 10
+    scaled = named("ScaledObject")[name]
+    (trigger,) = scaled["triggers"]
+    assert scaled["scaleTargetRef"] == {"name": name}
+    assert scaled["minReplicaCount"] >= 1  # or /readyz would be false for ever
+    assert "replicas" not in WORKLOADS[name]["spec"]
+    assert trigger["type"] == "redis"
+    assert trigger["metadata"]["listName"] == f"rq:queue:{QUEUE_NAMES[size]}"
+    assert trigger["metadata"]["address"] == f"redis.{KUSTOMIZATION['namespace']}.svc:6379"
+    assert trigger["authenticationRef"]["name"] in named("TriggerAuthentication")
+    assert all(isinstance(value, str) for value in trigger["metadata"].values())
+
+
+def test_names_and_ports_fit_together() -> None:
+    services = named("Service")
+    for name, labels in {"cleave": "service", "redis": "redis"}.items():
+        assert services[name]["selector"] == {"app.kubernetes.io/name": labels}
+    (port,) = container("service")["ports"]
+    assert (port["name"], port["containerPort"]) == ("http", 8000)  # as the Dockerfile exposes it
+    assert services["cleave"]["ports"][0]["targetPort"] == "http"
+    policies = named("NetworkPolicy")
+    assert policies["nothing"] == {"podSelector": {}, "policyTypes": ["Ingress", "Egress"]}
+    assert policies["service"]["ingress"][0]["ports"] == [{"protocol": "TCP", "port": 8000}]
+    assert policies["redis"]["ingress"][0]["ports"] == [{"protocol": "TCP", "port": 6379}]
+    uses = policies["queue-and-store"]["podSelector"]["matchLabels"].items()
+    for name in OWN:
+        assert uses <= WORKLOADS[name]["spec"]["template"]["metadata"]["labels"].items()
+    for name, budget in named("PodDisruptionBudget").items():
+        assert budget["selector"]["matchLabels"] == {"app.kubernetes.io/name": name}
+
+
+def test_the_queue_keeps_what_it_has_and_asks_for_a_password() -> None:
+    arguments = container("redis")["args"]
+    options = dict(zip(arguments[::2], arguments[1::2], strict=True))
+    assert (options["--appendonly"], options["--maxmemory-policy"]) == ("yes", "noeviction")
+    assert options["--requirepass"] == "$(REDISCLI_AUTH)"
