@@ -1,0 +1,92 @@
+"""The dashboard and the alerts ask for metrics that there are, by labels that they have."""
+
+import json
+import re
+from pathlib import Path
+
+import pytest
+import yaml
+from redis import Redis
+
+from service.metrics import Metrics
+from support import accepted
+from worker.jobs import Failed, Succeeded, now
+from worker.queue import JobQueue
+from worker.store import JobStore
+from worker.tallies import Tallies
+
+FOLDER = Path(__file__).parents[2] / "deploy"
+DASHBOARD = json.loads((FOLDER / "grafana" / "cleave.json").read_text())
+RULES = yaml.safe_load((FOLDER / "prometheus" / "alerts.yml").read_text())["groups"][0]["rules"]
+QUERIES = [target["expr"] for panel in DASHBOARD["panels"] for target in panel.get("targets", [])]
+QUERIES += [rule["expr"] for rule in RULES]
+
+
+@pytest.fixture
+def labels_of(store: JobStore, queue: JobQueue, connection: Redis) -> dict[str, set[str]]:
+    """The metrics of an installation in which everything has happened once, and their labels."""
+    job, tallies = accepted(store, b"mesh"), Tallies(connection)
+    queue.take(job.id, "worker", lease_s=30)
+    done = Succeeded(finished_at=now(), faces=1, vertices=3, max_segments=1, automatic_segments=1)
+    tallies.job_ended(job, done, {"cut": 1.0})
+    tallies.job_ended(job, Failed(finished_at=now(), code="invalid_mesh", message="."), {})
+    tallies.attempt_lost("worker_lost")
+    tallies.job_recovered()
+    tallies.store_failed("worker")
+    metrics = Metrics(store, queue)
+    metrics.requests.labels("GET", "/", 200).inc()
+    metrics.seconds.labels("/").observe(1.0)
+    metrics.jobs.labels("accepted").inc()
+    found: dict[str, set[str]] = {}
+    for family in metrics.registry.collect():
+        for sample in family.samples:
+            found.setdefault(sample.name, set()).update(sample.labels)
+    return found
+
+
+@pytest.mark.parametrize("query", QUERIES)
+def test_a_query_asks_for_what_there_is(query: str, labels_of: dict[str, set[str]]) -> None:
+    names = re.findall(r"\bcleave_\w+", query)
+    assert names
+    assert set(names) <= set(labels_of)
+    asked = {label.strip() for group in re.findall(r"by \(([^)]*)\)", query) for label in group.split(",")}
+    asked |= {
+        label for selector in re.findall(r"{([^}]*)}", query) for label in re.findall(r"(\w+)\s*(?:=|!)", selector)
+    }
+    assert asked <= set().union(*(labels_of[name] for name in names))
+    assert query.count("(") == query.count(")")
+
+
+def test_counts_that_every_service_tells_are_not_summed_over_the_services(labels_of: dict[str, set[str]]) -> None:
+    own = (
+        "cleave_requests",
+        "cleave_request_seconds",
+        "cleave_jobs_submitted",
+        "cleave_upload_bytes",
+        "cleave_store_errors",
+    )
+    assert labels_of
+    for query in QUERIES:
+        for inner in re.findall(r"sum(?: by \([^)]*\))? ?\((?:rate|increase)?\(?(cleave_\w+)", query):
+            assert inner.startswith(own), query
+
+
+def test_the_dashboard_shows_every_metric_and_its_panels_do_not_overlap(labels_of: dict[str, set[str]]) -> None:
+    shown = {
+        re.sub(r"_(bucket|count|sum)$", "", name) for query in QUERIES for name in re.findall(r"\bcleave_\w+", query)
+    }
+    there = {re.sub(r"_(bucket|count|sum|created)$", "", name) for name in labels_of}
+    assert shown == {name for name in there if f"{name}_total" not in there}
+    taken: set[tuple[int, int]] = set()
+    for place in (panel["gridPos"] for panel in DASHBOARD["panels"]):
+        cells = {(place["x"] + x, place["y"] + y) for x in range(place["w"]) for y in range(place["h"])}
+        assert not cells & taken
+        taken |= cells
+    assert len({panel["id"] for panel in DASHBOARD["panels"]}) == len(DASHBOARD["panels"])
+
+
+@pytest.mark.parametrize("rule", RULES, ids=lambda rule: rule["alert"])
+def test_an_alert_says_what_is_wrong_and_what_to_do(rule: dict[str, dict[str, str]]) -> None:
+    assert rule["labels"]["severity"] in ("critical", "warning")
+    assert set(rule["annotations"]) == {"summary", "description"}
+    assert all(text.endswith(".") for text in rule["annotations"].values())
