@@ -1,5 +1,5 @@
 .DEFAULT_GOAL := help
-.PHONY: help check static format lint types imports containers viewer test image-check
+.PHONY: help check static format lint types imports security audit containers viewer test image-check
 
 # What stands for the image that the Dockerfile begins with, and what pip needs of this machine to find packages.
 IMAGE_BASE ?= /var/tmp/cleave-image-base
@@ -10,7 +10,7 @@ help:  ## show the targets
 
 check: static test  ## everything that must pass before a change lands
 
-static: format lint types imports containers viewer  ## the checks that run nothing of the product
+static: format lint types imports security containers viewer  ## the checks that run nothing of the product
 
 format:  ## formatting (`ruff format .` mends it)
 	ruff format --check .
@@ -23,6 +23,12 @@ types:  ## strict types
 
 imports:  ## service -> worker -> segcore, one way
 	lint-imports
+
+security:  ## patterns in the code that let attackers in
+	bandit --quiet --configfile pyproject.toml --recursive cleave segcore worker service
+
+audit: security  ## known vulnerabilities of the installed packages, too (asks a service on the internet; extra `audit`)
+	pip freeze --exclude-editable --exclude cleave | pip-audit --strict --disable-pip --no-deps --requirement /dev/stdin
 
 containers:  ## Dockerfile and compose file, without a container engine
 	hadolint Dockerfile

@@ -13,7 +13,7 @@ import httpx
 from worker.jobs import Job, Outcome
 
 _TIMEOUT_S = 10.0
-SECRET_PREFIX = "whsec_"
+SECRET_PREFIX = "whsec_"  # nosec B105  # every secret of Standard Webhooks begins so
 
 
 class Undeliverable(Exception):  # noqa: N818

@@ -3,7 +3,7 @@
 import zipfile
 from collections.abc import Iterator
 from typing import BinaryIO
-from xml.sax.saxutils import escape, quoteattr
+from xml.sax.saxutils import escape, quoteattr  # nosec B406  # it writes XML, and reads none
 
 from segcore.appearance import Appearance
 from segcore.hierarchy import Hierarchy
