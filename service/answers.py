@@ -13,7 +13,7 @@ from starlette.responses import Response
 from service.problems import Problem
 
 # Results never change, but who may read them does.
-_FOR_EVER = "private, max-age=31536000, immutable"
+FOR_EVER = "private, max-age=31536000, immutable"
 _RESULT_HEADERS = {
     "ETag": {"schema": {"type": "string"}, "description": "Of these bytes; for If-None-Match and If-Range."},
     "Accept-Ranges": {"schema": {"const": "bytes"}},
@@ -59,7 +59,7 @@ def answer_rendition(request: Request, rendition: Rendition) -> Response:
     # A range is one of the bytes themselves: most who ask for it would take a piece of a compressed file for them.
     is_gzip = shrinks and "range" not in request.headers and takes_gzip(request.headers.get("accept-encoding", ""))
     tag = entity_tag(f"{rendition.identity}{';gzip' if is_gzip else ''}".encode())
-    headers = {"ETag": tag, "Cache-Control": _FOR_EVER, "Accept-Ranges": "bytes"}
+    headers = {"ETag": tag, "Cache-Control": FOR_EVER, "Accept-Ranges": "bytes"}
     chosen_by = [rendition.vary, "Accept-Encoding" if shrinks else None]
     if any(chosen_by):
         headers["Vary"] = ", ".join(filter(None, chosen_by))

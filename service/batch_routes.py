@@ -245,7 +245,7 @@ def _known_batch(context: Context, caller: Caller, batch_id: str) -> Batch:
 
 def _jobs(context: Context, batch: Batch) -> list[tuple[Job | None, JobDocument | None]]:
     """The jobs of a batch in its order; None for those that were deleted."""
-    found = {job_id: context.store.job(job_id) for job_id in batch.job_ids}
+    found = context.store.jobs(batch.job_ids)
     there = [job for job in found.values() if job is not None]
     documents = {document.id: document for document in describe_all(context, there)}
     return [(found[job_id], documents.get(job_id)) for job_id in batch.job_ids]

@@ -11,6 +11,7 @@ from service.metrics import Metrics
 from service.results import ResultCache
 from worker.admission import admit
 from worker.batches import BatchStore
+from worker.durable import is_disk_full
 from worker.installation_secret import InstallationSecret
 from worker.jobs import Canceled, Job, now
 from worker.queue import Activity, JobQueue, QueueError
@@ -62,7 +63,11 @@ class Context:
 
     def discard(self, job: Job) -> None:
         """Remove a job with its files; one that has not finished is canceled first."""
-        self.store.finish(job.id, Canceled(finished_at=now()))
+        try:
+            self.store.finish(job.id, Canceled(finished_at=now()))
+        except OSError as error:
+            if not is_disk_full(error):  # what makes room must be possible then
+                raise
         self.store.delete(job.id)
         self.results.drop(job.id)
         self.withdraw(job)

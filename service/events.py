@@ -54,7 +54,7 @@ async def job_events(context: Context, job: Job, last_id: int) -> AsyncIterator[
             yield ": still here\n\n"
         if document.finished_at is not None or not await run_in_threadpool(context.store.job, job.id):
             return
-        await asyncio.sleep(_LOOK_S)
+        await asyncio.sleep(max(_LOOK_S, 2 * context.store.look_s))
 
 
 def has_seen_the_end(document: JobDocument, last_id: int) -> bool:

@@ -7,7 +7,7 @@ from service.access import Caller
 from service.context import Context
 from service.documents import JobDocument, job_document
 from service.problems import JobError, Problem
-from worker.jobs import Canceled, Failed, Job, Outcome, Succeeded
+from worker.jobs import Canceled, Failed, Job, Succeeded
 from worker.logs import note_job
 from worker.store import UnknownJob
 
@@ -37,16 +37,22 @@ def describe(context: Context, job: Job) -> JobDocument:
 
 def describe_all(context: Context, jobs: Sequence[Job]) -> list[JobDocument]:
     """How some jobs are, with one question to the queue."""
-    outcomes: dict[str, Outcome | None] = {job.id: context.store.outcome(job.id) for job in jobs}
-    activities = context.view.activities([job.id for job in jobs if outcomes[job.id] is None])
-    return [job_document(job, outcomes[job.id], context.store.attempts(job.id), activities.get(job.id)) for job in jobs]
+    states = context.store.states(jobs)
+    activities = context.view.activities([job.id for job in jobs if states[job.id].outcome is None])
+    return [job_document(job, states[job.id].outcome, states[job.id].attempts, activities.get(job.id)) for job in jobs]
 
 
 def result_of(context: Context, job: Job) -> Segmentation:
     """The mesh and the hierarchy of a job that succeeded; where there is none, the Problem says why."""
+    check_succeeded(context, job)
+    return context.results.get(job.id)
+
+
+def check_succeeded(context: Context, job: Job) -> None:
+    """Raise the Problem that says why a job has no result, where it has none."""
     match context.store.outcome(job.id):
         case Succeeded():
-            return context.results.get(job.id)
+            return
         case Failed(code=code, message=message):
             raise Problem("job_failed", f"The job failed: {message}", JobError(code=code, message=message))
         case Canceled():

@@ -9,7 +9,7 @@ from pydantic.json_schema import models_json_schema
 
 from segcore.parameters import parameters_schema
 from service.documents import BatchJobs, HierarchyDocument, LabelsDocument, RunsDocument
-from service.problems import ProblemDocument
+from service.problems import MEDIA_TYPE, ProblemDocument, documented
 
 # Models that are answered or taken as bytes, so that FastAPI does not see them.
 _HIDDEN_MODELS: tuple[type[BaseModel], ...] = (
@@ -20,6 +20,7 @@ _HIDDEN_MODELS: tuple[type[BaseModel], ...] = (
     BatchJobs,
 )
 _PLACE = "#/components/schemas/{model}"
+_OF_THE_STORE = ("/v1/jobs", "/v1/batches")  # paths whose operations need the store
 _UNUSED = ("HTTPValidationError", "ValidationError")
 
 PARAMETERS = {"$ref": _PLACE.format(model="Parameters")}
@@ -57,8 +58,11 @@ def _completed(document: dict[str, Any], keys_required: bool) -> dict[str, Any]:
     schemas["Parameters"] = deepcopy(parameters_schema())
     for name in _UNUSED:
         schemas.pop(name, None)
-    for operation in (operation for path in document["paths"].values() for operation in path.values()):
-        _correct(operation, keys_required)
+    for path, operations in document["paths"].items():
+        for operation in operations.values():
+            _correct(operation, keys_required)
+            if path.startswith(_OF_THE_STORE):
+                _add_problem(operation, "store_unavailable")
     if not keys_required:
         document["components"].pop("securitySchemes", None)
     return document
@@ -73,3 +77,12 @@ def _correct(operation: dict[str, Any], keys_required: bool) -> None:
             del responses[status]
     if not keys_required:
         operation.pop("security", None)
+
+
+def _add_problem(operation: dict[str, Any], code: str) -> None:
+    """Say that an operation may answer with a problem, beside what it says already of the same status."""
+    for status, response in documented(code).items():
+        there = operation["responses"].setdefault(str(status), response)
+        if there is not response:
+            there["description"] += f" `{code}`"
+            there["content"][MEDIA_TYPE]["examples"] |= response["content"][MEDIA_TYPE]["examples"]

@@ -1,6 +1,5 @@
 """Every error body of the service: problem details as in RFC 9457, with a stable ``code`` for programs."""
 
-import errno
 import json
 import logging
 from collections.abc import Mapping
@@ -15,6 +14,8 @@ from starlette.requests import ClientDisconnect
 from starlette.responses import Response
 
 from segcore.errors import InvalidParameters
+from worker.durable import is_disk_full
+from worker.objects import StoreError
 from worker.queue import QueueError
 from worker.store import UnknownJob
 
@@ -55,12 +56,12 @@ _CODES: dict[str, tuple[int, str]] = {
     "too_many_bytes": (429, "The caller has uploaded too much in this hour: go on after Retry-After."),
     "internal_error": (500, "The server stopped at an internal error: its log has the details."),
     "queue_unavailable": (503, "The queue does not answer at the moment: try again after Retry-After."),
-    "storage_full": (507, "The disk of the server is full: try again later or tell the operator."),
+    "store_unavailable": (503, "The store does not answer at the moment: try again after Retry-After."),
+    "insufficient_storage": (507, "The disk of the server is full: try again later or tell the operator."),
 }
 STATUS = {code: status for code, (status, _) in _CODES.items()}
 MEANING = {code: sentence for code, (_, sentence) in _CODES.items()}
-_RETRY_AFTER_S = {"not_finished": 1, "queue_unavailable": 5, "storage_full": 60}
-_DISK_FULL = {errno.ENOSPC, errno.EDQUOT}
+_RETRY_AFTER_S = {"not_finished": 1, "queue_unavailable": 5, "store_unavailable": 5, "insufficient_storage": 60}
 
 
 class JobError(BaseModel):
@@ -131,8 +132,11 @@ def translate(exception: Exception) -> Problem:
             return Problem("malformed_request", "The request could not be read to its end: send it again.")
         case QueueError():
             return Problem("queue_unavailable", "The queue does not answer at the moment: try again later.")
-        case OSError(errno=number) if number in _DISK_FULL:
-            return Problem("storage_full", "The disk of the server is full: try again later or tell the operator.")
+        case OSError() if is_disk_full(exception):
+            return Problem("insufficient_storage", "The disk is full: try again later or tell the operator.")
+        case StoreError():
+            log.warning("%s", exception)
+            return Problem("store_unavailable", "The store does not answer at the moment: try again later.")
     log.error("a request stopped at an error that it does not expect", exc_info=exception)
     return Problem("internal_error", "The server stopped at an internal error: its log has the details.")
 

@@ -20,7 +20,7 @@ from worker.settings import LONGEST_WAIT_S
 
 router = APIRouter(prefix="/v1/jobs", tags=["jobs"])
 
-_CHANGE_PROBLEMS = documented("unauthorized", "foreign_site", "job_not_found", "job_deleted", "storage_full")
+_CHANGE_PROBLEMS = documented("unauthorized", "foreign_site", "job_not_found", "job_deleted", "insufficient_storage")
 
 JobId = Annotated[str, Path(description="As in the answer to POST /v1/jobs.")]
 
@@ -107,7 +107,7 @@ async def get_events(
     "/{job_id}/cancel",
     response_model=JobDocument,
     responses=documented(
-        "unauthorized", "foreign_site", "job_not_found", "job_deleted", "already_finished", "storage_full"
+        "unauthorized", "foreign_site", "job_not_found", "job_deleted", "already_finished", "insufficient_storage"
     ),
 )
 def cancel_job(job_id: JobId, context: ContextOf, caller: CallerOf) -> JobDocument:

@@ -25,7 +25,7 @@ SUBMISSION_PROBLEMS = (
     "too_many_jobs",
     "too_many_bytes",
     "queue_unavailable",
-    "storage_full",
+    "insufficient_storage",
 )
 MESH_SCHEMA = {"type": "string", "format": "binary", "minLength": 1, "description": "The bytes of a mesh file."}
 _MESH = {"schema": MESH_SCHEMA}

@@ -1,15 +1,14 @@
 """Deleting a job: for others it is gone at once and for good, wherever the process dies that does it."""
 
-import errno
 import time
 
+from worker.durable import is_disk_full
 from worker.jobs import Job, is_job_id
 from worker.layout import RECORD, job_folder, job_key
 from worker.objects import ObjectStorage
 from worker.pending import remove_remains
 from worker.records import JOB
 
-_DISK_FULL = (errno.ENOSPC, errno.EDQUOT)
 _GONE, _DOOMED = "gone", "doomed"
 
 
@@ -23,7 +22,7 @@ class Deletions:
             self._objects.put(f"{_DOOMED}/{job.id}", JOB.dump_json(job))
             self._note(job)
         except OSError as error:
-            if error.errno not in _DISK_FULL:  # on a full disk deleting must be possible first of all
+            if not is_disk_full(error):  # on a full disk deleting must be possible first of all
                 raise
 
     def remove_objects(self, job: Job) -> None:

@@ -1,5 +1,6 @@
 """Files that are whole or absent after a crash, whatever was running."""
 
+import errno
 import os
 import secrets
 from collections.abc import Callable
@@ -7,6 +8,10 @@ from pathlib import Path
 from typing import BinaryIO
 
 TEMPORARY_SUFFIX = ".tmp"
+
+
+def is_disk_full(error: OSError) -> bool:
+    return error.errno in (errno.ENOSPC, errno.EDQUOT)
 
 
 def replace_file(path: Path, write: Callable[[BinaryIO], object], *, durable: bool = True) -> None:

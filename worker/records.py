@@ -1,6 +1,7 @@
 """What the store says about a job: its record, its runs, its outcome."""
 
 from collections import OrderedDict
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from typing import TypeVar
 
@@ -80,12 +81,12 @@ class Records:
     def remove_attempt(self, job_id: str, attempt: Attempt) -> None:
         self._objects.delete(_attempt_key(job_id, attempt))
 
-    def states(self, job_ids: list[str]) -> dict[str, JobState]:
+    def states(self, job_ids: Sequence[str]) -> dict[str, JobState]:
         """How some jobs are."""
         found = self._objects.each(lambda job_id: JobState(self.outcome(job_id), self.attempts(job_id)), job_ids)
         return dict(zip(job_ids, found, strict=True))
 
-    def jobs(self, job_ids: list[str]) -> list[Job | None]:
+    def jobs(self, job_ids: Sequence[str]) -> list[Job | None]:
         return self._objects.each(self.job, job_ids)
 
     def _read(self, key: str, adapter: TypeAdapter[Document]) -> Document | None:

@@ -1,8 +1,8 @@
 """Files of this machine that are on their way into the store.
 
-    <spool>/<random>/mesh          an upload
-    <spool>/<id>-<random>.result   what a running job writes
-    <spool>/stage-<random>/        a running job that was fetched from another machine, locked while it runs
+<spool>/<random>/mesh          an upload
+<spool>/<id>-<random>.result   what a running job writes
+<spool>/stage-<random>/        a running job that was fetched from another machine, locked while it runs
 """
 
 import fcntl

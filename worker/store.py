@@ -102,6 +102,10 @@ class JobStore:
     def job(self, job_id: str) -> Job | None:
         return self._records.job(job_id)
 
+    def jobs(self, job_ids: Sequence[str]) -> dict[str, Job | None]:
+        """Some jobs by their ids; None for those that are not there."""
+        return dict(zip(job_ids, self._records.jobs(job_ids), strict=True))
+
     def outcome(self, job_id: str) -> Outcome | None:
         return self._records.outcome(job_id)
 

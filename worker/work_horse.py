@@ -1,6 +1,5 @@
 """What a work-horse may use, and what its end says to the process that waits for it."""
 
-import errno
 import logging
 import os
 import resource
@@ -8,13 +7,13 @@ import signal
 from collections.abc import Callable
 from pathlib import Path
 
+from worker.durable import is_disk_full
 from worker.jobs import Cause
 
 log = logging.getLogger("cleave.work_horse")
 
 EXIT_OUT_OF_MEMORY = 71
 _EXIT_CANNOT_STORE = os.EX_TEMPFAIL
-_DISK_FULL = (errno.ENOSPC, errno.EDQUOT)
 
 
 def exit_status(work: Callable[[], None]) -> int:
@@ -25,7 +24,7 @@ def exit_status(work: Callable[[], None]) -> int:
         log.error("the job needs more memory than it may have")
         return EXIT_OUT_OF_MEMORY
     except OSError as error:
-        if error.errno not in _DISK_FULL:
+        if not is_disk_full(error):
             log.exception("the job stopped at an error of the system")
             return os.EX_SOFTWARE
         log.error("the disk is full")

@@ -2,12 +2,8 @@
 
 import os
 import signal
-import subprocess
 import time
-from collections.abc import Iterator
 from pathlib import Path
-
-import pytest
 
 from buckets import s3_server
 from support import LONG, StartWorker, accepted, children_of, sphere, wait_until
@@ -51,18 +47,6 @@ def test_a_worker_does_its_jobs_by_way_of_a_bucket_also_one_that_hangs_meanwhile
         assert [len(store.attempts(job_id)) for job_id in jobs] == [1, 1, 1]
         wait_until(lambda: list((tmp_path / "data" / "incoming").iterdir()) == [])
         assert worker.poll() is None
-
-
-@pytest.fixture
-def small_disk(tmp_path: Path) -> Iterator[Path]:
-    """A file system of 2 MB."""
-    folder = tmp_path / "data"
-    folder.mkdir()
-    mounted = subprocess.run(["mount", "-t", "tmpfs", "-o", "size=2m", "tmpfs", str(folder)], capture_output=True)
-    if mounted.returncode:
-        pytest.skip("a file system cannot be mounted here")
-    yield folder
-    subprocess.run(["umount", "--lazy", str(folder)], check=True)
 
 
 def test_a_full_disk_makes_a_job_wait_and_not_fail(
