@@ -10,6 +10,7 @@ from worker.jobs import Job, exhausted
 from worker.logs import about, configure_logging
 from worker.opening import open_store
 from worker.queue import JobQueue, QueueError, connect_impatiently
+from worker.retention import Housekeeping
 from worker.settings import Settings, load_settings
 from worker.size_class import size_class
 from worker.store import JobStore, UnknownJob
@@ -21,8 +22,6 @@ log = logging.getLogger("cleave.janitor")
 # one has no lease for a second or two after Redis was wiped. Only what stays away for longer is lost.
 MISSING_S = 5.0
 _LEADER_INTERVALS = 3  # that a leader may be late before another takes over
-_UPLOAD_UNTOUCHED_S = 3600.0
-_DELETED_S = 30 * 24 * 3600.0  # for so long clients are told that a job was there
 
 
 class Janitor:
@@ -33,6 +32,7 @@ class Janitor:
         self._queue = queue
         self._tallies = Tallies(queue.connection)
         self._settings = settings
+        self._housekeeping = Housekeeping(store, settings)
         self._name = f"{socket.gethostname()}.{os.getpid()}"
         self._missing_since: dict[str, float] = {}
 
@@ -50,8 +50,7 @@ class Janitor:
                 with about(job_id, job.traceparent):
                     self._recover(job)
         self._queue.forget_dead_workers()
-        self._store.remove_abandoned_uploads(_UPLOAD_UNTOUCHED_S)
-        self._store.forget_deleted(_DELETED_S)
+        self._housekeeping.sweep(at_s)
 
     def forget_sightings(self) -> None:
         """After a time without knowledge of the queue nothing is known to be missing."""

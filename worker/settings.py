@@ -33,6 +33,12 @@ class Settings(BaseSettings):
     store_cache_bytes: int = Field(
         default=2**30, ge=0, description="Results of a bucket that are kept in the data folder of a service."
     )
+    retention_s: float | None = Field(
+        default=None, ge=0, description="Age after its end at which a job is deleted; never where none is set."
+    )
+    retention_bytes: int | None = Field(
+        default=None, ge=0, description="Size of all jobs above which those go that ended first; any where none is set."
+    )
     redis_url: str | None = Field(
         default=None,
         pattern=r"^(redis|rediss|unix)://",
