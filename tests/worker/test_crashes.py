@@ -1,0 +1,258 @@
+"""A process dies between any two writes: what is left is one state or the other, and heals."""
+
+import errno
+from collections.abc import Callable, Iterator
+from dataclasses import replace
+from datetime import timedelta
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+from worker.acceptance import JobExists
+from worker.jobs import Job, Succeeded, new_job_id, now
+from worker.objects import ObjectStorage, StoreError
+from worker.outbox import Letter
+from worker.retention import stored_jobs
+from worker.spool import Spool
+from worker.store import JobStore, UnknownJob
+
+_WRITES = ("create", "put", "put_file", "delete")
+
+
+class Killed(BaseException):
+    """The process ends here."""
+
+
+class FailingObjects:
+    """Objects of which one write, and all after it, fail: before it is done, or after."""
+
+    def __init__(self, objects: ObjectStorage, write: int, error: BaseException, *, is_done: bool = False) -> None:
+        self._objects = objects
+        self._left = write
+        self._error = error
+        self._is_done = is_done
+
+    @property
+    def has_failed(self) -> bool:
+        return self._left < 0
+
+    def __getattr__(self, name: str) -> Any:
+        method = getattr(self._objects, name)
+        return method if name not in _WRITES else lambda *given, **named: self._write(method, *given, **named)
+
+    def _write(self, method: Callable[..., object], *given: object, **named: object) -> object:
+        self._left -= 1
+        if self._left == -1 and self._is_done:
+            method(*given, **named)
+        if self._left < 0:
+            raise self._error
+        return method(*given, **named)
+
+
+@pytest.fixture
+def reopen(placed: JobStore, tmp_path: Path) -> Callable[..., JobStore]:
+    """The store of the test, or other objects, as a new process opens it."""
+
+    def opened(objects: Any = None) -> JobStore:
+        return JobStore(objects or placed.objects, Spool(tmp_path / "data" / "incoming"))
+
+    return opened
+
+
+@pytest.fixture
+def nothing_is_young(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Whatever has no job is not on its way to one any more."""
+    monkeypatch.setattr("worker.pending._GRACE_S", -10.0)
+    monkeypatch.setattr("worker.store._ON_ITS_WAY", timedelta(days=-1))
+
+
+def a_job() -> Job:
+    return Job(
+        id=new_job_id(),
+        sha256="",
+        size_bytes=4,
+        mesh_format=None,
+        parameters={},
+        created_at=now(),
+        owner="me",
+        webhook_url="https://example.com/",
+    )
+
+
+def accept(store: JobStore, job: Job) -> Job:
+    with store.begin_upload() as upload:
+        upload.write(b"mesh")
+        job = replace(job, sha256=upload.sha256)
+        store.accept(job, upload)
+    return job
+
+
+def succeeded() -> Succeeded:
+    return Succeeded(finished_at=now(), faces=4, vertices=4, max_segments=3, automatic_segments=2)
+
+
+def everything(store: JobStore) -> list[str]:
+    folders = ("computed", "doomed", "index", "jobs", "outbox", "pending")
+    return [one.key for folder in folders for one in store.objects.list_below(folder)]
+
+
+def killed_at_every_write(
+    objects: ObjectStorage, act: Callable[[Any], object], prepare: Callable[[], object] = lambda: None
+) -> Iterator[int]:
+    """Do something again and again, killed at the first write, at the second, ..., until it is done unharmed."""
+    for write in range(100):
+        for is_done in (False, True):
+            prepare()
+            failing = FailingObjects(objects, write, Killed(), is_done=is_done)
+            try:
+                act(failing)
+            except Killed:
+                yield write
+            if not failing.has_failed:
+                assert write > 1
+                return
+    raise AssertionError("there is no end of writes")
+
+
+def test_a_job_is_accepted_whole_or_not_at_all(
+    placed: JobStore, reopen: Callable[..., JobStore], nothing_is_young: None
+) -> None:
+    del nothing_is_young
+    job = a_job()
+    seen = set()
+
+    def begin_anew() -> None:
+        nonlocal job
+        job = a_job()
+
+    for _ in killed_at_every_write(placed.objects, lambda failing: accept(reopen(failing), job), begin_anew):
+        store = reopen()
+        is_there = store.job(job.id) is not None
+        seen.add(is_there)
+        assert store.unfinished_of("me") == [job.id] * is_there
+        assert [one.id for one in store.page("me", None, 10).jobs] == [job.id] * is_there
+        if is_there:
+            with store.open_mesh(job.id) as mesh:
+                assert mesh.read() == b"mesh"
+            assert store.outbox.letter(job.id) == Letter()
+            with pytest.raises(JobExists):
+                accept(store, job)
+            store.delete(job.id)
+        store.outbox.remove(job.id)  # as the courier does that finds no job
+        store.unfinished()
+        assert everything(reopen()) == []
+    assert seen == {True, False}
+
+
+def test_what_a_killed_submission_left_does_not_keep_the_same_job_from_being_accepted(
+    placed: JobStore, reopen: Callable[..., JobStore]
+) -> None:
+    job = a_job()
+
+    def begin_anew() -> None:
+        nonlocal job
+        job = a_job()
+
+    for _ in killed_at_every_write(placed.objects, lambda failing: accept(reopen(failing), job), begin_anew):
+        if placed.job(job.id) is None:
+            accept(reopen(), job)
+        assert reopen().unfinished_of("me") == [job.id]
+        with reopen().open_mesh(job.id) as mesh:
+            assert mesh.read() == b"mesh"
+        reopen().delete(job.id)
+
+
+def test_a_job_is_finished_or_not_and_can_be_finished_then(placed: JobStore, reopen: Callable[..., JobStore]) -> None:
+    job, first = a_job(), succeeded()
+
+    def begin_anew() -> None:
+        nonlocal job, first
+        job, first = accept(placed, a_job()), succeeded()
+
+    def work(failing: Any) -> None:
+        store = reopen(failing)
+        store.begin_attempt(job.id, "worker")
+        store.write_result(job.id, lambda target: target.write(b"result"))
+        store.finish(job.id, first)
+
+    for _ in killed_at_every_write(placed.objects, work, begin_anew):
+        store = reopen()
+        outcome = store.outcome(job.id)
+        assert (job.id in store.unfinished()) == (outcome is None)
+        assert len(store.attempts(job.id)) <= 1
+        again = succeeded()
+        store.begin_attempt(job.id, "another")
+        store.write_result(job.id, lambda target: target.write(b"result"))
+        assert store.finish(job.id, again) == (outcome or again)
+        with store.open_result(job.id) as result:
+            assert result.read() == b"result"
+        assert job.id not in store.unfinished()
+
+
+def test_a_job_is_deleted_for_good_or_still_there(placed: JobStore, reopen: Callable[..., JobStore]) -> None:
+    job = a_job()
+
+    def begin_anew() -> None:
+        nonlocal job
+        job = accept(placed, replace(a_job(), webhook_url=None))
+        placed.write_result(job.id, lambda target: target.write(b"result"))
+        placed.finish(job.id, succeeded())
+
+    for write in killed_at_every_write(placed.objects, lambda failing: reopen(failing).delete(job.id), begin_anew):
+        store = reopen()
+        if store.job(job.id) is None:
+            assert store.was_deleted(job.id, "me")
+            assert store.page("me", None, 10).jobs == []
+            with pytest.raises(UnknownJob):
+                store.finish(job.id, succeeded())
+        elif write == 0 and not store.objects.list_below("doomed"):
+            store.delete(job.id)  # nothing was begun
+        store.finish_deletions(-10.0)
+        assert everything(reopen()) == []
+        assert store.was_deleted(job.id, "me")
+
+
+def test_a_full_disk_leaves_nothing_of_what_was_not_accepted(
+    placed: JobStore, reopen: Callable[..., JobStore], tmp_path: Path
+) -> None:
+    class FullDisk(FailingObjects):
+        """What is there can be removed."""
+
+        def __getattr__(self, name: str) -> Any:
+            return getattr(self._objects, name) if name == "delete" else super().__getattr__(name)
+
+    for write in range(100):
+        job = a_job()
+        full = FullDisk(placed.objects, write, OSError(errno.ENOSPC, "No space left on device"))
+        try:
+            accept(reopen(full), job)
+        except OSError as error:
+            assert error.errno == errno.ENOSPC  # noqa: PT017
+            assert everything(reopen()) == []
+            assert list((tmp_path / "data" / "incoming").iterdir()) == []
+            continue
+        assert reopen().unfinished_of("me") == [job.id]
+        assert write > 2
+        return
+    raise AssertionError("there is no end of writes")
+
+
+def test_an_answer_of_the_store_that_is_lost_loses_no_job(placed: JobStore, reopen: Callable[..., JobStore]) -> None:
+    """The record may be there although the store did not say so: what belongs to it must not be removed."""
+    for write in range(100):
+        job = a_job()
+        failing = FailingObjects(placed.objects, write, StoreError("no answer"), is_done=True)
+        try:
+            accept(reopen(failing), job)
+        except StoreError:
+            store = reopen()
+            if store.job(job.id) is not None:
+                with store.open_mesh(job.id) as mesh:
+                    assert mesh.read() == b"mesh"
+                assert job.id in store.unfinished()
+            continue
+        assert not failing.has_failed or write > 3
+        assert {one.id for one in stored_jobs(placed) if one.is_accepted} >= {job.id}
+        return
+    raise AssertionError("there is no end of writes")
