@@ -4,7 +4,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from segcore.arrays import IntArray, LongArray
+from segcore.arrays import BoolArray, IntArray, LongArray
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -17,25 +17,30 @@ class CornerRows:
 
 
 def rows_of_corners(vertices: LongArray | IntArray, picks: list[LongArray], vertex_count: int) -> CornerRows:
-    """Give corners of the same vertex and the same picks the same row.
+    """Give corners of the same vertex and the same picks the same row; the first corner of a vertex gets its own.
 
     Parameters
     ----------
     vertices : (C,) the vertex of every corner.
     picks : (C,) each: what else every corner picks, such as a texture coordinate.
     """
-    order = np.lexsort([*picks, vertices])
+    corner = np.full(vertex_count, -1, dtype=np.int64)
+    every = np.arange(len(vertices))
+    corner[vertices[::-1]] = every[::-1]  # the first corner of every vertex, as the last value stays
+    of_corner = vertices.astype(np.int32)
+    others = np.flatnonzero(_differ(picks, corner[vertices]))
+    order = others[np.lexsort([*(pick[others] for pick in picks), vertices[others]])]
     keys = [key[order] for key in (vertices, *picks)]
-    changes = np.any([key[1:] != key[:-1] for key in keys], axis=0)
-    look_of_sorted = np.concatenate([[0], np.cumsum(changes)]) if len(order) else np.zeros(0, dtype=np.int64)
-    first = order[np.concatenate([[True], changes])] if len(order) else order
-    vertex_of_look = vertices[first]
-    is_extra = (
-        np.concatenate([[False], vertex_of_look[1:] == vertex_of_look[:-1]]) if len(first) else first.astype(bool)
-    )
-    row_of_look = np.where(is_extra, vertex_count + np.cumsum(is_extra) - 1, vertex_of_look)
-    of_corner = np.empty(len(vertices), dtype=np.int32)
-    of_corner[order] = row_of_look[look_of_sorted]
-    corner = np.full(vertex_count + int(is_extra.sum()), -1, dtype=np.int64)
-    corner[row_of_look] = first
-    return CornerRows(of_corner, vertex_of_look[is_extra].astype(np.int32), corner)
+    is_new = np.ones(len(order), dtype=bool)
+    is_new[1:] = np.any([key[1:] != key[:-1] for key in keys], axis=0)
+    of_corner[order] = vertex_count + np.cumsum(is_new) - 1
+    first = order[is_new]
+    return CornerRows(of_corner, vertices[first].astype(np.int32), np.concatenate([corner, first]))
+
+
+def _differ(picks: list[LongArray], other: LongArray) -> BoolArray:
+    """(C,): the corners of which a pick is not that of the corner ``other``."""
+    differ = np.zeros(len(other), dtype=bool)
+    for pick in picks:
+        differ |= pick != pick[other]
+    return differ

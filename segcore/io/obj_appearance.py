@@ -4,81 +4,77 @@ import numpy as np
 from numpy.typing import NDArray
 
 from segcore.appearance import Appearance, appearance_or_none, color_bytes, texture_coordinates, unit_normals
-from segcore.arrays import BoolArray, IntArray, LongArray
+from segcore.arrays import BoolArray, FloatArray, IntArray, LongArray
+from segcore.errors import InvalidMesh
 from segcore.io.corner_rows import CornerRows, rows_of_corners
 from segcore.io.polygons import Polygons, fan_corners
-from segcore.io.text import Words, parse_numbers
+from segcore.io.text import Words
+from segcore.io.text_kernels import parse_corner_picks
 
-_UV, _NORMAL = 1, 2  # places in a corner such as 7/8/9
+_UV, _NORMAL = b"vt", b"vn"
+_WIDTHS = {_UV: 2, _NORMAL: 3}  # numbers on a line
+_PLACES = {_UV: 0, _NORMAL: 1}  # slashes before, in a corner such as 7/8/9
 
 
 def obj_appearance(words: Words, is_vertex: BoolArray, is_face: BoolArray, polygons: Polygons) -> Appearance | None:
     """The appearance of the faces that the polygons are cut into."""
-    fans = fan_corners(polygons.sizes)
-    tables = {place: _table(words, key, width) for place, key, width in ((_UV, b"vt", 2), (_NORMAL, b"vn", 3))}
-    picks = _picks(words, is_face, polygons, {place: table for place, table in tables.items() if table is not None})
+    tables = {key: table for key, width in _WIDTHS.items() if (table := _table(words, key, width)) is not None}
+    picks = _picks(words, is_face, polygons, tables)
     vertex_count = int(is_vertex.sum())
     rows = rows_of_corners(polygons.corners, list(picks.values()), vertex_count)
     face_group, names = _groups(words, is_face, polygons.sizes)
     colors = _colors(words, is_vertex)
     return appearance_or_none(
         Appearance(
-            normals=_normals(tables[_NORMAL], picks.get(_NORMAL), rows),
-            uvs=_uvs(tables[_UV], picks.get(_UV), rows),
+            normals=_normals(tables.get(_NORMAL), picks.get(_NORMAL), rows),
+            uvs=_uvs(tables.get(_UV), picks.get(_UV), rows),
             colors=None if colors is None else np.vstack([colors, colors[rows.extra_vertex]]),
             extra_vertex=rows.extra_vertex,
-            corners=rows.of_corner[fans] if len(rows.extra_vertex) else None,
+            corners=rows.of_corner[fan_corners(polygons.sizes)] if len(rows.extra_vertex) else None,
             face_group=face_group,
             group_names=names,
         )
     )
 
 
-def _table(words: Words, keyword: bytes, width: int) -> NDArray[np.float64] | None:
+def _table(words: Words, keyword: bytes, width: int) -> FloatArray | None:
     """(N, width) the numbers on the lines with a keyword, further ones left out; None where they make no table."""
     selected = words.lines_with(keyword)
     counts = np.diff(words.line_start)[selected] - 1
     if len(counts) == 0 or (counts != counts[0]).any() or counts[0] < width:
         return None
     try:
-        text = words.text_of_lines(selected).replace(keyword, b"  ")
-        return parse_numbers(text, int(counts.sum()), np.float64).reshape(len(counts), -1)[:, :width]
-    except ValueError:
+        return words.floats_at(words.line_start[:-1][selected, None] + np.arange(1, width + 1))
+    except InvalidMesh:
         return None
 
 
 def _picks(
-    words: Words, is_face: BoolArray, polygons: Polygons, tables: dict[int, NDArray[np.float64]]
-) -> dict[int, LongArray]:
-    """For each table the row of every corner; nothing where the corners do not all have the same form."""
-    text = words.text_of_lines(is_face).replace(b"f", b" ")
-    slashes = text.count(b"/")
-    corners = len(polygons.corners)
-    if corners == 0 or slashes == 0 or slashes % corners or slashes // corners > _NORMAL:
+    words: Words, is_face: BoolArray, polygons: Polygons, tables: dict[bytes, FloatArray]
+) -> dict[bytes, LongArray]:
+    """For each table the row of every corner; nothing where there are corners that name none."""
+    if not tables:
         return {}
-    places = slashes // corners + 1
-    without_uv = text.count(b"//") == corners
-    columns = [0, _NORMAL] if without_uv else list(range(places))
-    try:
-        numbers = parse_numbers(text.replace(b"/", b" "), corners * len(columns), np.int64)
-    except ValueError:
-        return {}
-    table = dict(zip(columns, numbers.reshape(corners, -1).T, strict=True))
-    lines = np.repeat(np.flatnonzero(is_face), polygons.sizes)
-    if (_resolved(words, table[0], lines, b"v") != polygons.corners).any():
-        return {}  # the corners differ in their form, and the numbers stand for something else
-    keywords = {_UV: b"vt", _NORMAL: b"vn"}
-    picks = {place: _resolved(words, table[place], lines, keywords[place]) for place in tables if place in table}
-    return {place: rows for place, rows in picks.items() if (rows >= 0).all() and (rows < len(tables[place])).all()}
+    lines = np.flatnonzero(is_face)
+    indices = np.empty((len(polygons.corners), 2), dtype=np.int64)
+    parse_corner_picks(words.letters, words.start, words.line_start, lines, indices)
+    picks = {
+        keyword: _resolved(words, indices[:, _PLACES[keyword]], lines, polygons.sizes, keyword) for keyword in tables
+    }
+    return {key: rows for key, rows in picks.items() if ((rows >= 0) & (rows < len(tables[key]))).all()}
 
 
-def _resolved(words: Words, indices: LongArray, lines: LongArray, keyword: bytes) -> LongArray:
-    """Indices counted from 0; negative ones count back from the line that they are on."""
-    before = np.cumsum(words.lines_with(keyword))[lines]
-    return np.where(indices < 0, indices + before, indices - 1)
+def _resolved(words: Words, indices: LongArray, lines: LongArray, sizes: LongArray, keyword: bytes) -> LongArray:
+    """Indices counted from 0, and -1 for none; negative ones count back from the line that they are on."""
+    rows = indices - 1
+    is_backward = indices < 0
+    if is_backward.any():
+        before = np.repeat(np.cumsum(words.lines_with(keyword))[lines], sizes)
+        rows[is_backward] = (before + indices)[is_backward]
+    return rows
 
 
-def _normals(table: NDArray[np.float64] | None, pick: LongArray | None, rows: CornerRows) -> NDArray[np.float32] | None:
+def _normals(table: FloatArray | None, pick: LongArray | None, rows: CornerRows) -> NDArray[np.float32] | None:
     if table is None or pick is None:
         return None
     values = np.tile([0.0, 0.0, 1.0], (len(rows.corner), 1))  # for vertices that no face uses
@@ -87,7 +83,7 @@ def _normals(table: NDArray[np.float64] | None, pick: LongArray | None, rows: Co
     return unit_normals(values)
 
 
-def _uvs(table: NDArray[np.float64] | None, pick: LongArray | None, rows: CornerRows) -> NDArray[np.float32] | None:
+def _uvs(table: FloatArray | None, pick: LongArray | None, rows: CornerRows) -> NDArray[np.float32] | None:
     if table is None or pick is None:
         return None
     values = np.zeros((len(rows.corner), 2))

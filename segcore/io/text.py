@@ -68,10 +68,18 @@ class Words:
 
     def floats(self, first: int, last: int) -> FloatArray:
         """Words first..last - 1 as float64; raises InvalidMesh as :meth:`numbers` does."""
-        values, unread = np.empty(last - first), np.empty(last - first, dtype=bool)
-        if parse_floats(self.letters, self.start[first:last], values, unread):
+        return self._floats(self.start[first:last], lambda place: first + place)
+
+    def floats_at(self, indices: LongArray) -> FloatArray:
+        """The words at ``indices``, of any shape, as float64; raises InvalidMesh as :meth:`numbers` does."""
+        flat = indices.reshape(-1)
+        return self._floats(self.start[flat], lambda place: int(flat[place])).reshape(indices.shape)
+
+    def _floats(self, starts: Offsets, word_of: Callable[[int], int]) -> FloatArray:
+        values, unread = np.empty(len(starts)), np.empty(len(starts), dtype=bool)
+        if parse_floats(self.letters, starts, values, unread):
             for i in np.flatnonzero(unread).tolist():
-                values[i] = self.float(first + i)
+                values[i] = self.float(word_of(i))
         return values
 
     def float(self, index: int) -> float:

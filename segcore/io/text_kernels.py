@@ -180,6 +180,23 @@ def parse_face_lines(
 
 
 @njit(cache=True)
+def parse_corner_picks(text: Bytes, start: Offsets, line_start: Offsets, lines: LongArray, picks: LongArray) -> None:
+    """Fill ``picks`` (C, 2) with the numbers after the first and the second slash of corners; 0 where there is none."""
+    corner = 0
+    for i in range(len(lines)):
+        for word in range(line_start[lines[i]] + 1, line_start[lines[i] + 1]):
+            at, place = start[word], 0
+            picks[corner, 0] = picks[corner, 1] = 0
+            while at + 1 < len(text) and text[at] > _SPACE:
+                if text[at] == _SLASH and place < 2:
+                    end, index = _integer(text, at + 1)
+                    picks[corner, place] = index if end >= 0 else 0
+                    place += 1
+                at += 1
+            corner += 1
+
+
+@njit(cache=True)
 def _is_suffix(text: Bytes, at: int) -> bool:
     """Whether at most two numbers, each after a slash and perhaps empty, go to the end of the word."""
     slashes = 0

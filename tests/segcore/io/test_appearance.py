@@ -159,6 +159,41 @@ def test_corners_of_obj_that_make_no_sense_are_left_out(faces: bytes) -> None:
     assert mesh.appearance is None or mesh.appearance.normals is None or mesh.appearance.uvs is None
 
 
+corner_numbers = st.tuples(st.integers(1, 4), st.sampled_from([*range(-3, 5)]), st.sampled_from([*range(-3, 5)]))
+
+
+@given(st.lists(st.lists(corner_numbers, min_size=3, max_size=4), min_size=1, max_size=5))
+def test_corners_of_obj_pick_what_they_say(polygons: list[list[tuple[int, int, int]]]) -> None:
+    """Four vertices, three texture coordinates, of which the last comes before the last face, and three normals."""
+    form = {(True, True): "{}/{}/{}", (True, False): "{}/{}", (False, True): "{0}//{2}", (False, False): "{}"}
+    lines = ["f " + " ".join(form[bool(t), bool(n)].format(v, t, n) for v, t, n in corners) for corners in polygons]
+    tables = {"vt": [[0.5, 0.25], [0.75, 0.5], [1, 0]], "vn": [[1, 0, 0], [0, 1, 0], [0, 0, 1]]}
+    text = [f"v {x} {y} 0" for x in (0, 1) for y in (0, 1)]
+    text += [f"{key} {' '.join(map(str, row))}" for key, rows in tables.items() for row in rows]
+    last = text.index("vt 1 0")
+    mesh = read_mesh(
+        io.BytesIO("\n".join([*text[:last], *text[last + 1 :], *lines[:-1], text[last], lines[-1], ""]).encode()),
+        appearance=True,
+    )
+    for name, key, place in (("uvs", "vt", 1), ("normals", "vn", 2)):
+        known = [2 if key == "vt" and p < len(polygons) - 1 else 3 for p in range(len(polygons))]
+        rows = [
+            [c[place] + (known[p] if c[place] < 0 else -1 if c[place] else -9) for c in corners]
+            for p, corners in enumerate(polygons)
+        ]
+        found = None if mesh.appearance is None else getattr(mesh.appearance, name)
+        if not all(0 <= row < 3 for corners in rows for row in corners):
+            assert found is None
+            continue
+        expected = [
+            [tables[key][rows[p][i]] for i in (0, k, k + 1)]
+            for p, corners in enumerate(polygons)
+            for k in range(1, len(corners) - 1)
+        ]
+        ours = np.array(at_corners(mesh)[name])
+        np.testing.assert_allclose([0, 1] + ours * [1, -1] if name == "uvs" else ours, expected, atol=1e-6)
+
+
 def test_negative_indices_of_obj_count_back_from_their_line() -> None:
     data = (
         b"v 0 0 0\nv 1 0 0\nv 1 1 0\nvt 0 0\nvt .5 1\nvn 0 0 1\nvn 0 1 0\nf -3/-2/-2 -2/-1/-2 -1/-2/-1\n"
