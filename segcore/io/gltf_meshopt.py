@@ -8,7 +8,8 @@ from numpy.typing import NDArray
 from segcore.errors import InvalidMesh, UnsupportedFormat
 from segcore.io.gltf_document import Document, Item, integer
 from segcore.io.limits import ReadLimits
-from segcore.io.meshopt import decode_attributes, decode_indices, decode_triangles
+from segcore.io.meshopt_attributes import decode_attributes
+from segcore.io.meshopt_indices import decode_indices, decode_triangles
 
 MESHOPT = ("EXT_meshopt_compression", "KHR_meshopt_compression")
 _MOST_PER_BYTE = 1024  # decoded bytes that one byte of data can stand for

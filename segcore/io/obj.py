@@ -8,9 +8,9 @@ from segcore.arrays import BoolArray, FloatArray, LongArray
 from segcore.errors import InvalidMesh
 from segcore.io.limits import ReadLimits
 from segcore.io.obj_appearance import obj_appearance
+from segcore.io.obj_kernels import parse_face_lines, parse_vertex_lines
 from segcore.io.polygons import Polygons, mesh_of_polygons
 from segcore.io.text import Words, find_words, plain_text, without_comments
-from segcore.io.text_kernels import parse_face_lines, parse_vertex_lines
 from segcore.mesh import Mesh
 
 _CONTINUATION = re.compile(rb"\\[ \t\r]*\n")

@@ -7,9 +7,9 @@ from segcore.appearance import Appearance, appearance_or_none, color_bytes, text
 from segcore.arrays import BoolArray, FloatArray, IntArray, LongArray
 from segcore.errors import InvalidMesh
 from segcore.io.corner_rows import CornerRows, rows_of_corners
+from segcore.io.obj_kernels import parse_corner_picks
 from segcore.io.polygons import Polygons, fan_corners
 from segcore.io.text import Words
-from segcore.io.text_kernels import parse_corner_picks
 
 _UV, _NORMAL = b"vt", b"vn"
 _WIDTHS = {_UV: 2, _NORMAL: 3}  # numbers on a line

@@ -11,14 +11,13 @@ from numpy.typing import NDArray
 
 from segcore.arrays import BoolArray, FloatArray, LongArray
 from segcore.errors import InvalidMesh
+from segcore.io.number_kernels import parse_floats, parse_integers
 from segcore.io.text_kernels import (
     Offsets,
     count_words,
     find_lines_with,
     find_word_starts,
     has_controls,
-    parse_floats,
-    parse_integers,
 )
 
 _WHITE_SPACE = b" \t\n\v\f\r"
