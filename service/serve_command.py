@@ -115,6 +115,8 @@ def _announcement(
     """Where everything is."""
     workers = ", ".join(f"{count} for {size} jobs" for size, count in counts.items()) or "none"
     lines = {"data": str(settings.data_dir), "queue": _queue_name(settings, own_queue), "workers": workers}
+    if settings.store_url is not None:
+        lines = {"store": settings.store_url.partition("?")[0], **lines}
     if listening is not None:
         lines = {"listening on": _url(listening), **lines}
     text = "\n".join(f"  {name:<13} {value}" for name, value in lines.items())

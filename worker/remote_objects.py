@@ -38,18 +38,19 @@ class RemoteObjects:
 
     def create(self, key: str, data: bytes) -> bool:
         try:
-            with _translated_errors():
+            with _translated_errors(), _a_bucket_that_is_there():
                 self._bucket.writes.put(key, data, mode="create", use_multipart=False)
         except AlreadyExistsError:
             return self.get(key) == data  # a request whose answer was lost is sent again, and finds its own object
         return True
 
     def put(self, key: str, data: bytes, *, durable: bool = True) -> None:  # noqa: ARG002
-        with _translated_errors():
+        with _translated_errors(), _a_bucket_that_is_there():
             self._bucket.writes.put(key, data, use_multipart=False)
 
     def put_file(self, key: str, path: Path) -> None:
-        with _translated_errors():
+        path.stat()  # a file that is not there is another matter than a bucket that is not
+        with _translated_errors(), _a_bucket_that_is_there():
             self._bucket.transfers.put(key, path)
 
     def get(self, key: str) -> bytes | None:
@@ -83,7 +84,7 @@ class RemoteObjects:
 
     def list_below(self, folder: str, after: str = "", limit: int | None = None) -> list[ObjectInfo]:
         found: list[ObjectInfo] = []
-        with _translated_errors():
+        with _translated_errors(), _a_bucket_that_is_there():
             for part in self._bucket.reads.list(folder, offset=after or None, chunk_size=limit or _LISTED_AT_A_TIME):
                 found += [ObjectInfo(one["path"], one["size"], one["last_modified"].timestamp()) for one in part]
                 if limit is not None and len(found) >= limit:
@@ -109,11 +110,19 @@ class RemoteObjects:
 
 
 @contextmanager
+def _a_bucket_that_is_there() -> Iterator[None]:
+    try:
+        yield
+    except FileNotFoundError as error:
+        raise StoreError("There is no such bucket: make it, or mend CLEAVE_STORE_URL.") from error
+
+
+@contextmanager
 def _translated_errors() -> Iterator[None]:
     """Whatever a client of a bucket raises becomes one of the errors that the seam knows."""
     try:
         yield
-    except (FileNotFoundError, AlreadyExistsError):
+    except (FileNotFoundError, AlreadyExistsError, StoreError):
         raise
     except (BaseError, OSError) as error:
         raise StoreError(f"The store does not answer: {str(error).strip().splitlines()[0]}") from error

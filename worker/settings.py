@@ -27,7 +27,7 @@ class Settings(BaseSettings):
     )
     store_url: str | None = Field(
         default=None,
-        pattern=r"^(s3|gs|az|memory)://",
+        pattern=r"^(s3|gs|az)://",
         description="The bucket of the jobs, such as s3://bucket/prefix; the data folder where none is set.",
     )
     store_cache_bytes: int = Field(

@@ -1,0 +1,48 @@
+"""`cleave serve` with its jobs in a bucket: the data folder holds nothing that may not be lost."""
+
+import os
+import subprocess
+import sys
+from pathlib import Path
+
+import httpx
+
+from buckets import below
+from end_to_end.installation import Installation
+from support import sphere, wait_until
+from worker.jobs import new_job_id
+from worker.opening import open_url
+
+
+def in_bucket(url: str) -> Installation:
+    installation = Installation(workers=1)
+    installation.settings = Installation.settings | {"CLEAVE_STORE_URL": url}  # type: ignore[misc]
+    return installation
+
+
+def test_jobs_outlive_the_machine_that_took_them_in(s3_url: str, tmp_path: Path) -> None:
+    url = below(s3_url, new_job_id())
+    with in_bucket(url) as installation:
+        path = installation.submit(sphere(20))
+        wait_until(lambda: installation.status(path) == "succeeded")
+        labels = installation.get(f"{path}/labels?segments=3").content
+        assert installation.stop() == 0
+        assert installation.files() == []
+    with in_bucket(url) as elsewhere:
+        assert elsewhere.get(f"{path}/labels?segments=3").content == labels
+        redirected = elsewhere.get(f"{path}/result.cleave?redirect=true")
+        assert redirected.status_code == 307
+        assert httpx.get(redirected.headers["Location"]).content == elsewhere.get(f"{path}/result.cleave").content
+        assert httpx.delete(elsewhere.url + path).status_code == 204
+        assert elsewhere.get(path).status_code == 410
+    left = open_url(url, tmp_path, 0).objects.list_below("jobs")
+    assert left == []
+
+
+def test_a_bucket_that_is_not_there_is_said_at_the_start(s3_url: str, tmp_path: Path) -> None:
+    wrong = {"CLEAVE_STORE_URL": s3_url.replace("cleave-test", "no-such-bucket"), "CLEAVE_DATA_DIR": str(tmp_path)}
+    command = [sys.executable, "-m", "service.cli", "serve", "--port", "0"]
+    ended = subprocess.run(command, env=os.environ | wrong, capture_output=True, text=True)
+    assert ended.returncode == 2
+    assert "There is no such bucket" in ended.stderr
+    assert "Traceback" not in ended.stderr
