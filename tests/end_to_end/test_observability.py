@@ -1,0 +1,82 @@
+"""One job seen from outside: in the log of every process that had to do with it, and in the metrics."""
+
+import json
+import os
+import re
+import signal
+import subprocess
+import sys
+from pathlib import Path
+from typing import Any
+
+import httpx
+
+from end_to_end.installation import Installation
+from support import LONG, sphere, wait_until
+
+TRACE_ID = "4bf92f3577b34da6a3ce929d0e0e4736"
+PARENT = f"00-{TRACE_ID}-00f067aa0ba902b7-01"
+
+
+class LoggingInstallation(Installation):
+    """One whose log is kept, as JSON."""
+
+    settings = Installation.settings | {"CLEAVE_LOG_LEVEL": "info", "CLEAVE_LOG_FORMAT": "json"}
+
+    def command(self, *arguments: str) -> "subprocess.Popen[str]":
+        with self.log.open("ab") as log:
+            return subprocess.Popen(
+                [sys.executable, "-m", "service.cli", *arguments],
+                env=os.environ | self.settings | {"CLEAVE_DATA_DIR": str(self.data_dir)},
+                stdout=subprocess.PIPE,
+                stderr=log,
+                text=True,
+                start_new_session=True,
+            )
+
+    @property
+    def log(self) -> Path:
+        return self.data_dir / "log"
+
+    def lines(self) -> list[dict[str, Any]]:
+        """Every line that is JSON: the queue server has a form of its own."""
+        return [json.loads(line) for line in self.log.read_text().splitlines() if line.startswith("{")]
+
+
+def test_a_job_can_be_followed_through_every_process_by_its_id_and_its_trace() -> None:
+    with LoggingInstallation() as installation:
+        answer = httpx.post(
+            f"{installation.url}/v1/jobs",
+            files={"mesh": ("mesh.off", sphere(100))},
+            data={"parameters": json.dumps(LONG)},
+            headers={"traceparent": PARENT},
+            timeout=60,
+        )
+        job_id, path = answer.json()["id"], answer.headers["Location"]
+        assert answer.headers["traceparent"].split("-")[1] == TRACE_ID
+        wait_until(installation.horses)
+        (horse,) = installation.horses()
+        for worker in installation.children("worker.process"):
+            os.kill(worker, signal.SIGKILL)
+        with installation.redis() as connection:
+            connection.delete(f"cleave:lease:{job_id}")
+        wait_until(lambda: installation.status(path) == "succeeded", within_s=120)
+        wait_until(
+            lambda: "succeeded" in {line["message"] for line in installation.lines() if line["process"] == "work_horse"}
+        )
+        about = [line for line in installation.lines() if line.get("job_id") == job_id]
+        assert {line["process"] for line in about} == {"service", "worker", "work_horse", "janitor"}
+        assert {line["trace_id"] for line in about} == {TRACE_ID}
+        assert all(line["job_id"] == job_id for line in installation.lines() if job_id in line["message"])
+        assert horse not in {line["pid"] for line in about if line["message"] == "succeeded"}
+        check_metrics(installation)
+
+
+def check_metrics(installation: Installation) -> None:
+    metrics = installation.get("/metrics").text
+    found = dict(re.findall(r"^(\w+(?:{.*})?) ([\d.e+-]+)$", metrics, re.MULTILINE))
+    assert found['cleave_jobs_finished_total{code="",status="succeeded"}'] == "1.0"
+    assert found["cleave_faces_total"] == str(float(4 * 100 * 99))
+    assert found["cleave_recovered_jobs_total"] == "1.0"
+    stages = set(re.findall(r'cleave_stage_seconds_count{stage="(\w+)"}', metrics))
+    assert stages >= {"reading", "affinity", "coarsen", "cut", "label", "storing"}
