@@ -12,7 +12,7 @@ from worker.jobs import Job, new_job_id, now
 from worker.size_class import SizeClass
 from worker.store import JobStore
 
-StartWorker = Callable[..., "subprocess.Popen[bytes]"]  # a size class, and settings as keywords
+StartWorker = Callable[..., "subprocess.Popen[bytes]"]  # a size class, another program, and settings as keywords
 
 
 def wait_until(condition: Callable[[], object], within_s: float = 60.0) -> None:

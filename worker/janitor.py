@@ -44,7 +44,7 @@ class Janitor:
         if not self._queue.lead(self._name, _LEADER_INTERVALS * self._settings.janitor_interval_s):
             self._missing_since.clear()
             return
-        for job_id in self._lost(at_s):
+        for job_id in reversed(self._lost(at_s)):  # each goes to the front, the oldest last
             job = self._store.job(job_id)
             if job is not None:
                 with about(job_id, job.traceparent):
@@ -69,7 +69,7 @@ class Janitor:
         if failed is None:
             log.warning("job %s was lost by the queue and waits again", job.id)
             self._tallies.job_recovered()
-            self._queue.requeue(job.id, size_class(job, self._settings.large_job_bytes))
+            self._queue.requeue(job.id, size_class(job, self._settings.large_job_bytes), at_front=True)
             return
         log.error("job %s failed: %s", job.id, failed.code)
         try:

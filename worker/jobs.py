@@ -8,7 +8,7 @@ from typing import Annotated, Any, Literal, TypeAlias
 
 from pydantic import Field
 
-Cause: TypeAlias = Literal["worker_lost", "out_of_memory", "timed_out", "internal_error"]
+Cause: TypeAlias = Literal["worker_lost", "out_of_memory", "timed_out", "file_too_large", "internal_error"]
 
 _JOB_ID = re.compile(r"[0-9a-f]{32}", re.ASCII)
 
@@ -79,6 +79,7 @@ FAILURES: dict[Cause, str] = {
     "operator to look into the log of the workers.",
     "out_of_memory": "The job needs more memory than this installation gives it: send a mesh of fewer faces.",
     "timed_out": "The job runs longer than this installation allows: send a mesh of fewer faces.",
+    "file_too_large": "The job writes a larger file than this installation allows: send a mesh of fewer faces.",
     "internal_error": "The job stopped at an internal error, {attempts} times in a row: ask the operator to look into "
     "the log of the workers.",
 }

@@ -87,9 +87,9 @@ class Settings(BaseSettings):
     )
     max_attempts: int = Field(default=3, ge=1, description="Runs of a job that keeps killing its worker.")
     job_timeout_s: float = Field(default=3600.0, gt=0, description="Longest run of a job.")
-    job_memory_bytes: int | None = Field(
-        default=None, gt=0, description="Address space of the process that runs a job; no limit where none is set."
-    )
+    job_cpu_s: int = Field(default=3600, gt=0, description="Longest time of a processor that a job may use.")
+    job_memory_bytes: int = Field(default=8 * 2**30, gt=0, description="Address space of the process that runs a job.")
+    job_file_bytes: int = Field(default=4 * 2**30, gt=0, description="Largest file that a job may write.")
     lease_s: float = Field(
         default=10.0, ge=3, le=30, description="A running job whose worker was silent for this long is run again."
     )

@@ -34,6 +34,7 @@ def perform(store: JobStore, settings: Settings, job_id: str, on_progress: OnPro
     try:
         outcome = segment_stored_mesh(store, job, read_limits(settings), clock)
         if store.finish(job_id, outcome).finished_at != outcome.finished_at:
+            log.info("the job had ended meanwhile: the outcome of this run is dropped")
             return None
     except UnknownJob:
         return None

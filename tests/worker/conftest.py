@@ -37,10 +37,12 @@ def start_worker(tmp_path: Path, queue_url: str, connection: Redis) -> Iterator[
     del connection  # an empty queue
     started: list[subprocess.Popen[bytes]] = []
 
-    def start(size: SizeClass = SMALL, **environment: str) -> "subprocess.Popen[bytes]":
+    def start(
+        size: SizeClass = SMALL, program: tuple[str, str] = ("-m", "worker.process"), **environment: str
+    ) -> "subprocess.Popen[bytes]":
         settings = {"CLEAVE_DATA_DIR": str(tmp_path / "data"), "CLEAVE_REDIS_URL": queue_url}
         process = subprocess.Popen(
-            [sys.executable, "-m", "worker.process", size],
+            [sys.executable, *program, size],
             env=os.environ | settings | environment,
             start_new_session=True,
         )

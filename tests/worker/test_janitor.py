@@ -43,6 +43,17 @@ def test_a_wiped_queue_is_filled_again(janitor: Janitor, store: JobStore, queue:
     assert sorted(waiting(queue)) == sorted(job.id for job in jobs)
 
 
+def test_lost_jobs_come_before_those_that_wait_in_their_order(
+    janitor: Janitor, store: JobStore, queue: JobQueue
+) -> None:
+    lost = [accepted(store, b"mesh") for _ in range(3)]
+    waits = accepted(store, b"mesh")
+    queue.enqueue(waits.id, SMALL)
+    janitor.sweep(0.0)
+    janitor.sweep(MISSING_S)
+    assert waiting(queue) == [job.id for job in (*lost, waits)]
+
+
 def test_jobs_come_back_to_the_queue_of_their_size(store: JobStore, queue: JobQueue, tmp_path: Path) -> None:
     janitor = Janitor(store, queue, Settings(data_dir=tmp_path, large_job_bytes=5))
     small, large = accepted(store, b"1234"), accepted(store, b"12345")

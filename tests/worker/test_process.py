@@ -89,34 +89,58 @@ def test_a_killed_work_horse_costs_an_attempt_and_not_the_job(
     assert [attempt.cause for attempt in store.attempts(job.id)] == ["worker_lost", None]
 
 
-def test_a_job_that_kills_every_work_horse_fails_with_a_reason(
+def poison(statement: str) -> tuple[str, str]:
+    """A worker whose work is a statement for one kind of mesh, and next to nothing for others."""
+    source = f"""
+import ctypes, os, tempfile, worker.process
+from worker.jobs import Canceled, now
+def perform(store, settings, job_id, on_progress):
+    if store.open_mesh(job_id).read() == b"poison":
+        {statement}
+    store.finish(job_id, Canceled(finished_at=now()))
+worker.process.perform = perform
+worker.process.main()
+"""
+    return "-c", source
+
+
+@pytest.mark.parametrize(
+    ("statement", "code", "limit"),
+    [
+        ("os.kill(os.getpid(), 9)", "worker_lost", {}),
+        ("os.abort()", "worker_lost", {}),
+        ("bytearray(2**31)", "out_of_memory", {"CLEAVE_JOB_MEMORY_BYTES": str(2**31)}),
+        # In C, where no other thread of Python gets a turn.
+        ("ctypes.PyDLL(None).sleep(1000)", "timed_out", {"CLEAVE_JOB_TIMEOUT_S": "0.5"}),
+        ("while True: pass", "timed_out", {"CLEAVE_JOB_CPU_S": "1"}),
+        ("tempfile.TemporaryFile().write(bytes(2**22))", "file_too_large", {"CLEAVE_JOB_FILE_BYTES": str(2**21)}),
+        ("1 / 0", "internal_error", {}),
+    ],
+)
+def test_poison_ends_as_failed_after_three_attempts_and_the_worker_goes_on(
+    start_worker: StartWorker, store: JobStore, queue: JobQueue, statement: str, code: str, limit: dict[str, str]
+) -> None:
+    worker = start_worker(program=poison(statement), **limit)
+    job = accepted(store, b"poison")
+    queue.enqueue(job.id, SMALL)
+    outcome = outcome_of(store, job)
+    assert isinstance(outcome, Failed)
+    assert outcome.code == code
+    assert [attempt.cause for attempt in store.attempts(job.id)] == [code] * 3
+    assert isinstance(outcome_of(store, submitted(store, queue)), Canceled)
+    assert worker.poll() is None
+
+
+def test_what_is_wrong_with_the_input_costs_one_attempt(
     start_worker: StartWorker, store: JobStore, queue: JobQueue
 ) -> None:
-    worker = start_worker(CLEAVE_MAX_ATTEMPTS="2")
-    job = submitted(store, queue, **LONG)
-    killed: set[int] = set()
-
-    def kill_and_look() -> Outcome | None:
-        for horse in set(children_of(worker.pid)) - killed:
-            os.kill(horse, signal.SIGKILL)
-            killed.add(horse)
-        return store.outcome(job.id)
-
-    wait_until(kill_and_look)
-    outcome = store.outcome(job.id)
-    assert isinstance(outcome, Failed)
-    assert outcome.code == "worker_lost"
-    assert len(killed) == 2
-    assert isinstance(outcome_of(store, submitted(store, queue)), Succeeded)
-
-
-def test_a_job_that_runs_too_long_is_stopped_with_a_reason(
-    start_worker: StartWorker, store: JobStore, queue: JobQueue
-) -> None:
-    start_worker(CLEAVE_MAX_ATTEMPTS="1", CLEAVE_JOB_TIMEOUT_S="0.5")
-    outcome = outcome_of(store, submitted(store, queue, **LONG))
-    assert isinstance(outcome, Failed)
-    assert outcome.code == "timed_out"
+    start_worker()
+    jobs = [accepted(store, mesh) for mesh in (b"OFF\n1 0 0\n0 0 0\n", b"what is this", sphere(20)[:-50])]
+    for job in jobs:
+        queue.enqueue(job.id, SMALL)
+    codes = [getattr(outcome_of(store, job), "code", None) for job in jobs]
+    assert codes == ["invalid_mesh", "unsupported_format", "invalid_mesh"]
+    assert [len(store.attempts(job.id)) for job in jobs] == [1, 1, 1]
 
 
 def test_a_job_that_needs_too_much_memory_is_stopped_with_a_reason(

@@ -1,0 +1,124 @@
+"""The jobs of a soak: a few different ones, over and over, by a client that does not give up."""
+
+import hashlib
+import time
+from collections.abc import Callable
+from concurrent.futures import Future, ThreadPoolExecutor
+from contextlib import suppress
+from dataclasses import dataclass
+
+import httpx
+
+from bench.errors import BenchmarkError
+from bench.load.installation import Installation
+from bench.load.meshes import wavy_torus
+from worker.jobs import Attempt
+from worker.opening import open_store
+from worker.settings import Settings
+
+LARGE_JOB_BYTES = 300_000  # such that the last of the meshes are large
+_FACES = (1_000, 2_500, 5_000, 8_000, 12_000, 25_000, 40_000)
+_WAVES = (3, 4, 5)
+_RETRY_S = 0.2
+_GIVE_UP_S = 120.0  # no fault keeps the service away for so long
+_ENDED = ("succeeded", "failed", "canceled")
+
+
+@dataclass(frozen=True, slots=True)
+class Submitted:
+    """One job of a soak."""
+
+    mesh: int  # its place among the different ones
+    path: str
+
+    @property
+    def id(self) -> str:
+        return self.path.rpartition("/")[2]
+
+
+class Client:
+    """Submits jobs, each under a key of its own, so that what is sent again makes no second job."""
+
+    def __init__(self, installation: Installation) -> None:
+        self._installation = installation
+        self._meshes = [wavy_torus(faces, waves) for faces in _FACES for waves in _WAVES]
+        self._http = httpx.Client(base_url=installation.url, timeout=30)
+
+    @property
+    def different(self) -> int:
+        """How many different meshes there are."""
+        return len(self._meshes)
+
+    def submit(self, number: int) -> Submitted:
+        """Submit a job and again, until it is accepted."""
+        mesh = number % self.different
+        headers = {"Content-Type": "model/ply", "Idempotency-Key": f"soak-{number}", "Cache-Control": "no-cache"}
+        answer = self._until(
+            lambda: self._http.post("/v1/jobs", content=self._meshes[mesh], headers=headers), {200, 202}
+        )
+        return Submitted(mesh, answer.headers["Location"])
+
+    def submit_evenly(self, count: int, duration_s: float) -> Future[list[Submitted]]:
+        """Submit jobs one after the other, spread over a time, in a thread."""
+
+        def work() -> list[Submitted]:
+            began_at, submitted = time.monotonic(), []
+            for number in range(count):
+                time.sleep(max(0.0, began_at + number * duration_s / count - time.monotonic()))
+                submitted.append(self.submit(number))
+            return submitted
+
+        pool = ThreadPoolExecutor(1)
+        promise = pool.submit(work)
+        pool.shutdown(wait=False)
+        return promise
+
+    def statuses(self) -> dict[str, str]:
+        """The status of every job there is, by its id."""
+        found: dict[str, str] = {}
+        query: dict[str, str | int] = {"limit": 100}
+        while True:
+            page = self._until(lambda: self._http.get("/v1/jobs", params=query), {200}).json()
+            found |= {job["id"]: job["status"] for job in page["jobs"]}
+            if page["next_cursor"] is None:
+                return found
+            query["cursor"] = page["next_cursor"]
+
+    def wait_for_end(self, within_s: float) -> dict[str, str]:
+        """Wait until every job has ended, as long as that takes at most; how they are then."""
+        gives_up_at = time.monotonic() + within_s
+        statuses = self.statuses()
+        while time.monotonic() < gives_up_at and not set(statuses.values()) <= set(_ENDED):
+            time.sleep(_RETRY_S)
+            statuses = self.statuses()
+        return statuses
+
+    def results(self) -> dict[str, str]:
+        """A digest of the stored result of every job that has one, by its id."""
+        store = open_store(Settings(data_dir=self._installation.data_dir))
+        digests: dict[str, str] = {}
+        for job_id, status in self.statuses().items():
+            if status == "succeeded":
+                with store.open_result(job_id) as result:
+                    digests[job_id] = hashlib.sha256(result.read()).hexdigest()
+        return digests
+
+    def attempts(self) -> list[list[Attempt]]:
+        """The runs of every job."""
+        store = open_store(Settings(data_dir=self._installation.data_dir))
+        return [store.attempts(job_id) for job_id in self.statuses()]
+
+    def close(self) -> None:
+        self._http.close()
+
+    def _until(self, ask: Callable[[], httpx.Response], good: set[int]) -> httpx.Response:
+        gives_up_at = time.monotonic() + _GIVE_UP_S
+        while time.monotonic() < gives_up_at:
+            with suppress(httpx.TransportError):
+                answer = ask()
+                if answer.status_code in good:
+                    return answer
+                if answer.status_code < 500:
+                    raise BenchmarkError(f"The service refuses a job of the soak: {answer.text}")
+            time.sleep(_RETRY_S)
+        raise BenchmarkError(f"The service does not come back within {_GIVE_UP_S:.0f} s: see its log.")
