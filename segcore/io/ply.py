@@ -20,6 +20,7 @@ _VERTICES, _FACES, _STRIPS = "vertex", "face", "tristrips"
 _INDICES = ("vertex_indices", "vertex_index")
 _LIMITS = {_VERTICES: "vertices", _FACES: "faces"}
 _UVS = (("s", "t"), ("u", "v"), ("texture_u", "texture_v"))  # from the lower left of the image
+_BLOCK = 2**13  # vertices that the cache of a processor holds
 _RESTART = -1  # ends a strip within a list of strips
 
 
@@ -60,8 +61,10 @@ def _vertices(rows: Rows) -> FloatArray:
     if missing:
         raise InvalidMesh(f"The element 'vertex' of the PLY file has no property {missing[0]!r}.")
     vertices = np.empty((len(rows.numbers["x"]), 3))
-    for i, axis in enumerate("xyz"):
-        vertices[:, i] = rows.numbers[axis]
+    for first in range(0, len(vertices), _BLOCK):
+        block = slice(first, first + _BLOCK)
+        for i, axis in enumerate("xyz"):
+            vertices[block, i] = rows.numbers[axis][block]
     return vertices
 
 
