@@ -33,7 +33,8 @@ class Janitor:
         self._tallies = Tallies(queue.connection)
         self._settings = settings
         self._housekeeping = Housekeeping(store, settings)
-        self._name = f"{socket.gethostname()}.{os.getpid()}"
+        # That of its supervisor: a janitor that was started again after its death leads on at once.
+        self._name = f"{socket.gethostname()}.{os.getppid()}"
         self._missing_since: dict[str, float] = {}
 
     def sweep(self, at_s: float) -> None:

@@ -1,5 +1,6 @@
 """The janitor: what the store accepted and the queue has lost waits again, and what cannot succeed ends."""
 
+import os
 from pathlib import Path
 
 import pytest
@@ -146,6 +147,18 @@ def test_of_several_janitors_one_acts(janitor: Janitor, store: JobStore, queue: 
     janitor.sweep(0.0)
     janitor.sweep(MISSING_S)
     assert waiting(queue) == []
+
+
+def test_a_janitor_that_was_started_again_leads_on_at_once(
+    janitor: Janitor, store: JobStore, queue: JobQueue, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    job = accepted(store, b"mesh")
+    janitor.sweep(0.0)
+    monkeypatch.setattr(os, "getpid", lambda: 1)
+    successor = Janitor(store, queue, Settings(data_dir=tmp_path))
+    successor.sweep(1.0)
+    successor.sweep(1.0 + MISSING_S)
+    assert waiting(queue) == [job.id]
 
 
 def test_an_entry_without_a_job_disturbs_nobody(janitor: Janitor, queue: JobQueue) -> None:
