@@ -96,9 +96,10 @@ def _vertices(words: Words, first: LongArray) -> FloatArray:
 
 def _appearance(words: Words, first: LongArray, normal: bool, color: bool, texture: bool) -> Appearance | None:
     """What follows the coordinates where it is the same for every vertex: normal, colour, texture coordinates."""
-    width = int(first[1] - first[0]) if len(first) > 1 else 0
-    if (np.diff(first) != width).any():
+    widths = np.diff(first)
+    if len(widths) == 0 or (widths != widths[0]).any():
         return None
+    width = int(widths[0])
     table = words.floats(int(first[0]), int(first[-1])).reshape(-1, width)
     begin, end = 3 + 3 * normal, width - 2 * texture
     return appearance_or_none(

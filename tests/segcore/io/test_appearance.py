@@ -8,14 +8,14 @@ import pytest
 from gltf_files import FLOAT
 from hypothesis import given
 from hypothesis import strategies as st
-from ply_files import ply
+from ply_files import ENCODINGS, ply
 from samples import DRESSED, INDICES, OBJ, OFF, SAMPLES, SQUARE, XYZ, gltf_square, gltf_with_attributes
 from threemf_files import Model3MF
 from trees import looks, two_strips
 from written import written
 
 from segcore.appearance import Appearance
-from segcore.errors import InvalidMesh
+from segcore.errors import InvalidMesh, UnsupportedFormat
 from segcore.hierarchy import Hierarchy
 from segcore.io import read_mesh
 from segcore.io.result import read_result
@@ -250,6 +250,19 @@ def test_normals_without_direction_are_left_out() -> None:
     data = OFF.replace(b"OFF", b"NOFF").replace(b"0 0 0\n", b"0 0 0 0 0 0\n").replace(b"1 0 0\n", b"1 0 0 0 0 1\n")
     data = data.replace(b"1 1 0\n", b"1 1 0 0 0 1\n").replace(b"0 1 .5\n", b"0 1 .5 0 0 1\n")
     assert read_mesh(io.BytesIO(data), appearance=True).appearance is None
+
+
+@pytest.mark.parametrize(
+    "data",
+    [
+        b"OFF\n0 1 0\n3 0 1 2\n", b"STCNOFF\n0 1 0\n3 0 1 2\n", b"vt 0 0\nvn 0 0 1\nf 1/1/1 2/1/1 3/1/1\n",
+        *(ply(name, [("vertex", XYZ, []), ("face", INDICES, [[[0, 1, 2]]])]) for name in ENCODINGS),
+    ],
+)  # fmt: skip
+def test_a_file_without_vertices_is_refused_whatever_is_kept_of_it(data: bytes) -> None:
+    for appearance in (False, True):
+        with pytest.raises((InvalidMesh, UnsupportedFormat)):
+            read_mesh(io.BytesIO(data), appearance=appearance)
 
 
 def test_an_appearance_of_another_mesh_is_refused() -> None:
