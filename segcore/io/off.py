@@ -49,7 +49,7 @@ def read_off(data: bytes, limits: ReadLimits, with_appearance: bool = False) -> 
             if first is not None:
                 polygons = _polygons(words, int(first[-1]), face_count)
                 appearance = None
-                if with_appearance:
+                if with_appearance and (normal or color or texture):
                     appearance = _appearance(words, first, bool(normal), bool(color), bool(texture))
                 return mesh_of_polygons(_vertices(words, first), polygons, limits, appearance)
         except InvalidMesh as error:
