@@ -1,5 +1,6 @@
 """Who asks: the owner of the API key, where keys are required."""
 
+import ipaddress
 from dataclasses import dataclass
 from typing import Annotated
 
@@ -36,6 +37,41 @@ async def _caller(
 
 
 CallerOf = Annotated[Caller, Depends(_caller)]
+
+
+class LocalNames:
+    """Answers to no other names than those that only this machine can have: for a service without keys on loopback.
+
+    Whoever owns a name can turn it to 127.0.0.1 while their page is open (DNS rebinding), upon which the browser takes
+    the service for a part of their site. An address cannot be turned.
+    """
+
+    def __init__(self, app: ASGIApp) -> None:
+        self._app = app
+
+    async def __call__(self, scope: Scope, receive: Receive, send: Send) -> None:
+        if scope["type"] == "http" and not _is_local_name(Request(scope).headers.get("host", "")):
+            problem = Problem(
+                "foreign_site",
+                "Without API keys only localhost and addresses are answered: make a key with `cleave key NAME`, or set "
+                "CLEAVE_AUTH=off where something else keeps strangers out.",
+            )
+            await problem.response()(scope, receive, send)
+            return
+        await self._app(scope, receive, send)
+
+
+def _is_local_name(host: str) -> bool:
+    """Whether what a Host header says is nothing, an address, or a name that always leads to this machine."""
+    name = host.rpartition(":")[0] if host.rpartition(":")[2].isdigit() else host
+    name = name.lower().rstrip(".")
+    if name in ("", "localhost") or name.endswith(".localhost"):
+        return True
+    try:
+        ipaddress.ip_address(name.strip("[]"))
+    except ValueError:
+        return False
+    return True
 
 
 class ForeignSites:

@@ -18,7 +18,7 @@ from service import (
     submission_routes,
     webhook_routes,
 )
-from service.access import ForeignSites
+from service.access import ForeignSites, LocalNames
 from service.api_keys import key_ring
 from service.context import Context, QueueView
 from service.headers import HeadRequests, SecurityHeaders
@@ -102,6 +102,8 @@ def create_app(settings: Settings) -> FastAPI:
 def _add_middleware(app: FastAPI, settings: Settings) -> None:
     origins = [origin.strip() for origin in (settings.cors_origins or "").split(",") if origin.strip()]
     app.add_middleware(ForeignSites, allowed_origins=origins)
+    if settings.auth == "auto" and not app.state.context.keys_required:
+        app.add_middleware(LocalNames)
     if origins:
         app.add_middleware(
             CORSMiddleware,
