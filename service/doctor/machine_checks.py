@@ -57,7 +57,7 @@ def _file_size(settings: Settings) -> Iterator[Finding]:
 
 def _memory(settings: Settings) -> Iterator[Finding]:
     needed, there = _BYTES_AT_LEAST + _BYTES_PER_FACE * settings.max_faces, memory_bytes()
-    given = min(there, settings.job_memory_bytes or there)
+    given = min(there, settings.job_memory_bytes)
     if given < needed:
         yield warning(
             "memory",
@@ -66,11 +66,12 @@ def _memory(settings: Settings) -> Iterator[Finding]:
         )
     else:
         yield ok("memory", f"enough for one job of {settings.max_faces} faces at a time.")
-    if settings.job_memory_bytes is None:
+    if settings.job_memory_bytes > there:
         yield warning(
             "memory of a job",
-            "there is no limit: a hostile file can take all memory of the machine.",
-            f"Set CLEAVE_JOB_MEMORY_BYTES, for instance to {there // 2}.",
+            f"a job may take {settings.job_memory_bytes / 2**30:.1f} GiB, of {there / 2**30:.1f}: one file can "
+            "have the kernel kill other processes.",
+            "Lower CLEAVE_JOB_MEMORY_BYTES.",
         )
 
 

@@ -24,6 +24,7 @@ from worker.queue import QUEUE_NAMES
 from worker.settings import Settings
 
 StartServer = Callable[..., str]
+LIMITS = ("open files", "file size", "memory", "memory of a job", "kernels", "settings")
 
 
 @pytest.fixture
@@ -135,8 +136,8 @@ def test_the_clock_of_a_store_is_looked_at(tmp_path: Path, monkeypatch: pytest.M
 
     true_list = LocalObjects.list_below
 
-    def list_late(objects: LocalObjects, folder: str, after: str = "", limit: int | None = None) -> list[ObjectInfo]:
-        found = true_list(objects, folder, after, limit)
+    def list_late(objects: LocalObjects, folder: str) -> list[ObjectInfo]:
+        found = true_list(objects, folder)
         return [ObjectInfo(one.key, one.size_bytes, one.modified_at - 3600) for one in found]
 
     monkeypatch.setattr(LocalObjects, "list_below", list_late)
@@ -152,10 +153,11 @@ def test_limits_of_the_machine_are_held_against_the_settings(tmp_path: Path, mon
     monkeypatch.setenv("NUMBA_CACHE_DIR", str(tmp_path))
     monkeypatch.setenv("CLEAVE_MAX_FACE", "7")
     found = {finding.topic: finding for finding in check_machine(Settings(data_dir=tmp_path), "127.0.0.1")}
-    assert {topic: found[topic].severity for topic in ("open files", "file size", "memory", "kernels", "settings")} == {
+    assert {topic: found[topic].severity for topic in LIMITS} == {
         "open files": "warning",
         "file size": "error",
         "memory": "warning",
+        "memory of a job": "warning",
         "kernels": "warning",
         "settings": "warning",
     }
