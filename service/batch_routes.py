@@ -199,7 +199,7 @@ async def _receive(request: Request, context: Context, media_type: str, begin_up
     with context.store.begin_upload() as packed:
         async for piece in pieces(request, settings):
             await run_in_threadpool(write_capped, packed, piece, settings.max_batch_bytes)
-        packed.make_durable()
+        packed.close()
         return Form(await run_in_threadpool(unpack, packed.folder / "mesh", settings, begin_upload))
 
 

@@ -108,7 +108,7 @@ class FormReader:
 
     def _end_part(self) -> None:
         if self._field == "mesh":
-            self._form.meshes[-1].upload.make_durable()
+            self._form.meshes[-1].upload.close()
 
     def _end(self) -> None:
         self._is_complete = True

@@ -38,7 +38,7 @@ def unpack(path: Path, settings: Settings, begin_upload: Callable[[], MeshUpload
                 with archive.open(member) as source:
                     while piece := source.read(_PIECE_BYTES):
                         write_capped(upload, piece, min(settings.max_upload_bytes, left))
-                upload.make_durable()
+                upload.close()
                 left -= upload.size_bytes
                 meshes.append(ReceivedMesh(upload, member.filename))
     except (zipfile.BadZipFile, NotImplementedError, RuntimeError, EOFError, ValueError) as error:

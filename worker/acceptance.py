@@ -27,7 +27,7 @@ class Acceptance:
         self._computed = ComputedIndex(objects)
 
     def accept(self, job: Job, mesh: Path) -> None:
-        """Take a job in, with its mesh in a durable file, which may be gone afterwards.
+        """Take a job in, with its mesh in a file, which may be gone afterwards.
 
         Raises
         ------

@@ -28,11 +28,11 @@ class Deletions:
     def remove_objects(self, job: Job) -> None:
         """Remove the record, and then the rest."""
         self._objects.delete(job_key(job.id, RECORD))
-        left = [one.key for one in self._objects.list_below(job_folder(job.id))]
-        self._objects.each(self._objects.delete, left)
+        self._objects.each(self._objects.delete, self._objects.keys_below(job_folder(job.id)))
 
     def end(self, job: Job) -> None:
-        self._note(job)
+        if not self._objects.exists(f"{_GONE}/{job.id}"):  # the disk was full
+            self._note(job)
         self._objects.delete(f"{_DOOMED}/{job.id}")
 
     def begun_before(self, age_s: float) -> list[Job]:

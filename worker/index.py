@@ -8,7 +8,7 @@ import re
 
 from worker.jobs import Job
 from worker.layout import NOBODY, entry_name
-from worker.objects import ObjectStorage
+from worker.objects import ObjectStorage, name_of
 
 CURSOR = r"^[0-9]{8}T[0-9]{12}-[0-9a-f]{32}$"
 _FOLDER = "index"
@@ -33,8 +33,7 @@ class JobIndex:
     def page(self, owner: str | None, before: str | None, limit: int) -> list[str]:
         """The names of the newest entries that are older than the entry ``before``, newest first."""
         after = _key(owner, before) if before else ""
-        found = self._objects.list_below(_folder(owner), after, limit)
-        return [turned(one.name) for one in found]
+        return [turned(name_of(key)) for key in self._objects.keys_below(_folder(owner), after, limit)]
 
 
 def is_entry_name(text: str) -> bool:

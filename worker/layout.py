@@ -26,6 +26,7 @@ MANIFEST = "manifest.json"
 RESULT = "result.cleave"
 MESH = "mesh"  # in folders of earlier versions
 
+TIME_FORMAT = "%Y%m%dT%H%M%S%f"  # UTC
 NOBODY = "_"  # the folder of jobs without an owner; not the name of one
 
 
@@ -46,4 +47,4 @@ def mesh_name(job: Job) -> str:
 
 def entry_name(job: Job) -> str:
     """Later for later jobs."""
-    return f"{job.created_at:%Y%m%dT%H%M%S%f}-{job.id}"
+    return f"{job.created_at:{TIME_FORMAT}}-{job.id}"

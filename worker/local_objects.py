@@ -69,10 +69,12 @@ class LocalObjects:
             with suppress(OSError):
                 path.parent.rmdir()
 
-    def list_below(self, folder: str, after: str = "", limit: int | None = None) -> list[ObjectInfo]:
+    def keys_below(self, folder: str, after: str = "", limit: int | None = None) -> list[str]:
         keys = (key for key in _keys(self._path(folder), folder) if key > after)
-        chosen = sorted(keys) if limit is None else heapq.nsmallest(limit, keys)
-        found = ((key, _status(self._path(key))) for key in chosen)
+        return sorted(keys) if limit is None else heapq.nsmallest(limit, keys)
+
+    def list_below(self, folder: str) -> list[ObjectInfo]:
+        found = ((key, _status(self._path(key))) for key in self.keys_below(folder))
         return [ObjectInfo(key, status.st_size, status.st_mtime) for key, status in found if status is not None]
 
     def each(self, work: Callable[[Item], Value], items: Iterable[Item]) -> list[Value]:

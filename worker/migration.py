@@ -8,6 +8,7 @@ from pathlib import Path
 
 from worker.index import is_entry_name, turned
 from worker.jobs import is_job_id
+from worker.layout import TIME_FORMAT
 
 _ID_LENGTH = 32
 _THIS_MILLENNIUM = "2"  # the first digit of a time that is not turned around, until the year 3000
@@ -25,7 +26,7 @@ def migrate(data_dir: Path) -> None:
             with suppress(FileNotFoundError):
                 record = json.loads((data_dir / "jobs" / job_id / "job.json").read_bytes())
                 accepted_at = datetime.fromisoformat(record["created_at"])
-                _rename(Path(marker), f"{accepted_at:%Y%m%dT%H%M%S%f}-{job_id}{owner}")
+                _rename(Path(marker), f"{accepted_at:{TIME_FORMAT}}-{job_id}{owner}")
 
 
 def _scan(folder: Path) -> list[os.DirEntry[str]]:

@@ -25,8 +25,12 @@ class ObjectInfo:
 
     @property
     def name(self) -> str:
-        """The last part of the key."""
-        return self.key.rpartition("/")[2]
+        return name_of(self.key)
+
+
+def name_of(key: str) -> str:
+    """The last part of a key."""
+    return key.rpartition("/")[2]
 
 
 class ObjectStorage(Protocol):
@@ -69,8 +73,11 @@ class ObjectStorage(Protocol):
     def delete(self, key: str) -> None:
         """Remove an object; without effect where there is none."""
 
-    def list_below(self, folder: str, after: str = "", limit: int | None = None) -> list[ObjectInfo]:
-        """The first objects whose keys begin with the folder and a slash and come after a key, in order of keys."""
+    def keys_below(self, folder: str, after: str = "", limit: int | None = None) -> list[str]:
+        """The first keys that begin with the folder and a slash and come after another, in their order."""
+
+    def list_below(self, folder: str) -> list[ObjectInfo]:
+        """All objects whose keys begin with the folder and a slash, in order of keys."""
 
     def each(self, work: Callable[[Item], Value], items: Iterable[Item]) -> list[Value]:
         """Do something for each of some items, several at a time where that is quicker, and keep their order."""

@@ -6,7 +6,7 @@ from dataclasses import dataclass
 from pydantic import TypeAdapter
 
 from worker.jobs import is_job_id
-from worker.objects import ObjectInfo, ObjectStorage
+from worker.objects import ObjectStorage, name_of
 
 _FOLDER = "outbox"
 
@@ -31,11 +31,11 @@ class Outbox:
 
     def job_ids(self) -> set[str]:
         """The jobs about which somebody is still to be told."""
-        return {one.name for one in self._list()}
+        return set(self._names())
 
     def letters(self, but_of: frozenset[str] | set[str] = frozenset()) -> dict[str, Letter]:
         """What is still to be sent, by job, without that of some jobs."""
-        names = [one.name for one in self._list() if one.name not in but_of]
+        names = [name for name in self._names() if name not in but_of]
         found = dict(zip(names, self._objects.each(self.letter, names), strict=True))
         return {name: letter for name, letter in found.items() if letter is not None}
 
@@ -47,11 +47,12 @@ class Outbox:
         self._objects.delete(_key(job_id))
 
     def remove_old(self, job_id: str, older_than_s: float) -> None:
-        if any(one.name == job_id and one.modified_at < time.time() - older_than_s for one in self._list()):
+        oldest = time.time() - older_than_s
+        if any(one.name == job_id and one.modified_at < oldest for one in self._objects.list_below(_FOLDER)):
             self.remove(job_id)
 
-    def _list(self) -> list[ObjectInfo]:
-        return [one for one in self._objects.list_below(_FOLDER) if is_job_id(one.name)]
+    def _names(self) -> list[str]:
+        return [name for name in map(name_of, self._objects.keys_below(_FOLDER)) if is_job_id(name)]
 
 
 def _key(job_id: str) -> str:

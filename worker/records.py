@@ -9,7 +9,7 @@ from pydantic import TypeAdapter
 
 from worker.jobs import Attempt, Cause, Job, Outcome, is_job_id, now
 from worker.layout import MANIFEST, RECORD, job_folder, job_key
-from worker.objects import ObjectStorage
+from worker.objects import ObjectStorage, name_of
 
 JOB = TypeAdapter(Job)
 _ATTEMPT = TypeAdapter(Attempt)
@@ -64,7 +64,7 @@ class Records:
 
     def attempts(self, job_id: str) -> list[Attempt]:
         """The runs that count, in order."""
-        keys = [one.key for one in self._objects.list_below(job_folder(job_id)) if one.name.startswith("attempt-")]
+        keys = [key for key in self._objects.keys_below(job_folder(job_id)) if name_of(key).startswith("attempt-")]
         found = (self._read(key, _ATTEMPT) for key in keys)
         return sorted((attempt for attempt in found if attempt), key=lambda attempt: attempt.number)
 

@@ -82,14 +82,11 @@ class RemoteObjects:
         with suppress(FileNotFoundError), _translated_errors():
             self._bucket.writes.delete(key)
 
-    def list_below(self, folder: str, after: str = "", limit: int | None = None) -> list[ObjectInfo]:
-        found: list[ObjectInfo] = []
-        with _translated_errors(), _a_bucket_that_is_there():
-            for part in self._bucket.reads.list(folder, offset=after or None, chunk_size=limit or _LISTED_AT_A_TIME):
-                found += [ObjectInfo(one["path"], one["size"], one["last_modified"].timestamp()) for one in part]
-                if limit is not None and len(found) >= limit:
-                    break
-        return sorted(found, key=lambda one: one.key)[:limit]
+    def keys_below(self, folder: str, after: str = "", limit: int | None = None) -> list[str]:
+        return [one.key for one in self._list(folder, after, limit)]
+
+    def list_below(self, folder: str) -> list[ObjectInfo]:
+        return self._list(folder)
 
     def each(self, work: Callable[[Item], Value], items: Iterable[Item]) -> list[Value]:
         """As promised; the work must not call ``each`` itself, or all threads may wait for each other."""
@@ -107,6 +104,15 @@ class RemoteObjects:
                 raise StoreError("The store creates an object twice: use one that has conditional writes.")
             self._creates_once = True
         self.delete(probe)
+
+    def _list(self, folder: str, after: str = "", limit: int | None = None) -> list[ObjectInfo]:
+        found: list[ObjectInfo] = []
+        with _translated_errors(), _a_bucket_that_is_there():
+            for part in self._bucket.reads.list(folder, offset=after or None, chunk_size=limit or _LISTED_AT_A_TIME):
+                found += [ObjectInfo(one["path"], one["size"], one["last_modified"].timestamp()) for one in part]
+                if limit is not None and len(found) >= limit:
+                    break
+        return sorted(found, key=lambda one: one.key)[:limit]
 
 
 @contextmanager

@@ -18,7 +18,7 @@ from worker.file_cache import FileCache
 from worker.index import JobIndex, is_entry_name, job_id_of
 from worker.installation_secret import InstallationSecret
 from worker.jobs import Attempt, Cause, Job, Outcome, Succeeded
-from worker.layout import MESH, entry_name, job_key, mesh_name
+from worker.layout import MESH, TIME_FORMAT, entry_name, job_key, mesh_name
 from worker.objects import ObjectStorage
 from worker.outbox import Outbox
 from worker.pending import PendingJobs
@@ -80,7 +80,7 @@ class JobStore:
         JobExists
             Where there is a job of this id already; it stays as it is.
         """
-        upload.make_durable()
+        upload.close()
         self._acceptance.accept(job, upload.path)
 
     def computed_before(self, job: Job) -> Job | None:
@@ -93,7 +93,7 @@ class JobStore:
         entries = self._index.page(owner, cursor, limit + 1)
         shown = [entry for entry in entries[:limit] if is_entry_name(entry)]
         found = dict(zip(shown, self._records.jobs([job_id_of(entry) for entry in shown]), strict=True))
-        oldest = f"{datetime.now(UTC) - _ON_ITS_WAY:%Y%m%dT%H%M%S%f}"
+        oldest = f"{datetime.now(UTC) - _ON_ITS_WAY:{TIME_FORMAT}}"
         for entry in (entry for entry, job in found.items() if job is None and entry < oldest):
             self._index.remove_entry(owner, entry)
         jobs = [job for entry, job in found.items() if job is not None and entry_name(job) == entry]
@@ -269,7 +269,7 @@ class JobStore:
         self.objects.check_writable()
         with self.begin_upload() as probe:
             probe.write(b"?")
-            probe.make_durable()
+            probe.close()
 
     def _remove(self, job: Job) -> None:
         self.deletions.remove_objects(job)

@@ -2,9 +2,8 @@
 
 import hashlib
 import shutil
+from contextlib import suppress
 from pathlib import Path
-
-from worker.durable import sync_file
 
 
 class MeshUpload:
@@ -25,7 +24,8 @@ class MeshUpload:
         return self
 
     def __exit__(self, *_: object) -> None:
-        self._file.close()
+        with suppress(OSError):  # what a full disk has kept back
+            self._file.close()
         shutil.rmtree(self.folder, ignore_errors=True)
 
     def write(self, data: bytes | bytearray) -> None:
@@ -37,8 +37,6 @@ class MeshUpload:
     def sha256(self) -> str:
         return self._digest.hexdigest()
 
-    def make_durable(self) -> None:
+    def close(self) -> None:
         """End the writing; a second time changes nothing."""
-        if not self._file.closed:
-            sync_file(self._file)
-            self._file.close()
+        self._file.close()

@@ -37,7 +37,7 @@ def test_an_upload_whose_process_died_is_removed_when_nobody_touches_it(tmp_path
     spool = Spool(tmp_path)
     orphan = spool.begin_upload()
     orphan.write(b"half of a mesh")
-    orphan.make_durable()
+    orphan.close()
     result = spool.result_file("0" * 32)
     result.write_bytes(b"half of a result")
     spool.remove_abandoned(untouched_s=3600)
