@@ -57,17 +57,8 @@ def add_features(
     for mesh, layer in zip(document["meshes"], layer_of, strict=True):
         primitive = mesh["primitives"][0]
         primitive["attributes"]["_FEATURE_ID_0"] = accessors[layer]
-        primitive.setdefault("extensions", {})[_FEATURES] = {
-            "featureIds": [
-                {
-                    "label": "node",
-                    "attribute": 0,
-                    "featureCount": counts[layer],
-                    "nullFeatureId": hierarchy.node_count,
-                    "propertyTable": 0,
-                }
-            ]
-        }
+        ids = _feature_ids(counts[layer], hierarchy.node_count)
+        primitive.setdefault("extensions", {})[_FEATURES] = {"featureIds": [ids]}
     document.setdefault("extensions", {})[_METADATA] = {
         "schema": {"id": "cleave_hierarchy", "classes": {"node": _class()}},
         "propertyTables": [_table(document, blobs, hierarchy)],
@@ -93,6 +84,10 @@ def _layers(
         layers[layer][used] = node
         layer_of.append(layer)
     return layer_of, layers
+
+
+def _feature_ids(count: int, nothing: int) -> dict[str, Any]:
+    return {"label": "node", "attribute": 0, "featureCount": count, "nullFeatureId": nothing, "propertyTable": 0}
 
 
 def _accessor(document: dict[str, Any], blobs: list[NDArray[Any]], ids: NDArray[np.float32]) -> int:
