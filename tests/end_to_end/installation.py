@@ -1,5 +1,6 @@
 """A whole installation as a user starts it, and what a test does to it."""
 
+import json
 import os
 import re
 import shutil
@@ -9,7 +10,7 @@ import sys
 import tempfile
 from contextlib import suppress
 from pathlib import Path
-from typing import ClassVar
+from typing import Any, ClassVar
 
 import httpx
 from redis import Redis
@@ -145,6 +146,31 @@ class Installation:
     def _close(self) -> None:
         if self.process is not None and self.process.stdout is not None:
             self.process.stdout.close()
+
+
+class LoggingInstallation(Installation):
+    """One whose log is kept, as JSON."""
+
+    settings = Installation.settings | {"CLEAVE_LOG_LEVEL": "info", "CLEAVE_LOG_FORMAT": "json"}
+
+    def command(self, *arguments: str) -> "subprocess.Popen[str]":
+        with self.log.open("ab") as log:
+            return subprocess.Popen(
+                [sys.executable, "-m", "service.cli", *arguments],
+                env=os.environ | self.settings | {"CLEAVE_DATA_DIR": str(self.data_dir)},
+                stdout=subprocess.PIPE,
+                stderr=log,
+                text=True,
+                start_new_session=True,
+            )
+
+    @property
+    def log(self) -> Path:
+        return self.data_dir / "log"
+
+    def lines(self) -> list[dict[str, Any]]:
+        """Every line that is JSON: the queue server has a form of its own."""
+        return [json.loads(line) for line in self.log.read_text().splitlines() if line.startswith("{")]
 
 
 def _all_processes() -> list[int]:

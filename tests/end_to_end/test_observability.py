@@ -4,43 +4,14 @@ import json
 import os
 import re
 import signal
-import subprocess
-import sys
-from pathlib import Path
-from typing import Any
 
 import httpx
 
-from end_to_end.installation import Installation
+from end_to_end.installation import Installation, LoggingInstallation
 from support import LONG, sphere, wait_until
 
 TRACE_ID = "4bf92f3577b34da6a3ce929d0e0e4736"
 PARENT = f"00-{TRACE_ID}-00f067aa0ba902b7-01"
-
-
-class LoggingInstallation(Installation):
-    """One whose log is kept, as JSON."""
-
-    settings = Installation.settings | {"CLEAVE_LOG_LEVEL": "info", "CLEAVE_LOG_FORMAT": "json"}
-
-    def command(self, *arguments: str) -> "subprocess.Popen[str]":
-        with self.log.open("ab") as log:
-            return subprocess.Popen(
-                [sys.executable, "-m", "service.cli", *arguments],
-                env=os.environ | self.settings | {"CLEAVE_DATA_DIR": str(self.data_dir)},
-                stdout=subprocess.PIPE,
-                stderr=log,
-                text=True,
-                start_new_session=True,
-            )
-
-    @property
-    def log(self) -> Path:
-        return self.data_dir / "log"
-
-    def lines(self) -> list[dict[str, Any]]:
-        """Every line that is JSON: the queue server has a form of its own."""
-        return [json.loads(line) for line in self.log.read_text().splitlines() if line.startswith("{")]
 
 
 def test_a_job_can_be_followed_through_every_process_by_its_id_and_its_trace() -> None:

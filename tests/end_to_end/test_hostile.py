@@ -1,0 +1,137 @@
+"""Whatever is sent: the service stays small and alive, says what is wrong, and touches nothing that is not its own."""
+
+import os
+import socket
+import sys
+from collections.abc import Iterator
+from pathlib import Path
+
+import httpx
+import pytest
+
+from end_to_end.hostile_files import hostile_files
+from end_to_end.installation import LoggingInstallation
+from support import sphere, wait_until
+
+ROOT = Path(__file__).parents[2]
+MEMORY_BYTES = 2 * 2**30
+GROWTH_BYTES = 64 * 2**20
+# Beside the data and the installation: what the kernel says of this machine, and what Python asks it for.
+HARMLESS = ("/dev/", "/proc/self/", "/proc/vmstat", "/proc/stat", "/proc/cpuinfo", "/sys/")
+LISTENING = {"socket.getaddrinfo\t127.0.0.1", "socket.bind\t('127.0.0.1', 0)"}
+
+
+class AuditedInstallation(LoggingInstallation):
+    """One whose processes note what they open and connect to."""
+
+    def __init__(self, notes: Path) -> None:
+        super().__init__()
+        self.settings = LoggingInstallation.settings | {
+            "AUDIT_LOG": str(notes),
+            "PYTHONPATH": str(Path(__file__).parent / "audit"),
+            "CLEAVE_JOB_MEMORY_BYTES": str(MEMORY_BYTES),
+            "CLEAVE_MAX_UPLOAD_BYTES": str(4 * 2**20),
+        }
+
+
+@pytest.fixture
+def target() -> Iterator[socket.socket]:
+    """Somebody who waits for connections that must not come."""
+    with socket.create_server(("127.0.0.1", 0)) as listening:
+        listening.settimeout(0.1)
+        yield listening
+
+
+def test_hostile_files_hurt_nothing_but_their_jobs(tmp_path: Path, target: socket.socket) -> None:
+    secret, notes = tmp_path / "secret", tmp_path / "notes"
+    secret.write_text("nobody may read this")
+    with AuditedInstallation(notes) as installation:
+        submit(installation, "warm.off", sphere(12))
+        wait_until(lambda: ended(installation))
+        (service,) = installation.children("service.server")
+        before = memory_bytes(service, "VmRSS")
+        expected = {
+            submit(installation, name, content): (name, codes)
+            for name, content, codes in hostile_files(f"http://127.0.0.1:{target.getsockname()[1]}", str(secret))
+        }
+        refuse_what_is_no_mesh(installation)
+        wait_until(lambda: ended(installation), within_s=120)
+        found = {name: code_of(installation, path) for path, (name, _) in expected.items()}
+        assert not {name: found[name] for name, codes in expected.values() if found[name] not in codes}
+        assert installation.children("service.server") == [service]
+        assert memory_bytes(service, "VmHWM") - before < GROWTH_BYTES
+        assert max(work_horse_bytes(installation)) < MEMORY_BYTES
+        assert code_of(installation, submit(installation, "fine.off", sphere(12)), wait=True) is None
+        assert strange(notes, installation.data_dir) == LISTENING
+        noted = notes.read_text(errors="replace")
+        assert f"socket.connect\t{installation.data_dir}/queue/queue.sock" in noted  # it does note
+        assert all(f"{path.rpartition('/')[2]}/mesh" in noted for path in expected)
+    with pytest.raises(TimeoutError):
+        target.accept()
+    assert not list(Path("/tmp").glob("PWNED*"))
+    assert sorted(path.name for path in tmp_path.iterdir()) == ["notes", "secret"]
+
+
+def submit(installation: LoggingInstallation, name: str, content: bytes) -> str:
+    """The path of a new job of a file whose name is sent as it is."""
+    answer = httpx.post(
+        f"{installation.url}/v1/jobs",
+        files={"mesh": (name, content)},
+        data={"parameters": '{"max_segments": 4}'},
+        headers={"Cache-Control": "no-cache"},
+        timeout=60,
+    )
+    assert answer.status_code == 202, (name, answer.text)
+    assert "PWNED" not in answer.headers["Location"]
+    return str(answer.headers["Location"])
+
+
+def refuse_what_is_no_mesh(installation: LoggingInstallation) -> None:
+    """What is already wrong in the request is refused there, without a job."""
+    jobs = f"{installation.url}/v1/jobs"
+    too_large = httpx.post(jobs, content=bytes(2**23), headers={"Content-Type": "model/stl"}, timeout=60)
+    assert too_large.status_code == 413
+    for parameters in ("[" * 50_000, '{"seed": 1e999, "\\ud800": NaN}'):
+        refused = httpx.post(jobs, files={"mesh": b"x"}, data={"parameters": parameters}, timeout=60)
+        assert 400 <= refused.status_code < 500, refused.text
+
+
+def ended(installation: LoggingInstallation) -> bool:
+    jobs = installation.get("/v1/jobs?limit=100").json()["jobs"]
+    return all(job["finished_at"] for job in jobs)
+
+
+def code_of(installation: LoggingInstallation, path: str, *, wait: bool = False) -> str | None:
+    """Why a job has failed; None where it has not."""
+    if wait:
+        wait_until(lambda: installation.get(path).json()["finished_at"])
+    job = installation.get(path).json()
+    return str(job["error"]["code"]) if job["status"] == "failed" else None
+
+
+def memory_bytes(pid: int, name: str) -> int:
+    lines = Path(f"/proc/{pid}/status").read_text().splitlines()
+    return next(1024 * int(line.split()[1]) for line in lines if line.startswith(name))
+
+
+def work_horse_bytes(installation: LoggingInstallation) -> list[int]:
+    """The most memory that each work-horse has had, as the log says."""
+    endings = [line["message"] for line in installation.lines() if "the work-horse ended with" in line["message"]]
+    return [1024 * int(message.rpartition(", ")[2].removesuffix(" KiB")) for message in endings]
+
+
+def strange(notes: Path, data_dir: Path) -> set[str]:
+    """What was opened, or connected to, and is neither the service's own nor harmless."""
+    own = (str(data_dir), str(ROOT), sys.prefix, sys.base_prefix, sys.exec_prefix)
+    found = set()
+    for line in notes.read_text(errors="replace").splitlines():
+        event, _, what = line.partition("\t")
+        is_number = what.isdigit()  # an open descriptor: it was opened by its name before
+        if not (is_number or what.startswith((*own, *HARMLESS)) or is_own_command(event, what)):
+            found.add(line)
+    return found
+
+
+def is_own_command(event: str, what: str) -> bool:
+    """The processes of an installation are Python and its queue server."""
+    return event == "subprocess.Popen" and os.path.basename(what).startswith(("python", "valkey", "redis"))
