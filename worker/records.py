@@ -1,7 +1,7 @@
 """What the store says about a job: its record, its runs, its outcome."""
 
 from collections import OrderedDict
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 from typing import TypeVar
 
@@ -19,6 +19,10 @@ _REMEMBERED = 10_000  # outcomes
 Document = TypeVar("Document")
 
 
+class UnknownJob(LookupError):  # noqa: N818
+    """The store has no such job (any more)."""
+
+
 @dataclass(frozen=True, slots=True)
 class JobState:
     """How a job is, as far as the store knows."""
@@ -28,6 +32,8 @@ class JobState:
 
 
 class Records:
+    """The records; whatever writes one raises UnknownJob where the job was deleted, before or meanwhile."""
+
     def __init__(self, objects: ObjectStorage) -> None:
         self._objects = objects
         self._outcomes: OrderedDict[str, Outcome] = OrderedDict()  # they never change
@@ -37,6 +43,12 @@ class Records:
 
     def has_job(self, job_id: str) -> bool:
         return self._objects.exists(job_key(job_id, RECORD))
+
+    def require(self, job_id: str, undo: Callable[[], None] = lambda: None) -> None:
+        """Raise UnknownJob where a job was deleted, and take back what was written for it meanwhile."""
+        if not self.has_job(job_id):
+            undo()
+            raise UnknownJob(job_id)
 
     def create_job(self, job: Job) -> bool:
         """Whether this is now the job of this id."""
@@ -54,13 +66,12 @@ class Records:
     def has_outcome(self, job_id: str) -> bool:
         return job_id in self._outcomes or self._objects.exists(job_key(job_id, MANIFEST))
 
-    def create_outcome(self, job_id: str, outcome: Outcome) -> None:
-        """Write it, unless there is one."""
+    def finish(self, job_id: str, outcome: Outcome) -> Outcome:
+        """Write the outcome of a job that was there a moment ago, unless there is one; the one that stands."""
         self._objects.create(job_key(job_id, MANIFEST), _OUTCOME.dump_json(outcome))
-
-    def remove_outcome(self, job_id: str) -> None:
-        self._objects.delete(job_key(job_id, MANIFEST))
-        self._outcomes.pop(job_id, None)
+        standing = self.outcome(job_id)
+        self.require(job_id, lambda: self._remove_outcome(job_id))
+        return standing or outcome
 
     def attempts(self, job_id: str) -> list[Attempt]:
         """The runs that count, in order."""
@@ -69,14 +80,18 @@ class Records:
         return sorted((attempt for attempt in found if attempt), key=lambda attempt: attempt.number)
 
     def begin_attempt(self, job_id: str, worker: str) -> Attempt:
+        self.require(job_id)
         attempt = Attempt(number=len(self.attempts(job_id)) + 1, worker=worker, started_at=now())
         while not self._objects.create(_attempt_key(job_id, attempt), _ATTEMPT.dump_json(attempt)):
             attempt = replace(attempt, number=attempt.number + 1)
+        self.require(job_id, lambda: self.remove_attempt(job_id, attempt))
         return attempt
 
     def end_attempt(self, job_id: str, attempt: Attempt, cause: Cause) -> None:
+        self.require(job_id)
         ended = replace(attempt, ended_at=now(), cause=cause)
         self._objects.put(_attempt_key(job_id, attempt), _ATTEMPT.dump_json(ended))
+        self.require(job_id, lambda: self.remove_attempt(job_id, attempt))
 
     def remove_attempt(self, job_id: str, attempt: Attempt) -> None:
         self._objects.delete(_attempt_key(job_id, attempt))
@@ -88,6 +103,10 @@ class Records:
 
     def jobs(self, job_ids: Sequence[str]) -> list[Job | None]:
         return self._objects.each(self.job, job_ids)
+
+    def _remove_outcome(self, job_id: str) -> None:
+        self._objects.delete(job_key(job_id, MANIFEST))
+        self._outcomes.pop(job_id, None)
 
     def _read(self, key: str, adapter: TypeAdapter[Document]) -> Document | None:
         text = self._objects.get(key)

@@ -7,18 +7,23 @@ from typing import BinaryIO
 from worker.file_cache import FileCache
 from worker.layout import RESULT, job_key
 from worker.objects import ObjectStorage
+from worker.records import Records, UnknownJob
 from worker.spool import Spool
 
 
 class ResultFiles:
-    def __init__(self, objects: ObjectStorage, spool: Spool, cache: FileCache | None) -> None:
+    """The files; writing one raises UnknownJob where the job was deleted, before or meanwhile."""
+
+    def __init__(self, objects: ObjectStorage, records: Records, spool: Spool, cache: FileCache | None) -> None:
         """``cache`` keeps on this machine what was fetched from another; results never change."""
         self._objects = objects
+        self._records = records
         self._spool = spool
         self._cache = cache
 
     def write(self, job_id: str, write: Callable[[BinaryIO], object]) -> None:
         """Store the result of a job, whole; a second writer of the same job writes the same bytes."""
+        self._records.require(job_id)
         path = self._spool.result_file(job_id)
         try:
             with path.open("xb") as file:
@@ -29,23 +34,26 @@ class ResultFiles:
 
     def put(self, job_id: str, path: Path) -> None:
         """Store the result of a job from a file, which may be gone afterwards."""
-        self._objects.put_file(job_key(job_id, RESULT), path)
+        key = job_key(job_id, RESULT)
+        self._records.require(job_id)
+        self._objects.put_file(key, path)
+        self._records.require(job_id, lambda: self._objects.delete(key))
 
     def open(self, job_id: str) -> BinaryIO:
         """The result of a job.
 
         Raises
         ------
-        FileNotFoundError
+        UnknownJob
             Where there is none.
         """
         key = job_key(job_id, RESULT)
-        if self._cache is None:
-            return self._objects.open(key)
-        return self._cache.open(job_id, lambda: self._objects.open(key))
-
-    def remove(self, job_id: str) -> None:
-        self._objects.delete(job_key(job_id, RESULT))
+        try:
+            if self._cache is None:
+                return self._objects.open(key)
+            return self._cache.open(job_id, lambda: self._objects.open(key))
+        except FileNotFoundError as error:
+            raise UnknownJob(job_id) from error
 
     def drop(self, job_id: str) -> None:
         if self._cache is not None:

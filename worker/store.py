@@ -5,8 +5,6 @@ is, which only the first writer does. The names of the objects are in ``worker.l
 """
 
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass
-from datetime import UTC, datetime, timedelta
 from pathlib import Path
 from typing import BinaryIO
 
@@ -15,35 +13,26 @@ from worker.batches import BatchStore
 from worker.computed import ComputedIndex
 from worker.deletion import Deletions
 from worker.file_cache import FileCache
-from worker.index import JobIndex, is_entry_name, job_id_of
+from worker.index import JobIndex
 from worker.installation_secret import InstallationSecret
 from worker.jobs import Attempt, Cause, Job, Outcome, Succeeded
-from worker.layout import MESH, TIME_FORMAT, entry_name, job_key, mesh_name
+from worker.layout import MESH, job_key, mesh_name
 from worker.objects import ObjectStorage
 from worker.outbox import Outbox
+from worker.pages import JobPage, read_page
 from worker.pending import PendingJobs
 from worker.records import JobState, Records
+from worker.records import UnknownJob as UnknownJob
 from worker.results import ResultFiles
 from worker.spool import Spool
 from worker.upload import MeshUpload
 
-_ON_ITS_WAY = timedelta(hours=1)  # an entry without a job may be of one that is about to come
-
-
-class UnknownJob(LookupError):  # noqa: N818
-    """The store has no such job (any more)."""
-
-
-@dataclass(frozen=True, slots=True)
-class JobPage:
-    """Some jobs of an owner, newest first."""
-
-    jobs: list[Job]
-    next_cursor: str | None  # of the jobs that are older; None: there are none
-
 
 class JobStore:
-    """The jobs of an installation; processes and machines that share the place of the objects share the jobs."""
+    """The jobs of an installation; processes and machines that share the place of the objects share the jobs.
+
+    What changes a job, or reads its result, raises UnknownJob where there is none (any more).
+    """
 
     def __init__(self, objects: ObjectStorage, spool: Spool, cache: FileCache | None = None) -> None:
         self.objects = objects
@@ -54,7 +43,7 @@ class JobStore:
         self.deletions = Deletions(objects)
         self.spool = spool
         self._records = Records(objects)
-        self._results = ResultFiles(objects, spool, cache)
+        self._results = ResultFiles(objects, self._records, spool, cache)
         self._index = JobIndex(objects)
         self._computed = ComputedIndex(objects)
         self._acceptance = Acceptance(objects, self.pending, self.outbox)
@@ -90,14 +79,7 @@ class JobStore:
 
     def page(self, owner: str | None, cursor: str | None, limit: int) -> JobPage:
         """The jobs of an owner, newest first, from a cursor on."""
-        entries = self._index.page(owner, cursor, limit + 1)
-        shown = [entry for entry in entries[:limit] if is_entry_name(entry)]
-        found = dict(zip(shown, self._records.jobs([job_id_of(entry) for entry in shown]), strict=True))
-        oldest = f"{datetime.now(UTC) - _ON_ITS_WAY:{TIME_FORMAT}}"
-        for entry in (entry for entry, job in found.items() if job is None and entry < oldest):
-            self._index.remove_entry(owner, entry)
-        jobs = [job for entry, job in found.items() if job is not None and entry_name(job) == entry]
-        return JobPage(jobs, entries[limit - 1] if len(entries) > limit else None)
+        return read_page(self._index, self._records, owner, cursor, limit)
 
     def job(self, job_id: str) -> Job | None:
         return self._records.job(job_id)
@@ -118,21 +100,13 @@ class JobStore:
         return self._records.has_outcome(job_id) or not self._records.has_job(job_id)
 
     def finish(self, job_id: str, outcome: Outcome) -> Outcome:
-        """Give a job its outcome, unless it has one; the outcome that stands.
-
-        Raises
-        ------
-        UnknownJob
-            Where the job was deleted.
-        """
+        """Give a job its outcome, unless it has one; the outcome that stands."""
         job = self.job(job_id)
         if job is None:
             raise UnknownJob(job_id)
-        self._records.create_outcome(job_id, outcome)
-        standing = self.outcome(job_id)
-        self._unless_deleted(job_id, lambda: self._records.remove_outcome(job_id))
+        standing = self._records.finish(job_id, outcome)
         self.pending.remove(job)
-        return standing or outcome
+        return standing
 
     def unfinished(self) -> dict[str, str | None]:
         """The accepted jobs without an outcome, oldest first, and their owners."""
@@ -151,30 +125,14 @@ class JobStore:
         return self.pending.oldest_s(at_s)
 
     def begin_attempt(self, job_id: str, worker: str) -> Attempt:
-        """Count one more run of a job, before it starts.
-
-        Raises
-        ------
-        UnknownJob
-            Where the job was deleted.
-        """
-        self._unless_deleted(job_id)
+        """Count one more run of a job, before it starts."""
         attempt = self._records.begin_attempt(job_id, worker)
-        self._unless_deleted(job_id, lambda: self._records.remove_attempt(job_id, attempt))
         self.spool.remove_results(job_id)
         return attempt
 
     def end_attempt(self, job_id: str, attempt: Attempt, cause: Cause) -> None:
-        """Note why a run ended without an outcome.
-
-        Raises
-        ------
-        UnknownJob
-            Where the job was deleted.
-        """
-        self._unless_deleted(job_id)
+        """Note why a run ended without an outcome."""
         self._records.end_attempt(job_id, attempt, cause)
-        self._unless_deleted(job_id, lambda: self._records.remove_attempt(job_id, attempt))
 
     def withdraw_attempt(self, job_id: str, attempt: Attempt) -> None:
         """Uncount a run that was stopped through no fault of the job."""
@@ -193,54 +151,23 @@ class JobStore:
             return self.objects.open(job_key(job_id, MESH))
 
     def write_result(self, job_id: str, write: Callable[[BinaryIO], object]) -> None:
-        """Store the result file, whole; a second writer of the same job writes the same bytes.
-
-        Raises
-        ------
-        UnknownJob
-            Where the job was deleted.
-        """
-        self._unless_deleted(job_id)
+        """Store the result file, whole; a second writer of the same job writes the same bytes."""
         self._results.write(job_id, write)
-        self._unless_deleted(job_id, lambda: self._results.remove(job_id))
 
     def put_result(self, job_id: str, path: Path) -> None:
-        """Store the result file from another file, which may be gone afterwards.
-
-        Raises
-        ------
-        UnknownJob
-            Where the job was deleted.
-        """
-        self._unless_deleted(job_id)
+        """Store the result file from another file, which may be gone afterwards."""
         self._results.put(job_id, path)
-        self._unless_deleted(job_id, lambda: self._results.remove(job_id))
 
     def open_result(self, job_id: str) -> BinaryIO:
-        """The result file of a job that succeeded.
-
-        Raises
-        ------
-        UnknownJob
-            Where the job was deleted.
-        """
-        try:
-            return self._results.open(job_id)
-        except FileNotFoundError as error:
-            raise UnknownJob(job_id) from error
+        """The result file of a job that succeeded."""
+        return self._results.open(job_id)
 
     def result_url(self, job_id: str, valid_s: float) -> str | None:
         """An address from which anybody can fetch the result file for a while; None where the store has none."""
         return self._results.presigned_url(job_id, valid_s)
 
     def delete(self, job_id: str) -> None:
-        """Remove a job and all its files; for others it disappears at once. What stays is that it was there.
-
-        Raises
-        ------
-        UnknownJob
-            Where there is none.
-        """
+        """Remove a job and all its files; for others it disappears at once. What stays is that it was there."""
         job = self.job(job_id)
         if job is None:
             raise UnknownJob(job_id)
@@ -278,9 +205,3 @@ class JobStore:
         self._computed.remove(job)
         self.pending.remove(job)
         self.deletions.end(job)
-
-    def _unless_deleted(self, job_id: str, undo: Callable[[], None] = lambda: None) -> None:
-        """Raise UnknownJob where a job was deleted, and take back what was written for it meanwhile."""
-        if not self._records.has_job(job_id):
-            undo()
-            raise UnknownJob(job_id)
