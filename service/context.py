@@ -13,11 +13,12 @@ from worker.admission import admit
 from worker.batches import BatchStore
 from worker.durable import is_disk_full
 from worker.installation_secret import InstallationSecret
-from worker.jobs import Canceled, Job, now
+from worker.jobs import Canceled, Job, Outcome, now
 from worker.queue import Activity, JobQueue, QueueError
 from worker.quota import UploadQuota
 from worker.settings import Settings
 from worker.store import JobStore
+from worker.tallies import Tallies
 
 _PAUSE_S = 1.0
 
@@ -61,10 +62,18 @@ class Context:
     def admit(self, owner: str | None, new: Job | None = None) -> None:
         admit(self.store, self.queue, self.settings, owner, new)
 
+    def cancel(self, job: Job) -> Outcome:
+        """End a job that has not ended; the outcome that stands."""
+        canceled = Canceled(finished_at=now())
+        outcome = self.store.finish(job.id, canceled)
+        if isinstance(outcome, Canceled) and self.withdraw(job) and outcome.finished_at == canceled.finished_at:
+            Tallies(self.queue.connection).job_canceled()
+        return outcome
+
     def discard(self, job: Job) -> None:
         """Remove a job with its files; one that has not finished is canceled first."""
         try:
-            self.store.finish(job.id, Canceled(finished_at=now()))
+            self.cancel(job)
         except OSError as error:
             if not is_disk_full(error):  # what makes room must be possible then
                 raise
@@ -72,13 +81,14 @@ class Context:
         self.results.drop(job.id)
         self.withdraw(job)
 
-    def withdraw(self, job: Job) -> None:
+    def withdraw(self, job: Job) -> bool:
         """Take a job that is no longer wanted out of the queue; where that fails, the worker drops it that takes it."""
         try:
             self.queue.forget(job.id)
             self.admit(job.owner)
         except QueueError:
-            return
+            return False
+        return True
 
 
 async def _context(request: Request) -> Context:

@@ -15,7 +15,7 @@ from service.lookup import describe, describe_all, known_job
 from service.problems import Problem, documented
 from service.waiting import wait_for_end
 from worker.index import CURSOR
-from worker.jobs import Canceled, now
+from worker.jobs import Canceled
 from worker.settings import LONGEST_WAIT_S
 
 router = APIRouter(prefix="/v1/jobs", tags=["jobs"])
@@ -113,10 +113,9 @@ async def get_events(
 def cancel_job(job_id: JobId, context: ContextOf, caller: CallerOf) -> JobDocument:
     """Cancel a job: one that waits at once, one that runs within seconds. A second time changes nothing."""
     job = known_job(context, caller, job_id)
-    outcome = context.store.finish(job.id, Canceled(finished_at=now()))
+    outcome = context.cancel(job)
     if not isinstance(outcome, Canceled):
         raise Problem("already_finished", f"The job has {outcome.status} already: delete it to remove its files.")
-    context.withdraw(job)
     return describe(context, job)
 
 

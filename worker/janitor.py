@@ -53,8 +53,10 @@ class Janitor:
         self._queue.forget_dead_workers()
         self._housekeeping.sweep(at_s)
 
-    def forget_sightings(self) -> None:
+    def note_trouble(self, error: Exception) -> None:
         """After a time without knowledge of the queue nothing is known to be missing."""
+        if isinstance(error, OSError):
+            self._tallies.store_failed("janitor")
         self._missing_since.clear()
 
     def _lost(self, at_s: float) -> list[str]:
@@ -98,7 +100,7 @@ def sweep_or_tell(janitor: Janitor, trouble: str) -> str:
     try:
         janitor.sweep(time.monotonic())
     except (QueueError, OSError) as error:
-        janitor.forget_sightings()
+        janitor.note_trouble(error)
         if str(error) != trouble:
             log.warning("lost jobs are not looked for at the moment: %s", error)
         return str(error)

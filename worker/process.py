@@ -33,6 +33,7 @@ from worker.staging import Desk, desk_for
 from worker.store import JobStore, UnknownJob
 from worker.tallies import Tallies
 from worker.tasks import perform
+from worker.trace import Trace, parse_traceparent
 from worker.watch import Watch
 from worker.work_horse import Ending, ending_of, exit_status, limit_resources, out_of_memory_kills
 
@@ -127,20 +128,22 @@ class JobWorker(Worker):  # type: ignore[misc]  # rq is not analysed
 
     def _run_or_hand_back(self, entry: Entry, queue: Any) -> None:
         """Do a job, or, where the store does not let it be done, leave it to another worker or for later."""
-        try:
-            with about(entry.id, self._traceparent(entry.id)):
+        with about(entry.id) as subject:
+            try:
+                subject.trace = self._trace(entry.id)
                 attempt = self._ledger.begin(entry.id)
                 if attempt is not None:
                     self._attempt(entry, queue, attempt)
                 self._ledger.settle(entry.id)
-        except OSError as error:
-            log.warning("job %s waits again: %s", entry.id, error)
-            self._watch.pause(_STORE_PAUSE_S)
-            self._ledger.hand_back(entry.id)
+            except OSError as error:
+                log.warning("job %s waits again: %s", entry.id, error)
+                self._tallies.store_failed("worker")
+                self._watch.pause(_STORE_PAUSE_S)
+                self._ledger.hand_back(entry.id)
 
-    def _traceparent(self, job_id: str) -> str | None:
+    def _trace(self, job_id: str) -> Trace | None:
         job = self._store.job(job_id)
-        return job.traceparent if job else None
+        return parse_traceparent(job.traceparent) if job else None
 
     def _attempt(self, entry: Entry, queue: Any, attempt: Attempt) -> None:
         log.info("job %s: attempt %d", entry.id, attempt.number)

@@ -52,6 +52,10 @@ class Tallies:
         """A job has had all its attempts."""
         self._add({("finished", "failed", code): 1.0})
 
+    def job_canceled(self) -> None:
+        """A client no longer wants a job that had not ended."""
+        self._add({("finished", "canceled", ""): 1.0})
+
     def attempt_lost(self, cause: Cause) -> None:
         """A run of a job ended without an outcome."""
         self._add({("lost", cause): 1.0})

@@ -71,3 +71,12 @@ def test_a_store_that_fails_is_told_and_the_rest_still_is(
     found = samples(client)
     assert (found["cleave_store_up"], found["cleave_queue_up"]) == (0, 1)
     assert found['cleave_store_errors_total{process="service"}'] == 2
+
+
+def test_a_job_is_canceled_once_however_often_that_is_asked_for(client: httpx.Client) -> None:
+    path = submit(client)
+    for _ in range(2):
+        client.post(f"{path}/cancel")
+    client.delete(path)
+    client.delete(submit(client))
+    assert samples(client)['cleave_jobs_finished_total{code="",status="canceled"}'] == 2

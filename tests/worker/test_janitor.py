@@ -11,7 +11,7 @@ from rq.serializers import JSONSerializer
 from support import LARGE, SMALL, accepted
 from worker.janitor import MISSING_S, Janitor
 from worker.jobs import Failed, new_job_id
-from worker.queue import TASK, JobQueue
+from worker.queue import TASK, JobQueue, QueueError
 from worker.settings import Settings
 from worker.store import JobStore
 
@@ -101,7 +101,7 @@ def test_a_time_without_knowledge_of_the_queue_does_not_count(
 ) -> None:
     accepted(store, b"mesh")
     janitor.sweep(0.0)
-    janitor.forget_sightings()
+    janitor.note_trouble(QueueError())
     janitor.sweep(MISSING_S)
     assert waiting(queue) == []
 
