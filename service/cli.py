@@ -84,7 +84,9 @@ def _add_worker(commands: "argparse._SubParsersAction[_Parser]") -> None:
         "--queue", choices=("small", "large", "both"), default="both", help="the jobs to work for (%(default)s)"
     )
     worker.add_argument(
-        "--check", action="store_true", help="run none, but say whether workers of this machine are alive (for health checks)"
+        "--check",
+        action="store_true",
+        help="run none, but say whether workers of this machine are alive (for health checks)",
     )
     _add_workers(worker, least=1)
     worker.set_defaults(run=_work)
@@ -151,8 +153,8 @@ def _add_doctor(commands: "argparse._SubParsersAction[_Parser]") -> None:
     doctor = commands.add_parser(
         "doctor",
         help="check an installation and say what to mend",
-        description="Check the queue server, the store, the workers and this machine against the settings, and say what "
-        "to mend.",
+        description="Check the queue server, the store, the workers and this machine against the settings, and say "
+        "what to mend.",
         epilog="exit status: 0 nothing has to be mended, 1 something has, 2 the settings cannot be used",
     )
     doctor.add_argument("--host", default="127.0.0.1", help="the address that the service listens on (%(default)s)")

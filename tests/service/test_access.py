@@ -154,12 +154,16 @@ def test_pages_of_other_sites_cannot_submit_unless_they_are_allowed(settings: Se
         assert client.options("/v1/jobs", headers=asked).status_code == 200
 
 
-@pytest.mark.parametrize("host", ["localhost:8000", "127.0.0.1", "[::1]:8000", "10.1.2.3:80", "cleave.localhost", "LOCALHOST"])
+@pytest.mark.parametrize(
+    "host", ["localhost:8000", "127.0.0.1", "[::1]:8000", "10.1.2.3:80", "cleave.localhost", "LOCALHOST"]
+)
 def test_without_keys_this_machine_and_addresses_are_answered(client: httpx.Client, host: str) -> None:
     assert client.get("/v1/formats", headers={"Host": host}).status_code == 200
 
 
-@pytest.mark.parametrize("host", ["rebound.example", "rebound.example:8000", "127.0.0.1.example", "localhost.example", "x"])
+@pytest.mark.parametrize(
+    "host", ["rebound.example", "rebound.example:8000", "127.0.0.1.example", "localhost.example", "x"]
+)
 def test_without_keys_no_other_name_is_answered(client: httpx.Client, settings: Settings, host: str) -> None:
     for method, path in (("GET", "/v1/jobs"), ("POST", "/v1/jobs"), ("GET", "/")):
         problem(client.request(method, path, headers={"Host": host}), 403, "foreign_site")
