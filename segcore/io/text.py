@@ -1,7 +1,6 @@
 """The words of a text file, found and turned into numbers in bulk."""
 
 import re
-import warnings
 from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Any
@@ -15,7 +14,7 @@ from segcore.io.number_kernels import parse_floats, parse_integers
 from segcore.io.text_kernels import (
     Offsets,
     count_words,
-    find_lines_with,
+    find_equal,
     find_word_starts,
     has_controls,
 )
@@ -46,7 +45,8 @@ class Words:
         return len(self.start)
 
     def word(self, index: int) -> str:
-        return self._between(index, index + 1).rstrip().decode("ascii", "backslashreplace")
+        end = self.start[index + 1] if index + 1 < self.count else None
+        return self.text[self.start[index] : end].rstrip().decode("ascii", "backslashreplace")
 
     def line_number(self, index: int) -> int:
         """The line of the file, counted from 1, in which a word stands."""
@@ -88,35 +88,15 @@ class Words:
             raise InvalidMesh(f"Line {self.line_number(index)}: {word[:40]!r} is not a number.")
         return float(word)
 
-    def equal(self, indices: LongArray, word: bytes) -> BoolArray:
+    def equal(self, indices: NDArray[np.signedinteger[Any]], word: bytes) -> BoolArray:
         """(N,): which of the words at ``indices`` are ``word``."""
-        places = len(self.text) - len(word) + 1
-        if places <= 0:
-            return np.zeros(len(indices), dtype=bool)
-        first = self.start[indices]
-        from_here = np.ndarray(places, f"S{len(word)}", self.text, strides=(1,))
-        same = (from_here[np.minimum(first, places - 1)] == word) & (first < places)
-        end = first + len(word)
-        is_end = np.frombuffer(self.text, np.uint8).take(end, mode="clip") <= _SPACE
-        return same & (is_end | (end == len(self.text)))
+        found = np.empty(len(indices), dtype=bool)
+        find_equal(self.letters, self.start, indices, np.frombuffer(word, np.uint8), found)
+        return found
 
     def lines_with(self, keyword: bytes) -> BoolArray:
         """(L,): the lines whose first word is ``keyword``."""
-        found = np.empty(len(self.line_start) - 1, dtype=bool)
-        find_lines_with(self.letters, self.start, self.line_start, np.frombuffer(keyword, np.uint8), found)
-        return found
-
-    def text_of_lines(self, selected: BoolArray) -> bytes:
-        """The text of the lines for which ``selected``, (L,), is true, one after the other."""
-        bounds = np.append(self.start[self.line_start[:-1]], len(self.text))
-        changes = np.flatnonzero(np.diff(selected, prepend=False, append=False))
-        runs = bounds[changes].reshape(-1, 2).tolist()
-        return b"".join([self.text[first:last] for first, last in runs])
-
-    def _between(self, first: int, last: int) -> bytes:
-        if first >= last:
-            return b""
-        return self.text[self.start[first] : self.start[last] if last < self.count else None]
+        return self.equal(self.line_start[:-1], keyword)
 
 
 def plain_text(data: bytes) -> bytes:
@@ -160,16 +140,6 @@ def find_words(text: bytes, begin: int = 0) -> Words:
     return Words(text, start, line_start[: lines + 1])
 
 
-def parse_numbers(text: bytes, count: int, dtype: type[np.generic]) -> NDArray[Any]:
-    """Exactly ``count`` numbers, separated by white space; ValueError where the text is anything else."""
-    with warnings.catch_warnings():  # NumPy warns of, or with later versions raises, what the count shows as well
-        warnings.simplefilter("ignore", DeprecationWarning)
-        values = np.fromstring(text + b" 0", dtype=dtype, sep=" ")
-    if len(values) != count + 1:
-        raise ValueError(f"{len(values) - 1} numbers in place of {count}")
-    return values[:-1]
-
-
 def whole_numbers(values: NDArray[Any]) -> LongArray | None:
     """Values that are all whole as int64, or None where one is not."""
     if values.dtype.kind == "i":
@@ -177,26 +147,3 @@ def whole_numbers(values: NDArray[Any]) -> LongArray | None:
     if not ((np.abs(values) < _EXACT) & (values == np.floor(values))).all():
         return None
     return values.astype(np.int64)
-
-
-def are_numbers(text: bytes, count: int) -> bool:
-    """Whether a text is exactly ``count`` numbers."""
-    try:
-        parse_numbers(text, count, np.float64)
-    except ValueError:
-        return False
-    return True
-
-
-def first_bad(low: int, high: int, are_good: Callable[[int, int], bool]) -> int:
-    """The first bad one of low..high - 1, of which one is; ``are_good(a, b)`` says whether all of a..b - 1 are good.
-
-    By bisection, as looking at them one by one would take a long time for files of many millions.
-    """
-    while high - low > 1:
-        middle = (low + high) // 2
-        if are_good(low, middle):
-            low = middle
-        else:
-            high = middle
-    return low

@@ -71,11 +71,11 @@ def find_word_starts(text: Bytes, begin: int, start: Offsets, line_start: Offset
 
 
 @njit(cache=True)
-def find_lines_with(text: Bytes, start: Offsets, line_start: Offsets, keyword: Bytes, found: BoolArray) -> None:
-    """Mark in ``found`` (L,) the lines whose first word is ``keyword``."""
+def find_equal(text: Bytes, start: Offsets, indices: Offsets, word: Bytes, found: BoolArray) -> None:
+    """Mark in ``found`` (N,) which of the words at ``indices`` are ``word``."""
     for i in range(len(found)):
-        at = start[line_start[i]]
-        end = at + len(keyword)
+        at = start[indices[i]]
+        end = at + len(word)
         found[i] = end <= len(text) and (end == len(text) or text[end] <= SPACE)
-        for k in range(len(keyword)):
-            found[i] = found[i] and text[at + k] == keyword[k]
+        for k in range(len(word)):
+            found[i] = found[i] and text[at + k] == word[k]
