@@ -150,6 +150,8 @@ def test_a_hung_queue_server_holds_up_nobody_who_can_do_without(installation: In
     try:
         refused = httpx.post(f"{installation.url}/v1/jobs", files={"mesh": ("a.off", sphere(12))}, timeout=30)
         assert refused.json()["code"] == "queue_unavailable"
+        assert int(refused.headers["Retry-After"]) > 0
+        assert refused.elapsed.total_seconds() < 10  # two, where the machine has nothing else to do
         assert installation.get(f"{path}/labels").status_code == 200
         assert installation.get("/healthz").status_code == 200
         assert installation.get("/readyz").status_code == 503

@@ -1,0 +1,96 @@
+"""Jobs by the hundred: how their number a second grows with the workers, and the memory with their number."""
+
+import time
+from collections.abc import Iterator
+from dataclasses import dataclass
+from datetime import datetime
+from pathlib import Path
+
+import httpx
+
+from bench.load.installation import Installation, installed, more_workers
+from bench.load.meshes import wavy_torus
+
+_FINISHED_WITHIN_S = 1800.0
+_PROCESSES = {"service": "service.server", "worker": "worker.process", "janitor": "worker.janitor"}
+
+
+@dataclass(frozen=True, slots=True)
+class Throughput:
+    workers: int
+    seconds: float  # from the begin of the first job to the end of the last
+
+    def jobs_per_s(self, jobs: int) -> float:
+        return jobs / self.seconds
+
+
+def throughput(workers: int, jobs: int, faces: int) -> Throughput:
+    """Let jobs wait, then start the workers; the jobs have the same size and are all different."""
+    with installed(workers=0) as installation, httpx.Client(base_url=installation.url, timeout=120) as client:
+        for number in range(jobs):
+            _submit(client, wavy_torus(faces, 3 + number % 5), number)
+        with more_workers(installation, workers, "small"):
+            finished = _finished(client, jobs)
+    began_at = min(datetime.fromisoformat(job["started_at"]) for job in finished)
+    ended_at = max(datetime.fromisoformat(job["finished_at"]) for job in finished)
+    return Throughput(workers, (ended_at - began_at).total_seconds())
+
+
+def memory(jobs: int, looks: int, faces: int) -> Iterator[tuple[int, dict[str, float]]]:
+    """The resident megabytes of each process after a tenth of the jobs, and then ``looks - 1`` times more, evenly."""
+    warm = jobs // 10
+    marks = [warm + round(number * (jobs - warm) / (looks - 1)) for number in range(looks)]
+    mesh = wavy_torus(faces)
+    with installed(workers=2) as installation, httpx.Client(base_url=installation.url, timeout=120) as client:
+        submitted = 0
+        for mark in marks:
+            for number in range(submitted, mark):
+                path = _submit(client, mesh, number)
+                client.get(path)
+                client.get("/v1/jobs", params={"limit": 5})
+            submitted = mark
+            for job in _finished(client, mark)[:20]:
+                client.get(f"/v1/jobs/{job['id']}/labels", params={"segments": 5})
+            yield mark, _resident_mb(installation)
+
+
+def _submit(client: httpx.Client, mesh: bytes, seed: int) -> str:
+    answer = client.post(
+        "/v1/jobs",
+        content=mesh,
+        params={"parameters": f'{{"seed": {seed}}}'},
+        headers={"Content-Type": "model/ply", "Cache-Control": "no-cache"},
+    )
+    return str(answer.raise_for_status().headers["Location"])
+
+
+def _finished(client: httpx.Client, count: int) -> list[dict[str, str]]:
+    """The jobs, when all of them have succeeded."""
+    gives_up_at = time.monotonic() + _FINISHED_WITHIN_S
+    while time.monotonic() < gives_up_at:
+        jobs = list(_succeeded(client))
+        if len(jobs) >= count:
+            return jobs
+        time.sleep(2.0)
+    raise RuntimeError(f"{count} jobs did not succeed within {_FINISHED_WITHIN_S:.0f} s")
+
+
+def _succeeded(client: httpx.Client) -> Iterator[dict[str, str]]:
+    query: dict[str, str | int] | None = {"status": "succeeded", "limit": 100}
+    while query is not None:
+        page = client.get("/v1/jobs", params=query).raise_for_status().json()
+        yield from page["jobs"]
+        query = {**query, "cursor": page["next_cursor"]} if page["next_cursor"] else None
+
+
+def _resident_mb(installation: Installation) -> dict[str, float]:
+    """Of the processes of a kind, the largest."""
+    return {
+        name: max(_resident_bytes(pid) for pid in installation.children(word)) / 1e6
+        for name, word in _PROCESSES.items()
+    }
+
+
+def _resident_bytes(pid: int) -> int:
+    lines = Path(f"/proc/{pid}/status").read_text().splitlines()
+    return next(1024 * int(line.split()[1]) for line in lines if line.startswith("VmRSS"))

@@ -1,0 +1,87 @@
+"""Workers without their queue server: they go on with what they have, and with the rest when it is back."""
+
+import signal
+import subprocess
+from collections.abc import Iterator
+from pathlib import Path
+
+import pytest
+
+from service.queue_server import QueueServer, embedded_queue_server
+from support import LONG, SMALL, StartWorker, accepted, children_of, sphere, wait_until
+from worker.jobs import Succeeded
+from worker.queue import JobQueue, QueueError, connect_impatiently
+from worker.store import JobStore
+
+
+class Server:
+    """A queue server that a test may stop, and replace by an empty one."""
+
+    def __init__(self, server: QueueServer) -> None:
+        self.url = server.url
+        self._server = server
+        self.start()
+
+    def start(self) -> None:
+        self.process = subprocess.Popen(self._server.command)
+        wait_until(self._server.is_answering)
+
+    def lose(self) -> None:
+        """Kill it, and remove its files."""
+        self.process.kill()
+        self.process.wait()
+        for path in self._server.socket.parent.rglob("*.aof*"):
+            path.unlink()
+
+
+@pytest.fixture
+def server(tmp_path: Path) -> Iterator[Server]:
+    server = Server(embedded_queue_server(tmp_path))
+    yield server
+    server.process.kill()
+    server.process.wait()
+
+
+def succeeded(store: JobStore, job_id: str) -> bool:
+    return isinstance(store.outcome(job_id), Succeeded)
+
+
+def test_a_worker_outlives_its_queue_server_and_works_for_the_next_one(
+    start_worker: StartWorker, store: JobStore, server: Server
+) -> None:
+    queue = JobQueue(connect_impatiently(server.url))
+    worker = start_worker(CLEAVE_REDIS_URL=server.url)
+    running = accepted(store, sphere(100), **LONG)
+    queue.enqueue(running.id, SMALL)
+    wait_until(lambda: children_of(worker.pid))
+    server.lose()
+    wait_until(lambda: succeeded(store, running.id))  # nobody else needs to be there for that
+    wait_until(lambda: not children_of(worker.pid))
+    with pytest.raises(QueueError):
+        queue.lengths()
+    server.start()
+    following = accepted(store, sphere(12))
+    queue.enqueue(following.id, SMALL)
+    wait_until(lambda: succeeded(store, following.id))
+    assert worker.poll() is None
+    assert len(store.attempts(running.id)) == 1
+    assert queue.lengths()[SMALL] == 0
+
+
+def test_a_queue_server_that_hangs_does_not_stop_a_job(
+    start_worker: StartWorker, store: JobStore, server: Server
+) -> None:
+    queue = JobQueue(connect_impatiently(server.url))
+    worker = start_worker(CLEAVE_REDIS_URL=server.url)
+    running = accepted(store, sphere(100), **LONG)
+    queue.enqueue(running.id, SMALL)
+    wait_until(lambda: children_of(worker.pid))
+    server.process.send_signal(signal.SIGSTOP)
+    try:
+        wait_until(lambda: succeeded(store, running.id))
+    finally:
+        server.process.send_signal(signal.SIGCONT)
+    following = accepted(store, sphere(12))
+    queue.enqueue(following.id, SMALL)
+    wait_until(lambda: succeeded(store, following.id))
+    assert worker.poll() is None
