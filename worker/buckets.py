@@ -1,11 +1,13 @@
 """Where a bucket is and how it is spoken to, from the URL of the store."""
 
+from collections.abc import Callable
 from dataclasses import dataclass
 from datetime import timedelta
 from typing import TYPE_CHECKING, Any
 from urllib.parse import parse_qsl, urlsplit
 
 import obstore
+from obstore.exceptions import BaseError
 from obstore.store import AzureStore, GCSStore, MemoryStore, S3Store
 
 from worker.settings import InvalidSettings
@@ -14,7 +16,7 @@ if TYPE_CHECKING:
     from obstore.store import ClientConfig, ObjectStore, RetryConfig
 
 _SCHEMES = ("s3", "gs", "az", "memory")
-_OPTIONS = ("endpoint", "public_endpoint", "region")
+_OPTIONS = {"s3": ("endpoint", "public_endpoint", "region"), "az": ("endpoint", "public_endpoint")}
 
 # A caller of the API is told within two seconds that the store does not answer: a read is tried twice, and a write
 # once, since nobody knows what has become of one that got no answer. A connection that fails at once is tried again.
@@ -53,10 +55,10 @@ def open_bucket(url: str) -> Bucket:
         raise InvalidSettings(
             "CLEAVE_STORE_URL must be s3://BUCKET/PREFIX, gs://BUCKET/PREFIX or az://CONTAINER/PREFIX."
         )
-    unknown = sorted(set(options) - set(_OPTIONS))
-    if unknown or (options and parts.scheme != "s3"):
+    known = _OPTIONS.get(parts.scheme, ())
+    if not set(options) <= set(known):
         raise InvalidSettings(
-            f"CLEAVE_STORE_URL: s3:// takes {', '.join(_OPTIONS)} after its question mark, the others take nothing."
+            f"CLEAVE_STORE_URL: after its question mark {parts.scheme}:// takes {', '.join(known) or 'nothing'}."
         )
     if parts.scheme == "memory":
         memory = MemoryStore()
@@ -78,19 +80,21 @@ def open_bucket(url: str) -> Bucket:
         }
         return _store(parts.scheme, parts.netloc, parts.path.strip("/"), given, patience, retries)
 
-    reads = client(_READ_S, _READ_S, _RETRIES_S)
-    return Bucket(
-        reads=reads,
-        writes=client(_WRITE_S, _WRITE_S, _RETRIES_S),
-        transfers=client(_TRANSFER_S, _SILENCE_S, _TRANSFER_RETRIES_S),
-        signer=client(_READ_S, _READ_S, _RETRIES_S, endpoint=public) if public else reads,
-    )
+    try:
+        reads = client(_READ_S, _READ_S, _RETRIES_S)
+        return Bucket(
+            reads=reads,
+            writes=client(_WRITE_S, _WRITE_S, _RETRIES_S),
+            transfers=client(_TRANSFER_S, _SILENCE_S, _TRANSFER_RETRIES_S),
+            signer=client(_READ_S, _READ_S, _RETRIES_S, endpoint=public) if public else reads,
+        )
+    except BaseError as error:
+        raise InvalidSettings(f"CLEAVE_STORE_URL cannot be used: {str(error).splitlines()[0]}.") from error
 
 
 def _store(
     scheme: str, name: str, prefix: str, options: dict[str, str], patience: "ClientConfig", retries: "RetryConfig"
 ) -> "ObjectStore":
     common: dict[str, Any] = {"prefix": prefix or None, "client_options": patience, "retry_config": retries}
-    if scheme == "s3":
-        return S3Store(name, config=options, **common)  # type: ignore[arg-type]  # the keys are those of S3Config
-    return GCSStore(name, **common) if scheme == "gs" else AzureStore(name, **common)
+    stores: dict[str, Callable[..., ObjectStore]] = {"s3": S3Store, "gs": GCSStore, "az": AzureStore}
+    return stores[scheme](name, config=options, **common)
