@@ -112,20 +112,26 @@ def _meshes(objects: _Objects, counts: _Counts) -> list[Placed]:
 
 
 def _assemble(placed: list[Placed], objects: _Objects, with_appearance: bool) -> Mesh:
-    vertices, faces, vertex_count = [], [], 0
-    for place in placed:
-        positions = _positions(objects[place.object], place.transform) * objects.root.unit
-        vertices.append(positions)
-        faces.append(_faces(objects[place.object], place) + vertex_count)
-        vertex_count += len(positions)
-    names = [objects[place.object].name for place in placed]
-    appearance = group_appearance(names, [len(of_object) for of_object in faces]) if with_appearance else None
-    return Mesh(np.concatenate(vertices), np.concatenate(faces), appearance=appearance)
+    sources = [objects[place.object] for place in placed]
+    vertex_end = np.cumsum([len(source.vertices) // 3 for source in sources]).tolist()
+    face_end = np.cumsum([len(source.triangles) // 3 for source in sources]).tolist()
+    vertices, faces = np.empty((vertex_end[-1], 3)), np.empty((face_end[-1], 3), dtype=np.int32)
+    for i, (place, source) in enumerate(zip(placed, sources, strict=True)):
+        own_vertices = slice(vertex_end[i] - len(source.vertices) // 3, vertex_end[i])
+        own_faces = slice(face_end[i] - len(source.triangles) // 3, face_end[i])
+        _place(source, place.transform, vertices[own_vertices])
+        np.add(_faces(source, place), own_vertices.start, out=faces[own_faces])
+    vertices *= objects.root.unit
+    sizes = np.diff(face_end, prepend=0).tolist()
+    appearance = group_appearance([source.name for source in sources], sizes) if with_appearance else None
+    return Mesh(vertices, faces, appearance=appearance)
 
 
-def _positions(source: ModelObject, transform: FloatArray) -> FloatArray:
-    values = np.frombuffer(source.vertices, dtype=np.float64).reshape(-1, 3)
-    return values @ transform[:3, :3].T + transform[:3, 3]
+def _place(source: ModelObject, transform: FloatArray, vertices: FloatArray) -> None:
+    """Fill ``vertices`` (V, 3) with those of an object after a transform."""
+    own = np.frombuffer(source.vertices, dtype=np.float64).reshape(-1, 3)
+    np.matmul(own, transform[:3, :3].T, out=vertices)
+    vertices += transform[:3, 3]
 
 
 def _faces(source: ModelObject, place: Placed) -> IntArray:
