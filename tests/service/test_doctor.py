@@ -1,6 +1,7 @@
 """`cleave doctor` finds what would break an installation and says what to do, with real servers of bad settings."""
 
 import json
+import re
 import resource
 import socket
 import subprocess
@@ -112,6 +113,13 @@ def test_a_clock_that_runs_ahead_is_found_out(start_server: StartServer, monkeyp
 def test_a_store_that_cannot_be_written_is_found_out(tmp_path: Path) -> None:
     (tmp_path / "data").write_text("a file, not a folder")
     assert severities(check_store(Settings(data_dir=tmp_path / "data")))["store"] == "error"
+
+
+def test_a_bucket_is_looked_at_too(tmp_path: Path, s3_url: str) -> None:
+    found = severities(check_store(Settings(data_dir=tmp_path, store_url=s3_url)))
+    assert (found["store"], found["store's clock"]) == ("ok", "ok")
+    gone = severities(check_store(Settings(data_dir=tmp_path, store_url=re.sub(r":\d+$", ":1", s3_url))))
+    assert gone["store"] == "error"
 
 
 def test_a_full_disk_and_a_folder_open_to_others_are_found_out(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
