@@ -18,8 +18,8 @@ KINDS = (*PLAIN, "ply, text", "obj, dressed", "3mf")
 
 
 def ball() -> trimesh.Trimesh:
-    """20,480 faces, so that what every reading takes is small beside the file."""
-    return trimesh.creation.icosphere(5)
+    """81,920 faces, so that what every reading takes is small beside the file."""
+    return trimesh.creation.icosphere(6)
 
 
 def whole(mesh: Mesh) -> Hierarchy:
@@ -60,7 +60,7 @@ def test_reading_takes_at_most_six_times_the_file(
 ) -> None:
     path = tmp_path / "mesh"
     path.write_bytes(files[kind])
-    assert len(read_mesh(path, appearance=appearance).faces) == 20_480  # imports and compiles what is needed
+    assert len(read_mesh(path, appearance=appearance).faces) == 81_920  # imports and compiles what is needed
     tracemalloc.start()
     try:
         read_mesh(path, appearance=appearance)
