@@ -1,8 +1,12 @@
-"""Connections that open and then say nothing, or spell out the head of a request for hours, are closed."""
+"""What never becomes a request: connections that say nothing, or spell out a head for hours, or speak no HTTP."""
 
 import asyncio
 
+import h11
 from uvicorn.protocols.http.h11_impl import H11Protocol
+
+from service.headers import SECURITY_HEADERS
+from service.problems import Problem
 
 HEAD_S = 20.0  # from the first byte, or from the connection, to the end of the head
 
@@ -28,6 +32,15 @@ class ImpatientProtocol(H11Protocol):
     def connection_lost(self, exc: Exception | None) -> None:
         self._stop_waiting()
         super().connection_lost(exc)
+
+    def send_400_response(self, msg: str) -> None:  # noqa: ARG002
+        """Answer what is no HTTP as every other mistake is answered."""
+        problem = Problem("malformed_request", "This is no request of HTTP/1.1: send it again, well-formed.")
+        answer = problem.response({**SECURITY_HEADERS, "Connection": "close"})
+        head = h11.Response(status_code=answer.status_code, headers=answer.raw_headers, reason=b"Bad Request")
+        for event in (head, h11.Data(data=bytes(answer.body)), h11.EndOfMessage()):
+            self.transport.write(self.conn.send(event) or b"")
+        self.transport.close()
 
     def _stop_waiting(self) -> None:
         if self._waiting is not None:

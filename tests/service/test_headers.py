@@ -1,10 +1,14 @@
 """Every page and every answer, also of an error, says what a browser may do with it."""
 
+import json
+import socket
 from collections.abc import Callable
 
 import httpx
 import pytest
+from servers import serving
 
+from worker.settings import Settings
 from worker.store import JobStore
 
 POLICY = ("form-action 'self'", "base-uri 'none'", "frame-ancestors 'none'")
@@ -63,3 +67,27 @@ def test_without_a_queue_they_stay(client_without_queue: httpx.Client) -> None:
     assert refused.status_code == 503
     assert int(refused.headers["Retry-After"]) > 0
     check(refused)
+
+
+def test_a_full_queue_says_when_to_come_again(settings: Settings) -> None:
+    with serving(settings.model_copy(update={"max_queued_jobs": 1})) as client:
+        stl = {"Content-Type": "model/stl"}
+        assert client.post("/v1/jobs", content=b"x", headers=stl).status_code == 202
+        refused = client.post("/v1/jobs", content=b"y", headers=stl)
+        assert (refused.status_code, refused.json()["code"]) == (429, "queue_full")
+        assert int(refused.headers["Retry-After"]) > 0
+        check(refused)
+
+
+@pytest.mark.parametrize(
+    "sent", [b"GARBAGE\r\n\r\n", b"GET / HTTP/1.1\r\nHost: a\r\nHost: b\r\n\r\n", b"\x16\x03\x01\x02\r\n\r\n"]
+)
+def test_what_is_no_http_is_told_so_with_them(client: httpx.Client, sent: bytes) -> None:
+    address = (str(client.base_url.host), int(str(client.base_url.port)))
+    with socket.create_connection(address) as connection, connection.makefile("rb") as answer:
+        connection.sendall(sent)
+        head, _, body = answer.read().partition(b"\r\n\r\n")
+    assert head.startswith(b"HTTP/1.1 400 ")
+    assert json.loads(body)["code"] == "malformed_request"
+    headers = dict(line.split(": ", 1) for line in head.decode().splitlines()[1:])
+    check(httpx.Response(400, headers=headers, request=httpx.Request("GET", client.base_url)))
