@@ -21,7 +21,7 @@ log = logging.getLogger("cleave.supervisor")
 _TICK_S = 0.1
 _FIRST_PAUSE_S = 0.5  # between the death of a process and its restart; doubles as long as it keeps dying
 _LONGEST_PAUSE_S = 10.0
-_SETTLED_S = 20.0  # a process that ran for so long has not failed to start
+_SETTLED_S = 5.0  # a process that ran for so long has not failed to start
 
 
 class DataInUse(Exception):  # noqa: N818

@@ -2,7 +2,7 @@
 
 import random
 import time
-from collections import Counter
+from collections import Counter, deque
 from concurrent.futures import Future
 from dataclasses import dataclass, field
 from datetime import datetime
@@ -75,7 +75,7 @@ def _undisturbed(installation: Installation) -> dict[int, str]:
 def _under_fire(installation: Installation, plan: SoakPlan, expected: dict[int, str]) -> SoakReport:
     client, rng = Client(installation), random.Random(plan.seed)
     faults = schedule(plan.kills, plan.queue_kills, rng)
-    submission = client.submit_evenly(plan.jobs, 0.9 * plan.interval_s * len(faults))
+    submission = client.submit_evenly(plan.jobs, plan.interval_s * len(faults))
     kills, deaths = _fire(installation, faults, plan.interval_s, submission, rng)
     fired_at = time.monotonic()
     submitted = submission.result()
@@ -105,17 +105,20 @@ def _fire(
     submission: "Future[list[Submitted]]",
     rng: random.Random,
 ) -> tuple[Counter[str], list[datetime]]:
-    """One fault after the other; how many of each were done, and when workers died."""
+    """One fault after the other, all of them; how many of each were done, and when workers died."""
     kills: Counter[str] = Counter()
     deaths: list[datetime] = []
-    for fault in faults:
+    left = deque(faults)
+    for _ in range(2 * len(faults)):
+        if not left or (submission.done() and submission.exception()):
+            break
+        fault = left.popleft()
         time.sleep(interval_s * rng.uniform(0.5, 1.5))
         if inflict(fault, installation, rng):
             kills[fault] += 1
-            if fault in WORKER_DEATHS:
-                deaths.append(now())
-        if submission.done() and submission.exception() is not None:
-            break
+            deaths += [now()] if fault in WORKER_DEATHS else []
+        else:
+            left.insert(2, fault)  # there was nothing to kill just now
     return kills, deaths
 
 
