@@ -71,18 +71,13 @@ class TallyCollector(Collector):
         self._own_store_errors = own_store_errors
 
     def collect(self) -> Iterator[Metric]:
+        own = {"service": float(self._own_store_errors())}
         try:
-            counts: Counts = self._tallies.counts()
-        except QueueError:
-            counts = {}
-        store_errors = {"service": self._own_store_errors(), **_labelled(counts, "store_errors")}
-        yield _family(
-            CounterMetricFamily,
-            "cleave_store_errors",
-            "Reads and writes of the store that failed.",
-            "process",
-            store_errors,
-        )
+            counts = self._tallies.counts()
+        except QueueError:  # a counter that says 0 meanwhile would seem to have jumped afterwards
+            yield _store_errors(own)
+            return
+        yield _store_errors(own | _labelled(counts, "store_errors"))
         yield _finished(counts)
         yield _family(
             CounterMetricFamily,
@@ -104,6 +99,11 @@ class TallyCollector(Collector):
             (name[1],): durations(counts, name[:2]) for name in counts if name[0] == "stage"
         }
         yield _histogram("cleave_stage_seconds", "Time that a stage of a job takes.", ["stage"], stages)
+
+
+def _store_errors(values: Mapping[str, float]) -> Metric:
+    text = "Reads and writes of the store that failed."
+    return _family(CounterMetricFamily, "cleave_store_errors", text, "process", values)
 
 
 def _finished(counts: Counts) -> Metric:

@@ -14,6 +14,7 @@ from worker.trace import new_trace, parse_traceparent
 log = logging.getLogger("cleave.requests")
 
 _PROBES = ("/healthz", "/readyz", "/metrics")
+_METHODS = ("GET", "HEAD", "POST", "PUT", "PATCH", "DELETE", "OPTIONS")  # clients can make up others without end
 _NOWHERE = "none"  # the route of a path that there is not
 
 
@@ -51,7 +52,7 @@ class ObservedRequests:
 
     def _note(self, scope: Scope, subject: Subject, status: int, took_s: float) -> None:
         route = getattr(scope.get("route"), "path", _NOWHERE)
-        method = scope["method"] if route != _NOWHERE else "any"
+        method = scope["method"] if route != _NOWHERE and scope["method"] in _METHODS else "any"
         self._metrics.requests.labels(method, route, status).inc()
         self._metrics.seconds.labels(route).observe(took_s)
         subject.job_id = subject.job_id or scope.get("path_params", {}).get("job_id")

@@ -92,6 +92,15 @@ def test_an_internal_error_is_answered_counted_and_logged_under_the_trace(
     assert 'status="500"' in client.get("/metrics").text
 
 
+def test_made_up_methods_and_paths_do_not_make_the_metrics_grow(client: httpx.Client) -> None:
+    client.request("GET", "/healthz")
+    before = client.get("/metrics").text.count("cleave_requests_total{")
+    for number in range(5):
+        client.request(f"EVIL{number}", "/v1/jobs")
+        client.request(f"EVIL{number}", f"/nowhere/{number}")
+    assert client.get("/metrics").text.count("cleave_requests_total{") - before <= 3
+
+
 def test_a_job_that_the_queue_does_not_take_is_told(
     client: httpx.Client, logged: list[dict[str, Any]], monkeypatch: pytest.MonkeyPatch
 ) -> None:

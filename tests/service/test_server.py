@@ -41,6 +41,7 @@ def test_metrics_are_told_without_the_queue_too(client_without_queue: httpx.Clie
     found = samples(client_without_queue)
     assert found["cleave_queue_up"] == 0
     assert 'cleave_waiting_jobs{queue="small"}' not in found
+    assert "cleave_faces_total" not in found  # not 0, or it would seem to have jumped afterwards
 
 
 @pytest.mark.parametrize(
