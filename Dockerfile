@@ -15,7 +15,7 @@ RUN /opt/cleave/bin/python -P -c "import segcore; segcore.warm_up()"
 FROM python:3.13-slim-bookworm
 RUN groupadd --system --gid 10001 cleave \
     && useradd --system --uid 10001 --gid cleave --no-create-home cleave \
-    && install -d -o cleave -g cleave /data
+    && install -d -m 700 -o cleave -g cleave /data
 COPY --from=build /opt/cleave /opt/cleave
 ENV PATH=/opt/cleave/bin:$PATH \
     NUMBA_CACHE_DIR=/opt/cleave/kernels \

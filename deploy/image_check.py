@@ -45,7 +45,9 @@ def check(image: BuiltStage) -> None:
     AssertionError
         Where it does not do what an image must.
     """
-    image.root.make_read_only(["/tmp", image.stage.last("VOLUME").text])
+    user, _, group = image.user.partition(":")
+    volume = {image.stage.last("VOLUME").text: f"mode=700,uid={user},gid={group}"}
+    image.root.make_read_only({"/tmp": "mode=1777", **volume})
     entry = image.stage.last("ENTRYPOINT").words()
     said = image.root.run([*entry, "key", "check"], image.environment, user=image.user)
     key, digest = (line.split()[1] for line in said.splitlines()[:2])
@@ -57,6 +59,7 @@ def check(image: BuiltStage) -> None:
             _wait_until_ready(process)
             _say(f"ready after {time.monotonic() - began_at:.1f} s")
             _use(image, process, key)
+            _examine(image, environment)
         finally:
             process.send_signal(signal.SIGTERM)
             status = process.wait(_STOP_S)
@@ -84,6 +87,14 @@ def _use(image: BuiltStage, process: "subprocess.Popen[bytes]", key: str) -> Non
 
 def _kernels(folder: Path) -> set[str]:
     return {f"{path.parent.name}/{path.name}" for path in folder.rglob("*.nbi")}
+
+
+def _examine(image: BuiltStage, environment: dict[str, str]) -> None:
+    """What a health check of a worker and an operator ask."""
+    entry = image.stage.last("ENTRYPOINT").words()
+    queue = f"unix://{image.stage.last('VOLUME').text}/queue/queue.sock"
+    _say(image.root.run([*entry, "worker", "--check", "--redis-url", queue], environment, user=image.user).strip())
+    _say(image.root.run([*entry, "doctor", "--host", "0.0.0.0"], environment, user=image.user).strip())
 
 
 def burr_in_off() -> bytes:

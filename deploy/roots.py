@@ -45,12 +45,12 @@ class Root:
         """Let commands find other machines by name."""
         self.bind(Path("/etc/resolv.conf"), "/etc/resolv.conf")
 
-    def make_read_only(self, writable: Sequence[str]) -> None:
-        """Refuse every change from now on, but in memory under these paths."""
+    def make_read_only(self, writable: Mapping[str, str]) -> None:
+        """Refuse every change from now on, but in memory under these paths, whose mounts have options."""
         subprocess.run(["mount", "--bind", self.folder, self.folder], check=True)
         subprocess.run(["mount", "-o", "remount,bind,ro", self.folder], check=True)
-        for inside in writable:
-            self._mount("tmpfs", inside, "mode=1777")
+        for inside, options in writable.items():
+            self._mount("tmpfs", inside, options)
 
     def command(
         self, words: Sequence[str], environment: Mapping[str, str], folder: str = "/", user: str = "0:0"
