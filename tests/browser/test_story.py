@@ -1,10 +1,16 @@
 """From a file to its parts and away again."""
 
+from pathlib import Path
+
 import httpx
 
 from browser.meshes import small_burr
 from browser.visit import Visit
 from end_to_end.installation import Installation
+from support import accepted
+from worker.opening import open_store
+from worker.settings import Settings
+from worker.tasks import perform
 
 
 def test_a_dropped_mesh_is_sent_followed_and_shown(visit: Visit, installation: Installation) -> None:
@@ -34,6 +40,16 @@ def test_a_dropped_mesh_is_sent_followed_and_shown(visit: Visit, installation: I
     assert len(events) == 1
     label = visit.viewer("v.shadowRoot.querySelector('canvas').getAttribute('aria-label')")
     assert label.startswith("dropped.ply: 7 parts. ")
+
+
+def test_every_stage_that_a_worker_tells_of_is_shown(visit: Visit, tmp_path: Path) -> None:
+    told: list[str] = []
+    settings = Settings(data_dir=tmp_path)
+    store = open_store(settings)
+    perform(store, settings, accepted(store, small_burr()).id, lambda stage, _: told.append(stage))
+    visit.open()
+    shown = visit.page.evaluate("[...document.querySelectorAll('#stages [data-stage]')].map((e) => e.dataset.stage)")
+    assert shown == ["upload", "queued", *dict.fromkeys(told), "show"]
 
 
 def test_a_sample_becomes_parts(visit: Visit) -> None:

@@ -26,7 +26,7 @@ const SAMPLES: readonly [name: string, title: string][] = [
 const STAGES: readonly [stage: string, title: string][] = [
   ["upload", "Sending the mesh"],
   ["queued", "Waiting for a worker"],
-  ["read", "Reading the file"],
+  ["reading", "Reading the file"],
   ["clean", "Cleaning the surface"],
   ["affinity", "Looking for concavities"],
   ["coarsen", "Grouping faces"],
