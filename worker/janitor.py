@@ -42,6 +42,7 @@ class Janitor:
 
         ``at_s`` is the time in seconds on any clock that only goes forward.
         """
+        self._housekeeping.sweep_machine()
         if not self._queue.lead(self._name, _LEADER_INTERVALS * self._settings.janitor_interval_s):
             self._missing_since.clear()
             return

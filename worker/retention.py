@@ -45,12 +45,15 @@ class Housekeeping:
         self._pause_s = _PAUSE_S if store.is_local else _REMOTE_PAUSE_S
         self._next_at = float("-inf")
 
+    def sweep_machine(self) -> None:
+        """Tidy up on this machine, which nobody else does."""
+        self._store.remove_abandoned_uploads(_UPLOAD_UNTOUCHED_S)
+
     def sweep(self, at_s: float) -> None:
-        """Tidy up, unless that was done lately; ``at_s`` is the time on any clock that only goes forward."""
+        """Tidy up in the store, unless that was done lately; ``at_s`` is the time on a clock that only goes forward."""
         if at_s < self._next_at:
             return
         self._next_at = at_s + self._pause_s
-        self._store.remove_abandoned_uploads(_UPLOAD_UNTOUCHED_S)
         self._store.finish_deletions(_DELETION_S)
         self._store.forget_deleted(_DELETED_S)
         remove_surplus(self._store, self._settings, time.time())
@@ -60,8 +63,8 @@ def remove_surplus(store: JobStore, settings: Settings, at_s: float) -> None:
     """Delete the jobs that the settings do not keep at a time in seconds since 1970."""
     if settings.retention_s is None and settings.retention_bytes is None:
         return
-    told = store.outbox.job_ids()  # before the jobs: what is about to be told is seen as such
-    for job_id in surplus(stored_jobs(store), told, settings, at_s):
+    untold = store.outbox.job_ids()
+    for job_id in surplus(stored_jobs(store), untold, settings, at_s):
         try:
             store.delete(job_id)
         except UnknownJob:

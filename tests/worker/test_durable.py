@@ -46,3 +46,18 @@ def test_an_upload_whose_process_died_is_removed_when_nobody_touches_it(tmp_path
         os.utime(path, (0, 0))
     spool.remove_abandoned(untouched_s=3600)
     assert list(tmp_path.iterdir()) == []
+
+
+def test_a_job_that_still_runs_keeps_its_folder_however_old_it_is(tmp_path: Path) -> None:
+    spool = Spool(tmp_path)
+    with spool.stage() as folder:
+        (folder / "mesh").write_bytes(b"mesh")
+        for path in (folder / "mesh", folder):
+            os.utime(path, (0, 0))
+        spool.remove_abandoned(untouched_s=3600)
+        assert (folder / "mesh").exists()
+    assert list(tmp_path.iterdir()) == []
+    (tmp_path / "stage-of-a-killed-process").mkdir()
+    os.utime(tmp_path / "stage-of-a-killed-process", (0, 0))
+    spool.remove_abandoned(untouched_s=3600)
+    assert list(tmp_path.iterdir()) == []
