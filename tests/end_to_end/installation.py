@@ -110,7 +110,9 @@ class Installation:
         return str(self.get(path).json()["status"])
 
     def statuses(self, paths: list[str]) -> set[str]:
-        return {self.status(path) for path in paths}
+        jobs = self.get("/v1/jobs?limit=100").json()["jobs"]
+        statuses = {job["links"]["self"]: str(job["status"]) for job in jobs}
+        return {statuses[path] for path in paths}
 
     def redis(self) -> Redis:
         return Redis.from_url(f"unix://{self.data_dir}/queue/queue.sock")

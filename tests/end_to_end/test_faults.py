@@ -29,18 +29,20 @@ def test_a_job_whose_worker_and_work_horse_are_killed_together_runs_again_within
         wait_until(lambda: installation.status(path) == "succeeded")
 
 
-@pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGKILL])
-def test_a_restart_finishes_two_jobs_that_ran_and_fifty_that_waited(number: signal.Signals) -> None:
+@pytest.mark.parametrize(("number", "waiting"), [(signal.SIGINT, 6), (signal.SIGKILL, 50)])
+def test_a_restart_finishes_two_jobs_that_ran_and_those_that_waited(number: signal.Signals, waiting: int) -> None:
     with Installation() as installation:
-        paths = [installation.submit(sphere(rows), json.dumps(LONG)) for rows in (80, 100)]  # a small one, a large one
-        wait_until(lambda: len(installation.horses()) == 2)
-        for horse in installation.horses():
-            os.kill(horse, signal.SIGSTOP)  # they run for as long as the test wants
-        paths += [installation.submit(sphere(12)) for _ in range(50)]
+        paths = []
+        for running, rows in enumerate((80, 100), 1):  # a small one, a large one
+            paths.append(installation.submit(sphere(rows), json.dumps(LONG)))
+            wait_until(lambda running=running: len(installation.horses()) == running)
+            for horse in installation.horses():
+                os.kill(horse, signal.SIGSTOP)  # they run for as long as the test wants
+        paths += [installation.submit(sphere(12)) for _ in range(waiting)]
         assert installation.stop(number) == (-signal.SIGKILL if number == signal.SIGKILL else 0)
         wait_until(lambda: not installation.processes(), within_s=10)
         installation.start()
-        wait_until(lambda: installation.statuses(paths) == {"succeeded"}, within_s=120)
+        wait_until(lambda: installation.statuses(paths) == {"succeeded"}, within_s=200)
 
 
 def test_a_signal_to_all_processes_at_once_fails_no_job() -> None:
