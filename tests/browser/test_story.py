@@ -48,6 +48,8 @@ def test_every_stage_that_a_worker_tells_of_is_shown(visit: Visit, tmp_path: Pat
     store = open_store(settings)
     perform(store, settings, accepted(store, small_burr()).id, lambda stage, _: told.append(stage))
     visit.open()
+    visit.drop("staged.ply", small_burr())
+    visit.page.wait_for_selector("#stages [data-stage]", state="attached")
     shown = visit.page.evaluate("[...document.querySelectorAll('#stages [data-stage]')].map((e) => e.dataset.stage)")
     assert shown == ["upload", "queued", *dict.fromkeys(told), "show"]
 
