@@ -18,7 +18,8 @@ _POLLS_S = 60
 
 
 def busy() -> None:
-    with installed(workers=2) as installation, httpx.Client(base_url=installation.url, timeout=120) as client:
+    # Three workers, of which two are for jobs of this size.
+    with installed(workers=3) as installation, httpx.Client(base_url=installation.url, timeout=120) as client:
         path = measures.keep_busy(client, 60)[-1]
         _tell("status polls for 60 s", measures.polls(installation, path, _POLLS_S))
         _tell("upload to queued", measures.uploads(client, 60))
