@@ -14,7 +14,7 @@ from worker.objects import ObjectStorage, name_of
 JOB = TypeAdapter(Job)
 _ATTEMPT = TypeAdapter(Attempt)
 _OUTCOME: TypeAdapter[Outcome] = TypeAdapter(Outcome)
-_REMEMBERED = 10_000  # outcomes
+_REMEMBERED = 10_000  # jobs
 
 Document = TypeVar("Document")
 
@@ -36,7 +36,9 @@ class Records:
 
     def __init__(self, objects: ObjectStorage) -> None:
         self._objects = objects
-        self._outcomes: OrderedDict[str, Outcome] = OrderedDict()  # they never change
+        # What never changes, where looking costs something.
+        self._outcomes: OrderedDict[str, Outcome] = OrderedDict()
+        self._ended: OrderedDict[str, JobState] = OrderedDict()
 
     def job(self, job_id: str) -> Job | None:
         return self._read(job_key(job_id, RECORD), JOB) if is_job_id(job_id) else None
@@ -57,10 +59,8 @@ class Records:
     def outcome(self, job_id: str) -> Outcome | None:
         key = job_key(job_id, MANIFEST)
         outcome = self._outcomes.get(job_id) or self._read(key, _OUTCOME)
-        if outcome is not None and not self._objects.is_local:
-            self._outcomes[job_id] = outcome
-            if len(self._outcomes) > _REMEMBERED:
-                self._outcomes.popitem(last=False)
+        if outcome is not None:
+            self._remember(self._outcomes, job_id, outcome)
         return outcome
 
     def has_outcome(self, job_id: str) -> bool:
@@ -98,15 +98,30 @@ class Records:
 
     def states(self, job_ids: Sequence[str]) -> dict[str, JobState]:
         """How some jobs are."""
-        found = self._objects.each(lambda job_id: JobState(self.outcome(job_id), self.attempts(job_id)), job_ids)
-        return dict(zip(job_ids, found, strict=True))
+        return dict(zip(job_ids, self._objects.each(self._state, job_ids), strict=True))
 
     def jobs(self, job_ids: Sequence[str]) -> list[Job | None]:
         return self._objects.each(self.job, job_ids)
 
+    def _state(self, job_id: str) -> JobState:
+        known = self._ended.get(job_id)
+        if known is not None:
+            return known
+        state = JobState(self.outcome(job_id), self.attempts(job_id))
+        if state.outcome is not None:
+            self._remember(self._ended, job_id, state)
+        return state
+
+    def _remember(self, known: OrderedDict[str, Document], job_id: str, document: Document) -> None:
+        if not self._objects.is_local:
+            known[job_id] = document
+            if len(known) > _REMEMBERED:
+                known.popitem(last=False)
+
     def _remove_outcome(self, job_id: str) -> None:
         self._objects.delete(job_key(job_id, MANIFEST))
         self._outcomes.pop(job_id, None)
+        self._ended.pop(job_id, None)
 
     def _read(self, key: str, adapter: TypeAdapter[Document]) -> Document | None:
         text = self._objects.get(key)
