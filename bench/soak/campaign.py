@@ -93,7 +93,7 @@ def _under_fire(installation: Installation, plan: SoakPlan, expected: dict[int, 
         differing=sum(digests.get(job.id, expected[job.mesh]) != expected[job.mesh] for job in submitted),
         run_again=sum(len(runs) > 1 for runs in attempts),
         dropped=installation.log.read_text(errors="replace").count(_DROPPED),
-        resumed_s=_longest_pause_s(attempts, deaths),
+        resumed_s=longest_pause_s(attempts, deaths),
         settled_s=settled_s,
     )
 
@@ -122,7 +122,7 @@ def _fire(
     return kills, deaths
 
 
-def _longest_pause_s(attempts: list[list[Attempt]], deaths: list[datetime]) -> float:
+def longest_pause_s(attempts: list[list[Attempt]], deaths: list[datetime]) -> float:
     """From the death of a worker to the next run of its job; a run without an end is put down to the first after it."""
     pauses = [0.0]
     for runs in attempts:
