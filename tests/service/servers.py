@@ -18,7 +18,8 @@ from worker.tasks import perform
 @contextmanager
 def serving(settings: Settings) -> Iterator[httpx.Client]:
     """A client of an application that runs in a thread of this process."""
-    listening = socket.create_server(("127.0.0.1", 0))
+    # By its descriptor, as in service.server: asyncio sends at once only where it knows that the protocol is TCP.
+    listening = socket.socket(fileno=socket.create_server(("127.0.0.1", 0)).detach())
     server = uvicorn.Server(uvicorn.Config(create_app(settings), log_config=None, http=ImpatientProtocol))
     thread = threading.Thread(target=server.run, kwargs={"sockets": [listening]})
     thread.start()
