@@ -127,7 +127,8 @@ def strange(notes: Path, data_dir: Path) -> set[str]:
     for line in notes.read_text(errors="replace").splitlines():
         event, _, what = line.partition("\t")
         is_number = what.isdigit()  # an open descriptor: it was opened by its name before
-        if not (is_number or what.startswith((*own, *HARMLESS)) or is_own_command(event, what)):
+        place = what if event.startswith("socket") else os.path.normpath(ROOT / what)
+        if not (is_number or place.startswith((*own, *HARMLESS)) or is_own_command(event, what)):
             found.add(line)
     return found
 
