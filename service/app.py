@@ -5,19 +5,6 @@ from importlib.metadata import PackageNotFoundError, version
 from fastapi import FastAPI
 from starlette.middleware.cors import CORSMiddleware
 
-from service import (
-    about_routes,
-    batch_routes,
-    docs_page,
-    file_routes,
-    health,
-    home,
-    model_routes,
-    result_routes,
-    routes,
-    submission_routes,
-    webhook_routes,
-)
 from service.access import ForeignSites, LocalNames
 from service.api_keys import key_ring
 from service.context import Context, QueueView
@@ -27,10 +14,11 @@ from service.observed import ObservedRequests
 from service.openapi import complete
 from service.problems import handle_problems
 from service.results import ResultCache
-from worker.opening import open_store
+from service.routes import about, batches, docs_page, files, health, home, jobs, models, results, submission, webhooks
 from worker.queue import JobQueue, connect_impatiently
 from worker.quota import UploadQuota
 from worker.settings import Settings
+from worker.storage.opening import open_store
 
 _EXPOSED_HEADERS = (
     "Location",
@@ -47,14 +35,14 @@ _ROUTES = (
     home,
     docs_page,
     health,
-    submission_routes,
-    routes,
-    result_routes,
-    model_routes,
-    file_routes,
-    batch_routes,
-    about_routes,
-    webhook_routes,
+    submission,
+    jobs,
+    results,
+    models,
+    files,
+    batches,
+    about,
+    webhooks,
 )
 
 

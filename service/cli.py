@@ -7,10 +7,10 @@ from contextlib import suppress
 from pathlib import Path
 from typing import NoReturn
 
-from service.cli_submit import add_submit
-from service.file_commands import add_convert, add_fineness, add_inspect, add_outputs
-from service.kernel_cache import prepare_kernel_cache
-from service.operator_commands import add_doctor, add_serve, add_worker
+from service.commands.file_arguments import add_convert, add_fineness, add_inspect, add_outputs
+from service.commands.operator_arguments import add_doctor, add_serve, add_worker
+from service.commands.submit_arguments import add_submit
+from service.processes.kernel_cache import prepare_kernel_cache
 from worker.settings import InvalidSettings, load_settings
 
 _DESCRIPTION = """\
@@ -108,9 +108,9 @@ def _add_key(commands: "argparse._SubParsersAction[_Parser]") -> None:
 
 
 def _segment(choices: argparse.Namespace) -> None:
+    from service.commands.outputs import output_options
+    from service.commands.segment import SegmentRequest, segment_file
     from service.fineness import Fineness
-    from service.outputs import output_options
-    from service.segment_command import SegmentRequest, segment_file
 
     summary = segment_file(
         SegmentRequest(
@@ -157,9 +157,9 @@ def _say(text: str) -> None:
 
 def _expected_errors() -> tuple[type[Exception], ...]:
     from segcore.errors import CleaveError
-    from service.queue_server import NoQueueServer
-    from service.serve_command import CannotListen
-    from service.supervisor import DataInUse
+    from service.commands.serve import CannotListen
+    from service.processes.queue_server import NoQueueServer
+    from service.processes.supervisor import DataInUse
 
     return CleaveError, InvalidSettings, NoQueueServer, CannotListen, DataInUse, OSError
 

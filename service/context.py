@@ -10,13 +10,13 @@ from service.api_keys import KeyRing
 from service.metrics import Metrics
 from service.results import ResultCache
 from worker.admission import admit
-from worker.batches import BatchStore
-from worker.durable import is_disk_full
-from worker.installation_secret import InstallationSecret
 from worker.jobs import Canceled, Job, Outcome, now
 from worker.queue import Activity, JobQueue, QueueError
 from worker.quota import UploadQuota
 from worker.settings import Settings
+from worker.storage.batches import BatchStore
+from worker.storage.durable import is_disk_full
+from worker.storage.installation_secret import InstallationSecret
 from worker.store import JobStore
 from worker.tallies import Tallies
 

@@ -8,7 +8,7 @@ from python_multipart.exceptions import FormParserError
 from python_multipart.multipart import MultipartParser, parse_options_header
 
 from service.problems import Problem
-from worker.upload import MeshUpload
+from worker.storage.upload import MeshUpload
 
 MAX_PARAMETERS_BYTES = 16 * 1024
 MAX_ENVELOPE_BYTES = 64 * 1024  # boundaries and headers of a form with one mesh

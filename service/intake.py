@@ -9,11 +9,11 @@ from service.context import Context
 from service.form import ReceivedMesh
 from service.problems import Problem
 from service.upload import file_label, mesh_format
-from worker.acceptance import JobExists
-from worker.computed import fingerprint
 from worker.jobs import Job, new_job_id, now
 from worker.logs import about, current_traceparent
 from worker.queue import QueueError
+from worker.storage.acceptance import JobExists
+from worker.storage.computed import fingerprint
 
 log = logging.getLogger("cleave.intake")
 

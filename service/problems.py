@@ -14,9 +14,9 @@ from starlette.requests import ClientDisconnect
 from starlette.responses import Response
 
 from segcore.errors import InvalidParameters
-from worker.durable import is_disk_full
-from worker.objects import StoreError
 from worker.queue import QueueError
+from worker.storage.durable import is_disk_full
+from worker.storage.objects import StoreError
 from worker.store import UnknownJob
 
 log = logging.getLogger("cleave.service")

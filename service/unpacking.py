@@ -9,7 +9,7 @@ from pathlib import Path, PurePosixPath
 from service.form import ReceivedMesh, write_capped
 from service.problems import Problem
 from worker.settings import Settings
-from worker.upload import MeshUpload
+from worker.storage.upload import MeshUpload
 
 _PIECE_BYTES = 1024 * 1024
 _END = b"PK\5\6"  # of the central directory, with its size 12 bytes further on

@@ -24,7 +24,7 @@ from service.form import (
 from service.problems import Problem
 from service.receiving import declared_length, pieces
 from worker.settings import Settings
-from worker.upload import MeshUpload
+from worker.storage.upload import MeshUpload
 
 FORM_TYPE = "multipart/form-data"
 _ANY_BYTES = "application/octet-stream"

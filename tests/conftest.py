@@ -12,10 +12,10 @@ from hypothesis.configuration import set_hypothesis_home_dir
 from redis import Redis
 
 from buckets import CREDENTIALS, s3_server
-from service.queue_server import embedded_queue_server
+from service.processes.queue_server import embedded_queue_server
 from support import wait_until
-from worker.opening import open_folder
 from worker.queue import JobQueue, connect_impatiently
+from worker.storage.opening import open_folder
 from worker.store import JobStore
 
 # No deadline: the first call of a kernel compiles it. Nothing is left in the folder where the tests run.

@@ -8,11 +8,11 @@ import time
 from worker.admission import may_wait_outside
 from worker.jobs import Job, exhausted
 from worker.logs import about, configure_logging
-from worker.opening import open_store
 from worker.queue import JobQueue, QueueError, connect_impatiently
-from worker.retention import Housekeeping
 from worker.settings import Settings, load_settings
 from worker.size_class import size_class
+from worker.storage.opening import open_store
+from worker.storage.retention import Housekeeping
 from worker.store import JobStore, UnknownJob
 from worker.tallies import Tallies
 

@@ -23,13 +23,13 @@ from worker.jobs import Attempt
 from worker.lease import LeaseKeeper
 from worker.ledger import Ledger
 from worker.logs import about, configure_logging, rename_process
-from worker.opening import open_store
 from worker.parent_death import die_with_parent
 from worker.progress import ProgressReporter
 from worker.queue import JobQueue, connect_impatiently, connect_patiently
 from worker.settings import Settings, load_settings
 from worker.size_class import SizeClass
-from worker.staging import Desk, desk_for
+from worker.storage.opening import open_store
+from worker.storage.staging import Desk, desk_for
 from worker.store import JobStore, UnknownJob
 from worker.tallies import Tallies
 from worker.tasks import perform

@@ -1,31 +1,31 @@
 """Where jobs live: the truth about every one of them, in whatever place keeps the bytes.
 
 A job is accepted when its record is created, after everything else that belongs to it, and finished when its manifest
-is, which only the first writer does. The names of the objects are in ``worker.layout``.
+is, which only the first writer does. The names of the objects are in ``worker.storage.layout``.
 """
 
 from collections.abc import Callable, Sequence
 from pathlib import Path
 from typing import BinaryIO
 
-from worker.acceptance import Acceptance
-from worker.batches import BatchStore
-from worker.computed import ComputedIndex
-from worker.deletion import Deletions
-from worker.file_cache import FileCache
-from worker.index import JobIndex
-from worker.installation_secret import InstallationSecret
 from worker.jobs import Attempt, Cause, Job, Outcome, Succeeded
-from worker.layout import MESH, job_key, mesh_name
-from worker.objects import ObjectStorage
-from worker.outbox import Outbox
-from worker.pages import JobPage, read_page
-from worker.pending import PendingJobs
-from worker.records import JobState, Records
-from worker.records import UnknownJob as UnknownJob
-from worker.results import ResultFiles
-from worker.spool import Spool
-from worker.upload import MeshUpload
+from worker.storage.acceptance import Acceptance
+from worker.storage.batches import BatchStore
+from worker.storage.computed import ComputedIndex
+from worker.storage.deletion import Deletions
+from worker.storage.file_cache import FileCache
+from worker.storage.index import JobIndex
+from worker.storage.installation_secret import InstallationSecret
+from worker.storage.layout import MESH, job_key, mesh_name
+from worker.storage.objects import ObjectStorage
+from worker.storage.outbox import Outbox
+from worker.storage.pages import JobPage, read_page
+from worker.storage.pending import PendingJobs
+from worker.storage.records import JobState, Records
+from worker.storage.records import UnknownJob as UnknownJob
+from worker.storage.results import ResultFiles
+from worker.storage.spool import Spool
+from worker.storage.upload import MeshUpload
 
 
 class JobStore:

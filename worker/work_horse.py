@@ -9,9 +9,9 @@ from collections.abc import Callable
 from pathlib import Path
 from typing import Literal, TypeAlias
 
-from worker.durable import is_disk_full
 from worker.jobs import Cause
 from worker.settings import Settings
+from worker.storage.durable import is_disk_full
 
 log = logging.getLogger("cleave.work_horse")
 

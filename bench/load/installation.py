@@ -38,7 +38,7 @@ class Installation:
 
     def service_pid(self) -> int:
         """The process that answers HTTP."""
-        (pid,) = self.children("service.server")
+        (pid,) = self.children("service.processes.server")
         return pid
 
 

@@ -9,8 +9,8 @@ from importlib.metadata import version
 from pathlib import Path
 
 from service.app import installed_version
+from service.commands.serve import check_guarded
 from service.doctor.findings import Finding, error, ok, warning
-from service.serve_command import check_guarded
 from worker.settings import InvalidSettings, Settings
 
 _CONNECTIONS = 1024  # that wait to be taken, besides those that are answered

@@ -9,9 +9,9 @@ from pathlib import Path
 
 from service.doctor.findings import Finding, error, ok, warning
 from service.doctor.queue_checks import check_clock
-from worker.objects import ObjectStorage
-from worker.opening import open_store
 from worker.settings import InvalidSettings, Settings
+from worker.storage.objects import ObjectStorage
+from worker.storage.opening import open_store
 
 _PROBES = "probe"
 _UPLOADS_LEFT = 8  # that a disk has room for before somebody should look at it

@@ -8,8 +8,8 @@ from browser.meshes import small_burr
 from browser.visit import Visit
 from end_to_end.installation import Installation
 from support import accepted
-from worker.opening import open_store
 from worker.settings import Settings
+from worker.storage.opening import open_store
 from worker.tasks import perform
 
 

@@ -11,7 +11,7 @@ from buckets import below
 from end_to_end.installation import Installation
 from support import sphere, wait_until
 from worker.jobs import new_job_id
-from worker.opening import open_url
+from worker.storage.opening import open_url
 
 
 def in_bucket(url: str) -> Installation:

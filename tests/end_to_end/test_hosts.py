@@ -12,9 +12,9 @@ from redis import Redis
 
 from buckets import CREDENTIALS
 from end_to_end.hosts import Host, Network, can_make_hosts
-from service.queue_server import find_server_binary
+from service.processes.queue_server import find_server_binary
 from support import LONG, sphere, wait_until
-from worker.opening import open_url
+from worker.storage.opening import open_url
 from worker.store import JobStore
 from worker.vital_signs import living_workers
 

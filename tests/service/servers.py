@@ -18,7 +18,7 @@ from worker.tasks import perform
 @contextmanager
 def serving(settings: Settings) -> Iterator[httpx.Client]:
     """A client of an application that runs in a thread of this process."""
-    # By its descriptor, as in service.server: asyncio sends at once only where it knows that the protocol is TCP.
+    # By its descriptor, as in service.processes.server: asyncio sends at once only where it knows the protocol.
     listening = socket.socket(fileno=socket.create_server(("127.0.0.1", 0)).detach())
     server = uvicorn.Server(uvicorn.Config(create_app(settings), log_config=None, http=ImpatientProtocol))
     thread = threading.Thread(target=server.run, kwargs={"sockets": [listening]})

@@ -9,7 +9,7 @@ from asking import UNKNOWN, problem, submit
 from servers import serving
 
 from service.api_keys import key_digest, key_ring, new_key, parse_keys
-from service.serve_command import check_guarded
+from service.commands.serve import check_guarded
 from worker.settings import InvalidSettings, Settings
 
 ANNA, BORIS = new_key(), new_key()

@@ -219,7 +219,7 @@ def test_a_full_disk_is_said_and_leaves_nothing(
     def fail(*_: object) -> None:
         raise OSError(28, "No space left on device")
 
-    monkeypatch.setattr("worker.upload.MeshUpload.write", fail)
+    monkeypatch.setattr("worker.storage.upload.MeshUpload.write", fail)
     answer = client.post("/v1/jobs", files={"mesh": ("mesh.off", sphere(12))})
     problem(answer, 507, "insufficient_storage")
     assert traces(settings.data_dir) == []

@@ -13,7 +13,7 @@ import pytest
 import segcore
 from segcore.io.result import read_result
 from service.cli import main
-from service.progress_bar import ProgressBar
+from service.commands.progress_bar import ProgressBar
 from support import sphere
 
 

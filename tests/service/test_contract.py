@@ -16,10 +16,10 @@ from servers import serving, working
 
 from service.api_keys import key_digest, new_key
 from service.contract import DOCS
-from worker.opening import open_store
 from worker.queue import QUEUE_NAMES
 from worker.settings import Settings
 from worker.size_class import SizeClass
+from worker.storage.opening import open_store
 
 
 @pytest.fixture(scope="module")

@@ -18,11 +18,11 @@ from service.doctor.findings import Finding
 from service.doctor.machine_checks import check_machine
 from service.doctor.queue_checks import check_queue
 from service.doctor.store_checks import check_store
-from service.queue_server import find_server_binary
+from service.processes.queue_server import find_server_binary
 from support import wait_until
-from worker.objects import ObjectInfo
 from worker.queue import QUEUE_NAMES
 from worker.settings import Settings
+from worker.storage.objects import ObjectInfo
 
 StartServer = Callable[..., str]
 LIMITS = ("open files", "file size", "memory", "memory of a job", "kernels", "settings")
@@ -140,7 +140,7 @@ def test_a_full_disk_and_a_folder_open_to_others_are_found_out(tmp_path: Path, m
 
 
 def test_the_clock_of_a_store_is_looked_at(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    from worker.local_objects import LocalObjects
+    from worker.storage.local_objects import LocalObjects
 
     true_list = LocalObjects.list_below
 

@@ -14,7 +14,7 @@ from segcore.io.result import read_result
 from segcore.io.writing import WRITERS
 from segcore.report import mesh_report
 from service.cli import main
-from service.file_commands import OUTPUTS
+from service.commands.file_arguments import OUTPUTS
 from support import sphere
 
 

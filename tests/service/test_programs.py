@@ -2,8 +2,8 @@
 
 import pytest
 
-from service.programs import worker_programs
-from service.serve_command import worker_counts
+from service.commands.serve import worker_counts
+from service.processes.programs import worker_programs
 from support import LARGE, SMALL
 from worker.settings import Settings
 from worker.size_class import SizeClass

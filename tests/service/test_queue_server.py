@@ -7,8 +7,14 @@ from pathlib import Path
 
 import pytest
 
-from service import queue_server
-from service.queue_server import NoQueueServer, embedded_queue_server, find_server_binary, socket_path, stop_orphan
+from service.processes import queue_server
+from service.processes.queue_server import (
+    NoQueueServer,
+    embedded_queue_server,
+    find_server_binary,
+    socket_path,
+    stop_orphan,
+)
 from support import wait_until
 
 

@@ -16,8 +16,8 @@ from buckets import below, s3_server
 from segcore.io.result import read_result
 from support import sphere
 from worker.jobs import new_job_id
-from worker.opening import open_store
 from worker.settings import Settings
+from worker.storage.opening import open_store
 from worker.store import JobStore
 from worker.tasks import perform
 

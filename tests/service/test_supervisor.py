@@ -9,7 +9,7 @@ from pathlib import Path
 
 import pytest
 
-from service.supervisor import DataInUse, lock_data
+from service.processes.supervisor import DataInUse, lock_data
 from support import children_of, is_alive, wait_until
 
 
@@ -23,7 +23,7 @@ def supervise(tmp_path: Path, *programs: str) -> "subprocess.Popen[bytes]":
     script = textwrap.dedent(
         f"""
         import sys
-        from service.supervisor import Program, Supervisor
+        from service.processes.supervisor import Program, Supervisor
         Supervisor(Program(path, [sys.executable, path], grace_s=1.0) for path in {sources!r}).run()
         """
     )

@@ -14,13 +14,13 @@ from asking import problem
 from servers import serving
 from standardwebhooks import Webhook, WebhookVerificationError
 
-from service.courier import BACK_OFF_S, Courier
+from service.processes.courier import BACK_OFF_S, Courier
 from service.webhook import Undeliverable, objection_to, send
 from support import sphere
 from worker.jobs import now
-from worker.opening import open_folder
 from worker.queue import JobQueue
 from worker.settings import Settings
+from worker.storage.opening import open_folder
 from worker.store import JobStore
 from worker.tasks import perform
 

@@ -12,8 +12,8 @@ from redis import Redis
 from buckets import below
 from support import SMALL, StartWorker
 from worker.jobs import new_job_id
-from worker.opening import open_folder, open_url
 from worker.size_class import SizeClass
+from worker.storage.opening import open_folder, open_url
 from worker.store import JobStore
 
 PLACES = ("local", "memory", "s3")

@@ -9,12 +9,12 @@ from typing import Any
 
 import pytest
 
-from worker.acceptance import JobExists
 from worker.jobs import Job, Succeeded, new_job_id, now
-from worker.objects import ObjectStorage, StoreError
-from worker.outbox import Letter
-from worker.retention import stored_jobs
-from worker.spool import Spool
+from worker.storage.acceptance import JobExists
+from worker.storage.objects import ObjectStorage, StoreError
+from worker.storage.outbox import Letter
+from worker.storage.retention import stored_jobs
+from worker.storage.spool import Spool
 from worker.store import JobStore, UnknownJob
 
 _WRITES = ("create", "put", "put_file", "delete")
@@ -63,8 +63,8 @@ def reopen(placed: JobStore, tmp_path: Path) -> Callable[..., JobStore]:
 @pytest.fixture
 def nothing_is_young(monkeypatch: pytest.MonkeyPatch) -> None:
     """Whatever has no job is not on its way to one any more."""
-    monkeypatch.setattr("worker.pending._GRACE_S", -10.0)
-    monkeypatch.setattr("worker.pages._ON_ITS_WAY", timedelta(days=-1))
+    monkeypatch.setattr("worker.storage.pending._GRACE_S", -10.0)
+    monkeypatch.setattr("worker.storage.pages._ON_ITS_WAY", timedelta(days=-1))
 
 
 def a_job() -> Job:

@@ -5,8 +5,8 @@ from pathlib import Path
 
 import pytest
 
-from worker.durable import create_file, replace_file
-from worker.spool import Spool
+from worker.storage.durable import create_file, replace_file
+from worker.storage.spool import Spool
 
 
 def files_below(folder: Path) -> list[str]:

@@ -7,7 +7,7 @@ from typing import BinaryIO
 
 import pytest
 
-from worker.file_cache import FileCache
+from worker.storage.file_cache import FileCache
 
 
 class Bucket:

@@ -7,7 +7,7 @@ from pathlib import Path
 
 import pytest
 
-from service.queue_server import QueueServer, embedded_queue_server
+from service.processes.queue_server import QueueServer, embedded_queue_server
 from support import LONG, SMALL, StartWorker, accepted, children_of, sphere, wait_until
 from worker.jobs import Succeeded
 from worker.queue import JobQueue, QueueError, connect_impatiently

@@ -8,8 +8,8 @@ import pytest
 
 from support import accepted
 from worker.jobs import Job, Succeeded, new_job_id, now
-from worker.retention import Housekeeping, StoredJob, remove_surplus, stored_jobs, surplus
 from worker.settings import Settings
+from worker.storage.retention import Housekeeping, StoredJob, remove_surplus, stored_jobs, surplus
 from worker.store import JobStore
 
 DAY_S = 24 * 3600.0
@@ -83,7 +83,7 @@ def test_everything_is_looked_at_now_and_then_only(
     store: JobStore, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     looks: list[float] = []
-    monkeypatch.setattr("worker.retention.remove_surplus", lambda *_: looks.append(0))
+    monkeypatch.setattr("worker.storage.retention.remove_surplus", lambda *_: looks.append(0))
     housekeeping = Housekeeping(store, Settings(data_dir=tmp_path))
     for at_s in (0.0, 1.0, 29.0, 31.0, 32.0):
         housekeeping.sweep(at_s)

@@ -8,9 +8,9 @@ from pathlib import Path
 from buckets import s3_server
 from support import LONG, StartWorker, accepted, children_of, sphere, wait_until
 from worker.jobs import Succeeded
-from worker.opening import open_folder, open_url
 from worker.queue import JobQueue
 from worker.size_class import SizeClass
+from worker.storage.opening import open_folder, open_url
 from worker.store import JobStore
 
 

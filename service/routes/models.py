@@ -1,0 +1,191 @@
+"""The segmented mesh as files of other programs, and as a picture."""
+
+import io
+from collections.abc import Callable
+from typing import Annotated, Any, BinaryIO, Literal
+
+from fastapi import APIRouter, Query, Request
+from starlette.responses import Response
+
+from segcore.io.glb import write_glb
+from segcore.io.obj_writer import write_obj
+from segcore.io.parts_writer import write_parts
+from segcore.io.ply_writer import write_ply
+from segcore.io.png import write_png
+from segcore.io.result import Segmentation
+from segcore.io.threemf_writer import write_3mf
+from segcore.io.writing import WRITERS
+from segcore.picture import draw
+from service.access import Caller, CallerOf
+from service.answers import Rendition, answer_rendition, rendition_responses
+from service.context import Context, ContextOf
+from service.levels import Level, LevelOf
+from service.lookup import known_job, result_of
+from service.part_names import PartNames, named
+from service.routes.jobs import JobId
+from service.routes.results import LEVEL_PROBLEMS
+
+router = APIRouter(prefix="/v1/jobs/{job_id}", tags=["models"])
+
+Capped = Annotated[bool, Query(description="Close every part at its cuts, for printing.")]
+Write = Callable[[BinaryIO, Segmentation, int], None]
+
+_PNG = "image/png"
+_BINARY = {"schema": {"type": "string", "format": "binary"}}
+
+
+def _responses(name: str) -> dict[int | str, dict[str, Any]]:
+    writer = WRITERS[name]
+    return rendition_responses({writer.media_type: _BINARY}, f"{writer.title}.") | LEVEL_PROBLEMS
+
+
+@router.get("/model.glb", response_class=Response, responses=_responses("glb"))
+def get_glb(
+    job_id: JobId,
+    request: Request,
+    context: ContextOf,
+    caller: CallerOf,
+    level: LevelOf,
+    names: PartNames,
+    levels: Annotated[
+        Literal["all"] | None,
+        Query(description="Every level in one file: a node per node of the hierarchy, a material variant per level."),
+    ] = None,
+    features: Annotated[
+        bool, Query(description="The hierarchy as EXT_structural_metadata, and EXT_mesh_features that lead to it.")
+    ] = False,
+) -> Response:
+    """The mesh as binary glTF, a named node and a colour for every segment."""
+
+    def write(target: BinaryIO, result: Segmentation, count: int) -> None:
+        choices = {"all_levels": levels == "all", "features": features}
+        write_glb(target, result.mesh, result.hierarchy, count, **choices, names=names)
+
+    options = f"levels={levels or 'one'}&features={features}{named(names)}"
+    return _model(request, context, caller, job_id, "glb", level, write, options)
+
+
+@router.get("/model.ply", response_class=Response, responses=_responses("ply"))
+def get_ply(
+    job_id: JobId, request: Request, context: ContextOf, caller: CallerOf, level: LevelOf, names: PartNames
+) -> Response:
+    """The mesh as binary PLY with a colour and a label for every face."""
+
+    def write(target: BinaryIO, result: Segmentation, count: int) -> None:
+        write_ply(target, result.mesh, result.hierarchy, count, names=names)
+
+    return _model(request, context, caller, job_id, "ply", level, write, named(names))
+
+
+@router.get("/model.obj", response_class=Response, responses=_responses("obj"))
+def get_obj(
+    job_id: JobId, request: Request, context: ContextOf, caller: CallerOf, level: LevelOf, names: PartNames
+) -> Response:
+    """The mesh as OBJ with a group for every segment."""
+
+    def write(target: BinaryIO, result: Segmentation, count: int) -> None:
+        write_obj(target, result.mesh, result.hierarchy, count, names=names)
+
+    return _model(request, context, caller, job_id, "obj", level, write, named(names))
+
+
+@router.get("/model.3mf", response_class=Response, responses=_responses("3mf"))
+def get_3mf(
+    job_id: JobId,
+    request: Request,
+    context: ContextOf,
+    caller: CallerOf,
+    level: LevelOf,
+    names: PartNames,
+    capped: Capped = False,
+) -> Response:
+    """The mesh as 3MF with an object for every segment."""
+
+    def write(target: BinaryIO, result: Segmentation, count: int) -> None:
+        write_3mf(target, result.mesh, result.hierarchy, count, capped=capped, names=names)
+
+    return _model(request, context, caller, job_id, "3mf", level, write, f"capped={capped}{named(names)}")
+
+
+@router.get("/parts.zip", response_class=Response, responses=_responses("zip"))
+def get_parts(
+    job_id: JobId,
+    request: Request,
+    context: ContextOf,
+    caller: CallerOf,
+    level: LevelOf,
+    names: PartNames,
+    part_format: Annotated[Literal["stl", "obj"], Query(description="The format of the files in it.")] = "stl",
+    capped: Capped = False,
+) -> Response:
+    """A ZIP archive with a file for every segment."""
+
+    def write(target: BinaryIO, result: Segmentation, count: int) -> None:
+        write_parts(target, result.mesh, result.hierarchy, count, part_format=part_format, capped=capped, names=names)
+
+    options = f"part_format={part_format}&capped={capped}{named(names)}"
+    return _model(request, context, caller, job_id, "zip", level, write, options)
+
+
+@router.get(
+    "/preview.png",
+    response_class=Response,
+    responses=rendition_responses({_PNG: _BINARY}, "A picture.") | LEVEL_PROBLEMS,
+)
+def get_preview(
+    job_id: JobId,
+    request: Request,
+    context: ContextOf,
+    caller: CallerOf,
+    level: LevelOf,
+    size: Annotated[int, Query(ge=16, le=1024, description="Width and height in pixels.")] = 256,
+) -> Response:
+    """A picture of the mesh in the colours of its segments, on a transparent ground."""
+    job = known_job(context, caller, job_id)
+    cut = level.of(result_of(context, job))
+
+    def render() -> bytes:
+        pixels = draw(cut.result.mesh, cut.result.hierarchy.labels(cut.segments), size)
+        return _written(lambda target: write_png(target, pixels))
+
+    identity = f"{job.id}/preview.png?{cut.name}&size={size}"
+    return answer_rendition(
+        request,
+        Rendition(
+            identity=identity, media_type=_PNG, render=lambda: context.results.rendered(job.id, identity, render)
+        ),
+    )
+
+
+def _model(
+    request: Request,
+    context: Context,
+    caller: Caller,
+    job_id: str,
+    name: str,
+    level: Level,
+    write: Write,
+    options: str,
+) -> Response:
+    job = known_job(context, caller, job_id)
+    cut = level.of(result_of(context, job))
+    identity = f"{job.id}/{name}?{cut.name}&{options}"
+
+    def render() -> bytes:
+        return _written(lambda target: write(target, cut.result, cut.segments))
+
+    return answer_rendition(
+        request,
+        Rendition(
+            identity=identity,
+            media_type=WRITERS[name].media_type,
+            render=lambda: context.results.rendered(job.id, identity, render),
+            file_name=f"{job.id}{WRITERS[name].extension}",
+        ),
+    )
+
+
+def _written(write: Callable[[BinaryIO], object]) -> bytes:
+    target = io.BytesIO()
+    write(target)
+    return target.getvalue()

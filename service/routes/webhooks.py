@@ -1,0 +1,18 @@
+"""Webhooks: what their receivers have to know."""
+
+from fastapi import APIRouter
+
+from service.access import CallerOf
+from service.context import ContextOf
+from service.documents import WebhookSecret
+from service.problems import documented
+from service.processes.courier import webhook_secret
+from service.webhook import shown_secret
+
+router = APIRouter(prefix="/v1/webhooks", tags=["webhooks"])
+
+
+@router.get("/secret", response_model=WebhookSecret, responses=documented("unauthorized"))
+async def get_webhook_secret(context: ContextOf, caller: CallerOf) -> WebhookSecret:
+    """The secret with which messages to the caller's webhooks are signed, as in Standard Webhooks 1.0."""
+    return WebhookSecret(secret=shown_secret(webhook_secret(context.secret, caller.owner)))
