@@ -58,6 +58,8 @@ const KNOWN: Record<string, [title: string, next: string, remedy: Remedy]> = {
   worker_lost: ["The mesh was too much for the worker", "Reduce its number of faces, then try again.", "choose"],
   out_of_memory: ["The mesh needs too much memory", "Reduce its number of faces, then try again.", "choose"],
   timed_out: ["The mesh took too long", "Reduce its number of faces, then try again.", "choose"],
+  file_too_large: ["The result is too large to be stored", "Reduce its number of faces, then try again.", "choose"],
+  input_lost: ["The mesh is no longer on the server", "Send it again.", "retry"],
   no_webgl: ["No 3D graphics here", "Switch on WebGL 2 in the settings of the browser, or use another one.", "retry"],
 };
 
