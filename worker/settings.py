@@ -81,7 +81,15 @@ class Settings(BaseSettings):
     upload_bytes_per_s: int = Field(
         default=1024, ge=0, description="Least speed of an upload, on average after its first upload_idle_s."
     )
+    max_uncompressed_bytes: int = Field(
+        default=2 * 2**30, gt=0, description="Largest mesh file after it is unpacked, where it is a compressed one."
+    )
     max_faces: int = Field(default=5_000_000, gt=0, description="Largest number of faces that is segmented.")
+    max_vertices: int = Field(
+        default=15_000_000,
+        gt=0,
+        description="Largest number of vertices of a mesh; STL files have three for every face.",
+    )
     large_job_bytes: int = Field(
         default=4 * 2**20, gt=0, description="Mesh files from this size on wait in the queue of the large jobs."
     )

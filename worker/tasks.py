@@ -73,4 +73,9 @@ def segment_stored_mesh(store: JobStore, job: Job, limits: ReadLimits, clock: St
 
 
 def read_limits(settings: Settings) -> ReadLimits:
-    return ReadLimits(max_bytes=settings.max_upload_bytes, max_faces=settings.max_faces)
+    return ReadLimits(
+        max_bytes=settings.max_upload_bytes,
+        max_uncompressed_bytes=settings.max_uncompressed_bytes,
+        max_faces=settings.max_faces,
+        max_vertices=settings.max_vertices,
+    )

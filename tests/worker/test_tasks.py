@@ -1,5 +1,6 @@
 """The work of a job, without a queue: a mesh in the store becomes a result, or a reason why there is none."""
 
+import gzip
 import json
 from dataclasses import asdict
 from pathlib import Path
@@ -128,3 +129,13 @@ def test_an_error_that_nobody_expects_is_not_an_outcome(store: JobStore, setting
     with pytest.raises(ZeroDivisionError):
         perform(store, settings, job.id, fail)
     assert store.outcome(job.id) is None
+
+
+@pytest.mark.parametrize("limit", ["max_uncompressed_bytes", "max_faces", "max_vertices"])
+def test_every_limit_of_the_settings_is_one_of_the_reader(store: JobStore, settings: Settings, limit: str) -> None:
+    job = accepted(store, gzip.compress(sphere(12)))
+    perform(store, settings.model_copy(update={limit: 100}), job.id, ignore)
+    outcome = store.outcome(job.id)
+    assert isinstance(outcome, Failed)
+    assert outcome.code == "limit_exceeded"
+    assert f"{limit} = 100" in outcome.message
