@@ -33,7 +33,9 @@ def lines(request: pytest.FixtureRequest) -> Iterator[list[str]]:
     handler = Lines(request.param)
     log.addHandler(handler)
     log.setLevel(logging.INFO)
+    log.propagate = False  # reports of tests need not hold every character that a line may
     yield handler.lines
+    log.propagate = True
     log.removeHandler(handler)
 
 
