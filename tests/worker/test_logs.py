@@ -4,6 +4,7 @@ import json
 import logging
 import os
 from collections.abc import Iterator
+from contextlib import contextmanager
 
 import pytest
 
@@ -28,15 +29,24 @@ def trace() -> Trace:
     return new_trace()
 
 
-@pytest.fixture(params=[JsonFormatter("worker"), TextFormatter()], ids=["json", "text"])
-def lines(request: pytest.FixtureRequest) -> Iterator[list[str]]:
-    handler = Lines(request.param)
+@contextmanager
+def logging_as(formatter: logging.Formatter) -> Iterator[list[str]]:
+    """The lines that are logged meanwhile."""
+    handler = Lines(formatter)
     log.addHandler(handler)
     log.setLevel(logging.INFO)
-    log.propagate = False  # reports of tests need not hold every character that a line may
-    yield handler.lines
-    log.propagate = True
-    log.removeHandler(handler)
+    log.propagate = False  # reports of tests cannot hold every character that a line may
+    try:
+        yield handler.lines
+    finally:
+        log.propagate = True
+        log.removeHandler(handler)
+
+
+@pytest.fixture(params=[JsonFormatter("worker"), TextFormatter()], ids=["json", "text"])
+def lines(request: pytest.FixtureRequest) -> Iterator[list[str]]:
+    with logging_as(request.param) as lines:
+        yield lines
 
 
 def test_a_line_says_which_job_and_which_trace_it_is_about(lines: list[str], trace: Trace) -> None:
@@ -74,18 +84,14 @@ def test_a_forked_work_horse_logs_about_the_same(trace: Trace) -> None:
 
 
 def test_a_json_line_is_one_line_whatever_is_logged() -> None:
-    handler = Lines(JsonFormatter("service"))
-    log.addHandler(handler)
-    try:
+    with logging_as(JsonFormatter("service")) as lines:
         log.error('a "name"\n{"level": "info"} \ud800 %s', object(), extra={"fields": {"status": 500, "odd": {1, 2}}})
         try:
             raise ValueError("a\nb")
         except ValueError:
             log.exception("failed")
-    finally:
-        log.removeHandler(handler)
-    assert all("\n" not in line for line in handler.lines)
-    first, second = (json.loads(line) for line in handler.lines)
+    assert all("\n" not in line for line in lines)
+    first, second = (json.loads(line) for line in lines)
     assert (first["level"], first["process"], first["status"]) == ("error", "service", 500)
     assert "ValueError" in second["exception"]
 
