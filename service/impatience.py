@@ -9,6 +9,7 @@ from service.headers import SECURITY_HEADERS
 from service.problems import Problem
 
 HEAD_S = 20.0  # from the first byte, or from the connection, to the end of the head
+LONGEST_HEAD_BYTES = 128 * 1024  # of a request; addresses with many splits or names are long
 
 
 class ImpatientProtocol(H11Protocol):
@@ -35,7 +36,9 @@ class ImpatientProtocol(H11Protocol):
 
     def send_400_response(self, msg: str) -> None:  # noqa: ARG002
         """Answer what is no HTTP as every other mistake is answered."""
-        problem = Problem("malformed_request", "This is no request of HTTP/1.1: send it again, well-formed.")
+        most = LONGEST_HEAD_BYTES // 1024
+        sentence = f"This is no request of HTTP/1.1, or its head is longer than {most} KiB: send it again, well-formed."
+        problem = Problem("malformed_request", sentence)
         answer = problem.response({**SECURITY_HEADERS, "Connection": "close"})
         head = h11.Response(status_code=answer.status_code, headers=answer.raw_headers, reason=b"Bad Request")
         for event in (head, h11.Data(data=bytes(answer.body)), h11.EndOfMessage()):

@@ -61,6 +61,7 @@ def _completed(document: dict[str, Any], keys_required: bool) -> dict[str, Any]:
     for path, operations in document["paths"].items():
         for operation in operations.values():
             _correct(operation, keys_required)
+            _add_problem(operation, "malformed_request")
             if path.startswith(_OF_THE_STORE):
                 _add_problem(operation, "store_unavailable")
     if not keys_required:

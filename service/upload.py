@@ -104,6 +104,19 @@ def file_label(file_name: str | None) -> str | None:
     return "".join(character for character in last if character.isprintable())[-_LONGEST_LABEL:].strip() or None
 
 
+def requested_parameters(in_form: bytes | bytearray, in_query: str | None) -> SegmentationParameters:
+    """The parameters of a request, which may stand in the form or in the address.
+
+    Raises
+    ------
+    InvalidParameters
+        Where they stand in both, or are not such as ``parse_parameters`` takes.
+    """
+    if in_form and in_query is not None:
+        raise InvalidParameters("The parameters are in the form and in the address: give them once.")
+    return parse_parameters(in_form or (in_query or "").encode())
+
+
 def parse_parameters(text: bytes | bytearray) -> SegmentationParameters:
     """The parameters of a request, defaults where it has none.
 

@@ -34,7 +34,7 @@ from service.submission_contract import (
     Webhook,
 )
 from service.unpacking import unpack
-from service.upload import FORM_TYPE, parse_parameters, receive_form
+from service.upload import FORM_TYPE, receive_form, requested_parameters
 from service.waiting import wait_for_end
 from worker.jobs import Job, new_job_id, now
 from worker.settings import LONGEST_WAIT_S
@@ -109,9 +109,7 @@ async def create_batch(
             form = await _receive(
                 request, context, media_type, lambda: uploads.enter_context(context.store.begin_upload())
             )
-            wish = Wish(
-                parameters=parse_parameters(form.parameters or (parameters or "").encode()), webhook_url=webhook
-            )
+            wish = Wish(parameters=requested_parameters(form.parameters, parameters), webhook_url=webhook)
             limits = await run_in_threadpool(check_limits, context, caller, len(form.meshes), declared_length(request))
             jobs = await run_in_threadpool(_take_all, context, caller, form, wish)
     else:

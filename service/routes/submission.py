@@ -23,7 +23,7 @@ from service.preference import Preference, read_preference
 from service.problems import documented
 from service.receiving import declared_length
 from service.submission_contract import ANSWERS, BODY, SUBMISSION_PROBLEMS, ParametersInQuery, Webhook
-from service.upload import parse_parameters, receive_mesh, requested_format
+from service.upload import receive_mesh, requested_format, requested_parameters
 from service.waiting import wait_for_end
 from service.webhook import objection_to
 from worker.logs import note_job
@@ -88,7 +88,7 @@ async def create_job(
             request, context.settings, lambda: uploads.enter_context(context.store.begin_upload())
         )
         wish = Wish(
-            parameters=parse_parameters(form.parameters or (parameters or "").encode()),
+            parameters=requested_parameters(form.parameters, parameters),
             mesh_format=declared,
             file_name=file_name,
             webhook_url=webhook,

@@ -110,7 +110,7 @@ def test_a_link_shows_the_same_thing(visit: Visit, job: str) -> None:
     visit.page.mouse.move(400, 280)
     visit.page.mouse.up()
     visit.address("view=")
-    visit.page.wait_for_timeout(600)  # the camera comes to rest and the address follows
+    visit.rest()
     state = visit.viewer(
         """JSON.stringify([v.parts, [...v.selected], [...v.hiddenParts], v.hasAttribute('wireframe'),
            v.getAttribute('explode'), v.getAttribute('up')])"""

@@ -105,6 +105,13 @@ class Visit:
         """Wait until the page has followed the last change."""
         self.page.evaluate("() => new Promise((done) => requestAnimationFrame(() => requestAnimationFrame(done)))")
 
+    def rest(self) -> None:
+        """Wait until the camera has come to rest and the address has followed."""
+        before = None
+        while (now := (self.viewer("JSON.stringify(v.view)"), self.page.url)) != before:
+            before = now
+            self.page.wait_for_timeout(800)
+
     def viewer(self, expression: str) -> Any:
         """The value of an expression about the viewer ``v``."""
         return self.page.evaluate(f"() => {{ const v = document.getElementById('viewer'); return {expression}; }}")

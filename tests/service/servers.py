@@ -9,7 +9,7 @@ import httpx
 import uvicorn
 
 from service.app import create_app
-from service.impatience import ImpatientProtocol
+from service.processes.server import server_config
 from worker.settings import Settings
 from worker.store import JobStore
 from worker.tasks import perform
@@ -20,7 +20,7 @@ def serving(settings: Settings) -> Iterator[httpx.Client]:
     """A client of an application that runs in a thread of this process."""
     # By its descriptor, as in service.processes.server: asyncio sends at once only where it knows the protocol.
     listening = socket.socket(fileno=socket.create_server(("127.0.0.1", 0)).detach())
-    server = uvicorn.Server(uvicorn.Config(create_app(settings), log_config=None, http=ImpatientProtocol))
+    server = uvicorn.Server(server_config(create_app(settings)))
     thread = threading.Thread(target=server.run, kwargs={"sockets": [listening]})
     thread.start()
     try:

@@ -157,3 +157,20 @@ def test_submitting_needs_a_place_in_the_line(client: httpx.Client) -> None:
     assert headers["RateLimit"] == '"jobs";r=999'
     submit(client)
     assert client.post("/v1/jobs", content=b"abcd").headers["RateLimit"] == '"jobs";r=997'
+
+
+def test_parameters_are_given_in_one_place(client: httpx.Client) -> None:
+    answer = client.post(
+        "/v1/jobs",
+        params={"parameters": '{"max_segments": 5}'},
+        data={"parameters": '{"max_segments": 6}'},
+        files={"mesh": ("mesh.off", MESH)},
+    )
+    problem(answer, 422, "invalid_parameters")
+
+
+def test_the_head_of_a_request_may_be_long_but_not_endless(client: httpx.Client) -> None:
+    job = "/v1/jobs/" + "0" * 32
+    splits = ",".join(map(str, range(10_000)))
+    problem(client.get(f"{job}/labels", params={"splits": splits}), 404, "job_not_found")
+    problem(client.get(f"{job}/labels", headers={"X-Long": "0" * 200_000}), 400, "malformed_request")
