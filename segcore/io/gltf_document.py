@@ -37,7 +37,7 @@ class Document:
     def item(self, name: str, index: int) -> Item:
         """Entry ``index`` of an array of the top level."""
         entries = self.root.get(name, [])
-        if not isinstance(entries, list) or index >= len(entries) or not isinstance(entries[index], dict):
+        if not isinstance(entries, list) or not 0 <= index < len(entries) or not isinstance(entries[index], dict):
             raise InvalidMesh(f"The glTF file refers to {name}[{index}], which it does not have.")
         entry: Item = entries[index]
         return entry

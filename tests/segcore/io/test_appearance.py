@@ -245,6 +245,16 @@ def test_an_attribute_that_only_some_primitives_have_is_left_out() -> None:
     assert len(mesh.faces) == 3
 
 
+@pytest.mark.parametrize("accessor", [-1, -100, 10**6])
+def test_an_attribute_in_an_accessor_that_is_not_there_is_left_out(accessor: int) -> None:
+    asset = gltf_with_attributes()
+    asset.root(mesh=0)
+    asset.document["meshes"][0]["primitives"][0]["attributes"]["TEXCOORD_0"] = accessor
+    mesh = read_mesh(io.BytesIO(asset.glb()), appearance=True)
+    assert mesh.appearance.uvs is None
+    assert mesh.appearance.normals is not None
+
+
 def test_normals_without_direction_are_left_out() -> None:
     assert read_mesh(io.BytesIO(OBJ), appearance=True).appearance is None
     data = OFF.replace(b"OFF", b"NOFF").replace(b"0 0 0\n", b"0 0 0 0 0 0\n").replace(b"1 0 0\n", b"1 0 0 0 0 1\n")
