@@ -13,6 +13,7 @@ from service.context import ContextOf
 from service.lookup import check_succeeded, known_job
 from service.problems import documented
 from service.routes.jobs import JobId
+from service.routes.results import NO_RESULT
 
 router = APIRouter(prefix="/v1/jobs/{job_id}", tags=["results"])
 
@@ -31,15 +32,7 @@ _URL_VALID_S = 300.0
             "description": "The file is at an address of the bucket, for five minutes and for whoever knows it.",
             "headers": {"Location": {"schema": {"type": "string", "format": "uri"}}},
         },
-        **documented(
-            "unauthorized",
-            "job_not_found",
-            "job_deleted",
-            "not_finished",
-            "job_failed",
-            "job_canceled",
-            "invalid_request",
-        ),
+        **documented(*NO_RESULT, "invalid_request"),
     },
 )
 def get_result_file(

@@ -1,7 +1,8 @@
 """The segmented mesh as files of other programs, and as a picture."""
 
 import io
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
+from types import MappingProxyType
 from typing import Annotated, Any, BinaryIO, Literal
 
 from fastapi import APIRouter, Query, Request
@@ -12,7 +13,6 @@ from segcore.io.obj_writer import write_obj
 from segcore.io.parts_writer import write_parts
 from segcore.io.ply_writer import write_ply
 from segcore.io.png import write_png
-from segcore.io.result import Segmentation
 from segcore.io.threemf_writer import write_3mf
 from segcore.io.writing import WRITERS
 from segcore.picture import draw
@@ -28,7 +28,6 @@ from service.routes.results import LEVEL_PROBLEMS
 router = APIRouter(prefix="/v1/jobs/{job_id}", tags=["models"])
 
 Capped = Annotated[bool, Query(description="Close every part at its cuts, for printing.")]
-Write = Callable[[BinaryIO, Segmentation, int], None]
 
 _PNG = "image/png"
 _BINARY = {"schema": {"type": "string", "format": "binary"}}
@@ -56,13 +55,8 @@ def get_glb(
     ] = False,
 ) -> Response:
     """The mesh as binary glTF, a named node and a colour for every segment."""
-
-    def write(target: BinaryIO, result: Segmentation, count: int) -> None:
-        choices = {"all_levels": levels == "all", "features": features}
-        write_glb(target, result.mesh, result.hierarchy, count, **choices, names=names)
-
-    options = f"levels={levels or 'one'}&features={features}{named(names)}"
-    return _model(request, context, caller, job_id, "glb", level, write, options)
+    options = {"all_levels": levels == "all", "features": features}
+    return _model(request, context, caller, job_id, "glb", level, names, write_glb, options)
 
 
 @router.get("/model.ply", response_class=Response, responses=_responses("ply"))
@@ -70,11 +64,7 @@ def get_ply(
     job_id: JobId, request: Request, context: ContextOf, caller: CallerOf, level: LevelOf, names: PartNames
 ) -> Response:
     """The mesh as binary PLY with a colour and a label for every face."""
-
-    def write(target: BinaryIO, result: Segmentation, count: int) -> None:
-        write_ply(target, result.mesh, result.hierarchy, count, names=names)
-
-    return _model(request, context, caller, job_id, "ply", level, write, named(names))
+    return _model(request, context, caller, job_id, "ply", level, names, write_ply)
 
 
 @router.get("/model.obj", response_class=Response, responses=_responses("obj"))
@@ -82,11 +72,7 @@ def get_obj(
     job_id: JobId, request: Request, context: ContextOf, caller: CallerOf, level: LevelOf, names: PartNames
 ) -> Response:
     """The mesh as OBJ with a group for every segment."""
-
-    def write(target: BinaryIO, result: Segmentation, count: int) -> None:
-        write_obj(target, result.mesh, result.hierarchy, count, names=names)
-
-    return _model(request, context, caller, job_id, "obj", level, write, named(names))
+    return _model(request, context, caller, job_id, "obj", level, names, write_obj)
 
 
 @router.get("/model.3mf", response_class=Response, responses=_responses("3mf"))
@@ -100,11 +86,7 @@ def get_3mf(
     capped: Capped = False,
 ) -> Response:
     """The mesh as 3MF with an object for every segment."""
-
-    def write(target: BinaryIO, result: Segmentation, count: int) -> None:
-        write_3mf(target, result.mesh, result.hierarchy, count, capped=capped, names=names)
-
-    return _model(request, context, caller, job_id, "3mf", level, write, f"capped={capped}{named(names)}")
+    return _model(request, context, caller, job_id, "3mf", level, names, write_3mf, {"capped": capped})
 
 
 @router.get("/parts.zip", response_class=Response, responses=_responses("zip"))
@@ -119,12 +101,8 @@ def get_parts(
     capped: Capped = False,
 ) -> Response:
     """A ZIP archive with a file for every segment."""
-
-    def write(target: BinaryIO, result: Segmentation, count: int) -> None:
-        write_parts(target, result.mesh, result.hierarchy, count, part_format=part_format, capped=capped, names=names)
-
-    options = f"part_format={part_format}&capped={capped}{named(names)}"
-    return _model(request, context, caller, job_id, "zip", level, write, options)
+    options = {"part_format": part_format, "capped": capped}
+    return _model(request, context, caller, job_id, "zip", level, names, write_parts, options)
 
 
 @router.get(
@@ -164,15 +142,19 @@ def _model(
     job_id: str,
     name: str,
     level: Level,
-    write: Write,
-    options: str,
+    names: dict[int, str],
+    write: Callable[..., None],
+    options: Mapping[str, object] = MappingProxyType({}),
 ) -> Response:
+    """The answer with what a writer of :mod:`segcore.io` makes of a cut, under its keyword arguments ``options``."""
     job = known_job(context, caller, job_id)
     cut = level.of(result_of(context, job))
-    identity = f"{job.id}/{name}?{cut.name}&{options}"
+    chosen = "".join(f"&{option}={value}" for option, value in options.items())
+    identity = f"{job.id}/{name}?{cut.name}{chosen}{named(names)}"
 
     def render() -> bytes:
-        return _written(lambda target: write(target, cut.result, cut.segments))
+        mesh, hierarchy = cut.result.mesh, cut.result.hierarchy
+        return _written(lambda target: write(target, mesh, hierarchy, cut.segments, names=names, **options))
 
     return answer_rendition(
         request,

@@ -19,15 +19,9 @@ from service.routes.jobs import JobId
 
 router = APIRouter(prefix="/v1/jobs/{job_id}", tags=["results"])
 
-RESULT_PROBLEMS = documented(
-    "unauthorized",
-    "job_not_found",
-    "job_deleted",
-    "not_finished",
-    "job_failed",
-    "job_canceled",
-    "range_not_satisfiable",
-)
+# Why there is nothing to be fetched of a job.
+NO_RESULT = ("unauthorized", "job_not_found", "job_deleted", "not_finished", "job_failed", "job_canceled")
+RESULT_PROBLEMS = documented(*NO_RESULT, "range_not_satisfiable")
 LEVEL_PROBLEMS = RESULT_PROBLEMS | documented("invalid_parameters", "invalid_request")
 
 _LABELS_CONTENT: dict[str, Any] = {
