@@ -9,7 +9,7 @@ import pytest
 
 from service.processes.queue_server import QueueServer, embedded_queue_server
 from support import LONG, SMALL, StartWorker, accepted, children_of, sphere, wait_until
-from worker.jobs import Succeeded
+from worker.jobs import Job, Succeeded
 from worker.queue import JobQueue, QueueError, connect_impatiently
 from worker.store import JobStore
 
@@ -46,14 +46,22 @@ def succeeded(store: JobStore, job_id: str) -> bool:
     return isinstance(store.outcome(job_id), Succeeded)
 
 
-def test_a_worker_outlives_its_queue_server_and_works_for_the_next_one(
+def at_work(
     start_worker: StartWorker, store: JobStore, server: Server
-) -> None:
+) -> tuple[JobQueue, subprocess.Popen[bytes], Job]:
+    """A queue, its worker, and the long job that it has begun."""
     queue = JobQueue(connect_impatiently(server.url))
     worker = start_worker(CLEAVE_REDIS_URL=server.url)
     running = accepted(store, sphere(100), **LONG)
     queue.enqueue(running.id, SMALL)
     wait_until(lambda: children_of(worker.pid))
+    return queue, worker, running
+
+
+def test_a_worker_outlives_its_queue_server_and_works_for_the_next_one(
+    start_worker: StartWorker, store: JobStore, server: Server
+) -> None:
+    queue, worker, running = at_work(start_worker, store, server)
     server.lose()
     wait_until(lambda: succeeded(store, running.id))  # nobody else needs to be there for that
     wait_until(lambda: not children_of(worker.pid))
@@ -71,11 +79,7 @@ def test_a_worker_outlives_its_queue_server_and_works_for_the_next_one(
 def test_a_queue_server_that_hangs_does_not_stop_a_job(
     start_worker: StartWorker, store: JobStore, server: Server
 ) -> None:
-    queue = JobQueue(connect_impatiently(server.url))
-    worker = start_worker(CLEAVE_REDIS_URL=server.url)
-    running = accepted(store, sphere(100), **LONG)
-    queue.enqueue(running.id, SMALL)
-    wait_until(lambda: children_of(worker.pid))
+    queue, worker, running = at_work(start_worker, store, server)
     server.process.send_signal(signal.SIGSTOP)
     try:
         wait_until(lambda: succeeded(store, running.id))
