@@ -10,7 +10,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from bench.errors import BenchmarkError
-from bench.metrics import Scores
+from bench.princeton.metrics import Scores
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes

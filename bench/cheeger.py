@@ -11,16 +11,16 @@ from pathlib import Path
 
 import numpy as np
 
-from bench.dataset import Model
 from bench.errors import BenchmarkError
+from bench.princeton.dataset import Model
 from bench.text import format_table
-from segcore.cheeger import Cut
-from segcore.clusters import cluster_nodes
-from segcore.graph import SurfaceGraph, connected_components
-from segcore.mesh_graph import mesh_graph
+from segcore.affinity.mesh_graphs import mesh_graph
+from segcore.clean.surface import build_surface
+from segcore.coarsen.clusters import cluster_nodes
+from segcore.graphs.cheeger import Cut
+from segcore.graphs.surface_graph import SurfaceGraph, connected_components
 from segcore.parameters import SegmentationParameters
-from segcore.solvers import SOLVERS
-from segcore.surface import build_surface
+from segcore.solvers.solvers import SOLVERS
 
 WITHIN = 1.005  # of the best value: a cut that counts as found
 

@@ -13,9 +13,9 @@ from functools import partial
 from multiprocessing import get_context
 from typing import Any, TypeVar
 
-from bench.dataset import Model
 from bench.errors import BenchmarkError
-from bench.evaluation import ModelResult, SegmentChoice, Segmenter, evaluate_model
+from bench.princeton.dataset import Model
+from bench.princeton.evaluation import ModelResult, SegmentChoice, Segmenter, evaluate_model
 
 Item = TypeVar("Item")
 Result = TypeVar("Result")
@@ -58,7 +58,7 @@ def evaluate_models(
 def _evaluate_unseen(
     learned: Mapping[int, Mapping[str, Any]], evaluate: Callable[[Model], ModelResult], model: Model
 ) -> ModelResult:
-    from segcore.learned import LearnedModels, using
+    from segcore.learned.models import LearnedModels, using
 
     with using(LearnedModels.from_document(learned[model.number])):
         return evaluate(model)

@@ -13,8 +13,8 @@ from segcore.errors import CleaveError, InvalidMesh, InvalidParameters, LimitExc
 from segcore.hierarchy import Hierarchy
 from segcore.io import read_mesh
 from segcore.mesh import Mesh
+from segcore.method import segment
 from segcore.parameters import SegmentationParameters
-from segcore.segment import segment
 from segcore.warm_up import warm_up
 
 __all__ = [

@@ -5,11 +5,11 @@ from dataclasses import dataclass
 import numpy as np
 
 from segcore.arrays import BoolArray, FloatArray
-from segcore.graph import connected_components
+from segcore.clean.surface import Surface, build_surface
+from segcore.clean.topology import dual_edges
+from segcore.clean.welding import weld
+from segcore.graphs.surface_graph import connected_components
 from segcore.mesh import Mesh
-from segcore.surface import Surface, build_surface
-from segcore.topology import dual_edges
-from segcore.welding import weld
 
 
 @dataclass(frozen=True, slots=True)

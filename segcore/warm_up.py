@@ -1,10 +1,10 @@
 """Loading of the compiled kernels before they are needed."""
 
 from segcore.io.limits import ReadLimits
-from segcore.io.obj import read_obj
+from segcore.io.obj.reader import read_obj
 from segcore.io.off import read_off
-from segcore.picture import draw
-from segcore.segment import segment
+from segcore.io.picture import draw
+from segcore.method import segment
 from segcore.shapes import burr, icosphere, joined
 
 

@@ -5,20 +5,20 @@ from importlib.metadata import PackageNotFoundError, version
 from fastapi import FastAPI
 from starlette.middleware.cors import CORSMiddleware
 
-from service.access import ForeignSites, LocalNames
-from service.api_keys import key_ring
+from cleave.settings import Settings
 from service.context import Context, QueueView
-from service.headers import HeadRequests, SecurityHeaders
-from service.metrics import Metrics
-from service.observed import ObservedRequests
-from service.openapi import complete
+from service.guard.callers import ForeignSites, LocalNames
+from service.guard.headers import HeadRequests, SecurityHeaders
+from service.keys import key_ring
+from service.openapi.document import complete
 from service.problems import handle_problems
-from service.results import ResultCache
+from service.result_cache import ResultCache
 from service.routes import about, batches, docs_page, files, health, home, jobs, models, results, submission, webhooks
-from worker.queue import JobQueue, connect_impatiently
-from worker.quota import UploadQuota
-from worker.settings import Settings
-from worker.storage.opening import open_store
+from service.telemetry.metrics import Metrics
+from service.telemetry.request_log import ObservedRequests
+from worker.jobs.queue.queue import JobQueue, connect_impatiently
+from worker.jobs.queue.quota import UploadQuota
+from worker.jobs.store.opening import open_store
 
 _EXPOSED_HEADERS = (
     "Location",

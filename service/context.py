@@ -6,19 +6,19 @@ from typing import Annotated
 
 from fastapi import Depends, Request
 
-from service.api_keys import KeyRing
-from service.metrics import Metrics
-from service.results import ResultCache
-from worker.admission import admit
-from worker.jobs import Canceled, Job, Outcome, now
-from worker.queue import Activity, JobQueue, QueueError
-from worker.quota import UploadQuota
-from worker.settings import Settings
-from worker.storage.batches import BatchStore
-from worker.storage.durable import is_disk_full
-from worker.storage.installation_secret import InstallationSecret
-from worker.store import JobStore
-from worker.tallies import Tallies
+from cleave.settings import Settings
+from service.keys import KeyRing
+from service.result_cache import ResultCache
+from service.telemetry.metrics import Metrics
+from worker.jobs.admission import admit
+from worker.jobs.job import Canceled, Job, Outcome, now
+from worker.jobs.objects.durable import is_disk_full
+from worker.jobs.queue.counters import Tallies
+from worker.jobs.queue.queue import Activity, JobQueue, QueueError
+from worker.jobs.queue.quota import UploadQuota
+from worker.jobs.store.batches import BatchStore
+from worker.jobs.store.installation_secret import InstallationSecret
+from worker.jobs.store.store import JobStore
 
 _PAUSE_S = 1.0
 

@@ -7,8 +7,8 @@ from pydantic import BaseModel, Field
 
 from segcore.report import MeshReport
 from service.problems import JobError
-from worker.jobs import Attempt, Canceled, Failed, Job, Outcome, Succeeded
-from worker.queue import Activity
+from worker.jobs.job import Attempt, Canceled, Failed, Job, Outcome, Succeeded
+from worker.jobs.queue.queue import Activity
 
 Status = Literal["queued", "running", "succeeded", "failed", "canceled"]
 

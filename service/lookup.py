@@ -2,14 +2,14 @@
 
 from collections.abc import Sequence
 
+from cleave.logs import note_job
 from segcore.io.result import Segmentation
-from service.access import Caller
 from service.context import Context
 from service.documents import JobDocument, job_document
+from service.guard.callers import Caller
 from service.problems import JobError, Problem
-from worker.jobs import Canceled, Failed, Job, Succeeded
-from worker.logs import note_job
-from worker.store import UnknownJob
+from worker.jobs.job import Canceled, Failed, Job, Succeeded
+from worker.jobs.store.store import UnknownJob
 
 
 def known_job(context: Context, caller: Caller, job_id: str) -> Job:

@@ -14,10 +14,10 @@ from starlette.requests import ClientDisconnect
 from starlette.responses import Response
 
 from segcore.errors import InvalidParameters
-from worker.queue import QueueError
-from worker.storage.durable import is_disk_full
-from worker.storage.objects import StoreError
-from worker.store import UnknownJob
+from worker.jobs.objects.durable import is_disk_full
+from worker.jobs.objects.seam import StoreError
+from worker.jobs.queue.queue import QueueError
+from worker.jobs.store.store import UnknownJob
 
 log = logging.getLogger("cleave.service")
 

@@ -12,11 +12,11 @@ from hypothesis.configuration import set_hypothesis_home_dir
 from redis import Redis
 
 from buckets import CREDENTIALS, s3_server
-from service.processes.queue_server import embedded_queue_server
+from service.host.queue_server import embedded_queue_server
 from support import wait_until
-from worker.queue import JobQueue, connect_impatiently
-from worker.storage.opening import open_folder
-from worker.store import JobStore
+from worker.jobs.queue.queue import JobQueue, connect_impatiently
+from worker.jobs.store.opening import open_folder
+from worker.jobs.store.store import JobStore
 
 # No deadline: the first call of a kernel compiles it. Nothing is left in the folder where the tests run.
 settings.register_profile("repeatable", derandomize=True, deadline=None, database=None)

@@ -6,7 +6,7 @@ import numpy as np
 from hypothesis import strategies as st
 
 from segcore.arrays import BoolArray, FloatArray
-from segcore.graph import SurfaceGraph
+from segcore.graphs.surface_graph import SurfaceGraph
 
 
 def graph_of(

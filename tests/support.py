@@ -8,9 +8,9 @@ from pathlib import Path
 
 import numpy as np
 
-from worker.jobs import Job, new_job_id, now
-from worker.size_class import SizeClass
-from worker.store import JobStore
+from worker.jobs.job import Job, new_job_id, now
+from worker.jobs.size_class import SizeClass
+from worker.jobs.store.store import JobStore
 
 StartWorker = Callable[..., "subprocess.Popen[bytes]"]  # a size class, another program, and settings as keywords
 

@@ -2,8 +2,7 @@
 
 from pathlib import Path
 
-from segcore.io.png import write_png
-from segcore.picture import draw
+from segcore.io.picture import draw, write_png
 from service.samples import SAMPLES, sample_shape
 
 _SIZE = 224  # device pixels

@@ -16,11 +16,11 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from bench.dataset import Model, read_models
-from bench.evaluation import Segmenter
-from bench.metrics import evaluate, mean_scores
-from bench.segmenter import CleaveSegmenter
-from bench.surface import Segmentation, Surface
+from bench.princeton.dataset import Model, read_models
+from bench.princeton.evaluation import Segmenter
+from bench.princeton.metrics import evaluate, mean_scores
+from bench.princeton.segmenter import CleaveSegmenter
+from bench.princeton.surface import Segmentation, Surface
 from bench.text import format_table, number
 
 if TYPE_CHECKING:

@@ -13,8 +13,8 @@ from __future__ import annotations
 import argparse
 from pathlib import Path
 
-from bench.dataset import read_models
 from bench.errors import BenchmarkError
+from bench.princeton.dataset import read_models
 
 SOLVERS = ("flow", "fiedler", "inverse_power", "split_bregman", "p_laplacian")
 

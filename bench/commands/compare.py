@@ -14,9 +14,9 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from bench.errors import BenchmarkError
-from bench.metrics import METRICS
-from bench.results import SavedResults, load_results
-from bench.summary import standard_error_of_mean
+from bench.princeton.metrics import METRICS
+from bench.princeton.results import SavedResults, load_results
+from bench.princeton.summary import standard_error_of_mean
 from bench.text import format_table, number
 
 

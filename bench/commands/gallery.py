@@ -11,8 +11,8 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from bench.dataset import Model, read_models
 from bench.errors import BenchmarkError
+from bench.princeton.dataset import Model, read_models
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -29,7 +29,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 
 
 def run(arguments: argparse.Namespace) -> None:
-    from segcore.io.png import write_png
+    from segcore.io.picture import write_png
 
     models = _chosen(arguments)
     tiles = [_tile(model, arguments.segments == "given", arguments.size) for model in models]
@@ -51,8 +51,8 @@ def _chosen(arguments: argparse.Namespace) -> list[Model]:
 
 
 def _tile(model: Model, given: bool, size: int) -> NDArray[np.uint8]:
-    from segcore import segment
-    from segcore.picture import draw
+    from segcore import method as segment
+    from segcore.io.picture import draw
 
     mesh = model.read_mesh()
     hierarchy = segment(mesh)

@@ -19,12 +19,12 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from bench.dataset import Model, read_models
 from bench.errors import BenchmarkError
 from bench.pool import one_thread_per_process
+from bench.princeton.dataset import Model, read_models
+from bench.princeton.segmenter import CleaveSegmenter
+from bench.princeton.summary import standard_error_of_mean
 from bench.remeshing import VERSIONS, Remeshed, agreement
-from bench.segmenter import CleaveSegmenter
-from bench.summary import standard_error_of_mean
 from bench.text import format_table, number
 
 if TYPE_CHECKING:

@@ -14,14 +14,14 @@ from pathlib import Path
 from tempfile import TemporaryDirectory
 
 from bench.charts import require_matplotlib
-from bench.dataset import read_models
 from bench.errors import BenchmarkError
 from bench.paper.evaluation import MethodResults, evaluate_methods
 from bench.paper.items import ITEMS, Evaluation, bearing
 from bench.paper.label_cache import LabelCache
 from bench.peers import PEERS
 from bench.peers.method import Method
-from bench.results import save_results
+from bench.princeton.dataset import read_models
+from bench.princeton.results import save_results
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:

@@ -11,14 +11,14 @@ import json
 from pathlib import Path
 from typing import get_args
 
-from bench.dataset import read_models
 from bench.errors import BenchmarkError
-from bench.evaluation import SegmentChoice
 from bench.learning.folds import read_folds
 from bench.pool import evaluate_models
-from bench.report import render
-from bench.results import save_results
-from bench.segmenter import CleaveSegmenter
+from bench.princeton.dataset import read_models
+from bench.princeton.evaluation import SegmentChoice
+from bench.princeton.report import render
+from bench.princeton.results import save_results
+from bench.princeton.segmenter import CleaveSegmenter
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:

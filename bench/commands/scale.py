@@ -20,9 +20,9 @@ from multiprocessing import get_context
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from bench.dataset import read_models
 from bench.errors import BenchmarkError
 from bench.pool import one_thread_per_process
+from bench.princeton.dataset import read_models
 from bench.text import format_table, number
 
 if TYPE_CHECKING:
@@ -79,7 +79,7 @@ def cost_of(name: str, make: Callable[[], Mesh], runs: int) -> Cost:
 
 
 def _measure(name: str, make: Callable[[], Mesh]) -> Cost:
-    from segcore.segment import segment
+    from segcore.method import segment
     from segcore.warm_up import warm_up
 
     warm_up()

@@ -1,4 +1,4 @@
-"""Learning where people cut: the data file segcore/learned.json, and how it does on shapes that it has not seen.
+"""Learning where people cut: the data file segcore/learned/models.json, and how it does on shapes that it has not seen.
 
 From all models of the benchmark folder, one file; with --folds also one file for every group of models that was left
 out, for "python -m bench princeton --learned FOLDER". The same folder always gives the same bytes.
@@ -11,23 +11,25 @@ import json
 from pathlib import Path
 from typing import get_args
 
-from bench.dataset import read_models
 from bench.errors import BenchmarkError
 from bench.learning.folds import save_fold
 from bench.learning.training import Grouping, train
+from bench.princeton.dataset import read_models
 
-_SHIPPED = Path(__file__).parents[2] / "segcore" / "learned.json"
+_SHIPPED = Path(__file__).parents[2] / "segcore" / "learned" / "models.json"
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("--data", type=Path, required=True, metavar="DIR", help="the folder of the benchmark")
     parser.add_argument("--limit", type=int, metavar="N", help="only N models, spread evenly over the list")
-    parser.add_argument("--output", type=Path, default=_SHIPPED, metavar="FILE", help="by default segcore/learned.json")
+    parser.add_argument(
+        "--output", type=Path, default=_SHIPPED, metavar="FILE", help="by default segcore/learned/models.json"
+    )
     parser.add_argument(
         "--leave-out",
         choices=get_args(Grouping),
         default="category",
-        help="the models that are left out together: a category (default; segcore/learned.json is made so), or every "
+        help="the models that are left out together: a category (default; segcore/learned/models.json is made so), or every "
         "fifth model",
     )
     parser.add_argument("--folds", type=Path, metavar="FOLDER", help="write what was learned without each group here")

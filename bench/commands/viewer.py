@@ -12,11 +12,11 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from bench.browser import chromium
 from bench.errors import BenchmarkError
-from bench.jobs import finished_job
 from bench.text import format_table, number
-from bench.viewer_pictures import take_pictures
+from bench.viewer.browser import chromium
+from bench.viewer.jobs import finished_job
+from bench.viewer.pictures import take_pictures
 
 if TYPE_CHECKING:
     from playwright.sync_api import Browser, Page

@@ -8,14 +8,14 @@ import numpy as np
 from scipy.spatial import KDTree
 
 from bench.learning.rows import Rows
-from segcore.boundary_model import edge_features, patch_fields
-from segcore.measurements import measure
-from segcore.surface import build_surface
+from segcore.affinity.boundary_features import edge_features, patch_fields
+from segcore.affinity.measurements import measure
+from segcore.clean.surface import build_surface
 
 if TYPE_CHECKING:
-    from bench.dataset import Model
+    from bench.princeton.dataset import Model
     from segcore.arrays import FloatArray, IntArray, LongArray
-    from segcore.surface import Surface
+    from segcore.clean.surface import Surface
 
 ROWS = 1500  # edges of a model that are learned from
 _TOLERANCE = 0.012  # how far a person's cut may be from an edge, in sqrt(total area)

@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from segcore.logistic import LogisticModel, basis
+from segcore.learned.logistic import LogisticModel, basis
 
 if TYPE_CHECKING:
     from segcore.arrays import FloatArray

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any
 from bench.errors import BenchmarkError
 
 if TYPE_CHECKING:
-    from segcore.learned import LearnedModels
+    from segcore.learned.models import LearnedModels
 
 
 @dataclass(frozen=True, slots=True, eq=False)

@@ -7,17 +7,17 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from bench.learning.rows import Rows
-from segcore.assembly import assemble
-from segcore.clusters import cluster_nodes
-from segcore.mesh_graph import mesh_graph
+from segcore.affinity.mesh_graphs import mesh_graph
+from segcore.clean.surface import build_surface
+from segcore.coarsen.assembly import assemble
+from segcore.coarsen.clusters import cluster_nodes
+from segcore.cut.bisection import bisect
+from segcore.cut.features import ClusterFields, Segment
+from segcore.cut.rules import LearnedRule, Split
 from segcore.parameters import SegmentationParameters
-from segcore.recursion import bisect
-from segcore.split_model import ClusterFields, Segment
-from segcore.split_rules import LearnedRule, Split
-from segcore.surface import build_surface
 
 if TYPE_CHECKING:
-    from bench.dataset import Model
+    from bench.princeton.dataset import Model
     from segcore.arrays import FloatArray, IntArray, LongArray
 
 SEGMENTS = 64  # at which the trees that are learned from end

@@ -13,15 +13,15 @@ from bench.learning.fitting import fit
 from bench.learning.folds import Fold
 from bench.learning.splits import cut_rows
 from bench.pool import map_in_processes
-from segcore.boundary_model import FEATURES as EDGE_FEATURES
-from segcore.learned import LearnedModels, using
-from segcore.logistic import LogisticModel
-from segcore.split_model import FEATURES as CUT_FEATURES
+from segcore.affinity.boundary_features import FEATURES as EDGE_FEATURES
+from segcore.cut.features import FEATURES as CUT_FEATURES
+from segcore.learned.logistic import LogisticModel
+from segcore.learned.models import LearnedModels, using
 from segcore.warm_up import warm_up
 
 if TYPE_CHECKING:
-    from bench.dataset import Model
     from bench.learning.rows import Rows
+    from bench.princeton.dataset import Model
 
 Grouping = Literal["category", "fifth"]
 

@@ -38,7 +38,7 @@ class Installation:
 
     def service_pid(self) -> int:
         """The process that answers HTTP."""
-        (pid,) = self.children("service.processes.server")
+        (pid,) = self.children("service.host.http_server")
         return pid
 
 
@@ -83,7 +83,7 @@ def more_workers(installation: Installation, count: int, queue: str) -> Iterator
 
 def cleave(*arguments: str) -> list[str]:
     """The command `cleave` of this checkout."""
-    return [sys.executable, "-m", "service.cli", *arguments]
+    return [sys.executable, "-m", "service.commands", *arguments]
 
 
 def children_of(pid: int) -> list[int]:

@@ -12,7 +12,7 @@ from bench.load.installation import Installation, installed, more_workers
 from bench.load.meshes import wavy_torus
 
 _FINISHED_WITHIN_S = 1800.0
-_PROCESSES = {"service": "service.processes.server", "worker": "worker.process", "janitor": "worker.janitor"}
+_PROCESSES = {"service": "service.host.http_server", "worker": "worker.process", "janitor": "worker.janitor"}
 
 
 @dataclass(frozen=True, slots=True)

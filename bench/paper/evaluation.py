@@ -7,14 +7,14 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import partial
 
-from bench.dataset import Model
 from bench.errors import BenchmarkError
-from bench.evaluation import ModelResult, Run, leave_one_out
-from bench.metrics import evaluate, mean_scores
 from bench.paper.label_cache import LabelCache
 from bench.paper.processes import in_processes
 from bench.peers.method import Method, Outcome
-from bench.surface import Segmentation, Surface
+from bench.princeton.dataset import Model
+from bench.princeton.evaluation import ModelResult, Run, leave_one_out
+from bench.princeton.metrics import evaluate, mean_scores
+from bench.princeton.surface import Segmentation, Surface
 
 
 @dataclass(frozen=True, slots=True)

@@ -10,17 +10,17 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from bench.charts import Bar, metric_chart, save_chart
-from bench.dataset import Model, read_models
 from bench.errors import BenchmarkError
-from bench.metrics import evaluate, mean_scores
 from bench.paper import methods
 from bench.paper.evaluation import MethodResults
 from bench.paper.label_cache import LabelCache
 from bench.paper.pictures import save_picture, side_by_side
 from bench.paper.tables import difference_table, metric_table, rank_table, time_table
 from bench.peers.method import Method
-from bench.summary import overall
-from bench.surface import Segmentation, Surface
+from bench.princeton.dataset import Model, read_models
+from bench.princeton.metrics import evaluate, mean_scores
+from bench.princeton.summary import overall
+from bench.princeton.surface import Segmentation, Surface
 from bench.text import format_table, number
 
 if TYPE_CHECKING:

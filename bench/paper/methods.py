@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 
 from bench.errors import BenchmarkError
 from bench.peers.method import MethodFailed, Outcome, source_digest
-from bench.segmenter import CleaveSegmenter
+from bench.princeton.segmenter import CleaveSegmenter
 
 if TYPE_CHECKING:
     from segcore.hierarchy import Hierarchy

@@ -31,7 +31,7 @@ def side_by_side(mesh: Mesh, segmentations: Sequence[IntArray]) -> Pixels:
     segmentations : (F,) each, labels from 0. A segment has the colour of the one of the first segmentation that it is
         matched with.
     """
-    from segcore.picture import draw
+    from segcore.io.picture import draw
 
     azimuth, elevation = broad_view(mesh)
     alike = [matched(labels, segmentations[0]) for labels in segmentations]
@@ -68,7 +68,7 @@ def save_picture(path: Path, rows: Sequence[Pixels]) -> None:
     BenchmarkError
         Where the file cannot be written.
     """
-    from segcore.io.png import write_png
+    from segcore.io.picture import write_png
 
     widest = max(row.shape[1] for row in rows)
     whole = [np.pad(row, [(0, 0), (0, widest - row.shape[1]), (0, 0)], constant_values=255) for row in rows]

@@ -8,8 +8,8 @@ from collections.abc import Sequence
 
 from bench.commands.compare import paired_difference
 from bench.paper.evaluation import MethodResults
-from bench.report import HEADINGS
-from bench.summary import by_category, overall, standard_error
+from bench.princeton.report import HEADINGS
+from bench.princeton.summary import by_category, overall, standard_error
 from bench.text import format_table, number
 
 # Mean seconds for one model in the paper's Table 2, on a 3 GHz processor, by the keys of the methods here.

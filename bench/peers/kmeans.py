@@ -9,9 +9,9 @@ from typing import TYPE_CHECKING
 import numpy as np
 from scipy.spatial.distance import cdist
 
-from bench import surface
 from bench.peers import pieces
 from bench.peers.method import Outcome, source_digest
+from bench.princeton import surface
 
 if TYPE_CHECKING:
     from segcore.arrays import FloatArray, LongArray

@@ -9,7 +9,7 @@ from scipy.sparse import coo_array
 from scipy.sparse.csgraph import connected_components
 
 if TYPE_CHECKING:
-    from bench.surface import Surface
+    from bench.princeton.surface import Surface
     from segcore.arrays import FloatArray, IntArray, LongArray
 
 

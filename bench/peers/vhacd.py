@@ -9,10 +9,10 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from bench import surface
 from bench.errors import BenchmarkError
 from bench.peers import pieces
 from bench.peers.method import MethodFailed, Outcome, source_digest
+from bench.princeton import surface
 
 if TYPE_CHECKING:
     from segcore.arrays import FloatArray, IntArray, LongArray

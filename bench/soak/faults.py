@@ -76,7 +76,7 @@ _DEEDS: dict[str, Callable[[Installation, random.Random], bool]] = {
     "worker": _kill_worker,
     "worker and work-horse": _kill_both,
     "janitor": _kill_child("worker.janitor"),
-    "service": _kill_child("service.processes.server"),
+    "service": _kill_child("service.host.http_server"),
     QUEUE_SERVER: _kill_child("queue.sock"),
     EMPTIED_QUEUE_SERVER: _empty_queue_server,
 }

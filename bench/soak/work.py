@@ -12,9 +12,9 @@ import httpx
 from bench.errors import BenchmarkError
 from bench.load.installation import Installation
 from bench.load.meshes import wavy_torus
-from worker.jobs import Attempt
-from worker.settings import Settings
-from worker.storage.opening import open_store
+from cleave.settings import Settings
+from worker.jobs.job import Attempt
+from worker.jobs.store.opening import open_store
 
 LARGE_JOB_BYTES = 300_000  # such that the last of the meshes are large
 _FACES = (1_000, 2_500, 5_000, 8_000, 12_000, 25_000, 40_000)

@@ -12,7 +12,7 @@ from segcore.arrays import FloatArray, LongArray
 from segcore.errors import InvalidMesh, UnsupportedFormat
 from segcore.io.limits import ReadLimits
 from segcore.io.polygons import Polygons, mesh_of_polygons, ragged_range
-from segcore.io.text import Words, find_words, plain_text, whole_numbers, without_comments
+from segcore.io.text.words import Words, find_words, plain_text, whole_numbers, without_comments
 from segcore.mesh import Mesh
 
 _KEYWORD = re.compile(rb"\s*+(ST)?(C)?(N)?(4)?(n)?OFF(\s+BINARY)?")

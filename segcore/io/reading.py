@@ -7,14 +7,14 @@ from typing import BinaryIO
 import numpy as np
 
 from segcore.io.formats import declared_format, detect_format
-from segcore.io.gltf import read_gltf
+from segcore.io.gltf.reader import read_gltf
 from segcore.io.limits import ReadLimits
-from segcore.io.obj import read_obj
+from segcore.io.obj.reader import read_obj
 from segcore.io.off import read_off
-from segcore.io.ply import read_ply
+from segcore.io.ply.reader import read_ply
 from segcore.io.source import read_source
-from segcore.io.stl import read_stl
-from segcore.io.threemf import read_3mf
+from segcore.io.stl.reader import read_stl
+from segcore.io.threemf.reader import read_3mf
 from segcore.mesh import Mesh
 
 _READERS: dict[str, Callable[[bytes, ReadLimits, bool], Mesh]] = {

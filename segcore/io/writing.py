@@ -7,13 +7,13 @@ from typing import BinaryIO, TypeAlias
 
 from segcore.errors import UnsupportedFormat
 from segcore.hierarchy import Hierarchy
-from segcore.io.glb import write_glb
+from segcore.io.gltf.writer import write_glb
 from segcore.io.labels import write_json, write_npy, write_seg
-from segcore.io.obj_writer import write_obj
-from segcore.io.parts_writer import write_parts
-from segcore.io.ply_writer import write_ply
+from segcore.io.obj.writer import write_obj
+from segcore.io.parts.writer import write_parts
+from segcore.io.ply.writer import write_ply
 from segcore.io.result import write_result
-from segcore.io.threemf_writer import write_3mf
+from segcore.io.threemf.writer import write_3mf
 from segcore.mesh import Mesh
 
 Write: TypeAlias = Callable[[BinaryIO, Mesh, Hierarchy, int | None], None]

@@ -1,1 +1,1 @@
-"""The commands of `cleave`, a module for each, and what they share. :mod:`service.cli` puts them together."""
+"""The commands of `cleave`, a module for each, and what they share. :mod:`service.commands` puts them together."""

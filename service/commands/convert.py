@@ -4,8 +4,8 @@ from collections.abc import Sequence
 from pathlib import Path
 
 from segcore.io.result import read_result
+from segcore.levels import Fineness
 from service.commands.outputs import OutputOptions, check_outputs, write_model
-from service.fineness import Fineness
 
 
 def convert_file(result: Path, fineness: Fineness, outputs: Sequence[Path], options: OutputOptions) -> list[str]:

@@ -3,14 +3,14 @@
 import os
 from collections.abc import Callable
 
+from cleave.settings import Settings
 from service.doctor.findings import Finding, as_json, as_text, has_errors, warning
 from service.doctor.machine_checks import check_machine
 from service.doctor.queue_checks import check_queue
 from service.doctor.store_checks import check_store
-from service.processes.queue_server import embedded_queue_server
-from worker.queue import QueueError, connect_impatiently
-from worker.settings import Settings
-from worker.vital_signs import living_workers_here
+from service.host.queue_server import embedded_queue_server
+from worker.jobs.queue.queue import QueueError, connect_impatiently
+from worker.jobs.queue.workers import living_workers_here
 
 Say = Callable[[str], None]
 

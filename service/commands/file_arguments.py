@@ -10,7 +10,7 @@ if TYPE_CHECKING:
 
 OUTPUTS = ".glb .ply .obj .3mf .zip .seg .npy .json .cleave"
 
-# Each command imports what it needs when it runs, as in service.cli.
+# Each command imports what it needs when it runs, as in service.commands.
 
 
 def add_fineness(parser: argparse.ArgumentParser, automatic: str) -> None:
@@ -69,9 +69,9 @@ def add_inspect(commands: "Commands", say: Callable[[str], None]) -> None:
 
 
 def _convert(choices: argparse.Namespace, say: Callable[[str], None]) -> None:
+    from segcore.levels import Fineness
     from service.commands.convert import convert_file
     from service.commands.outputs import output_options
-    from service.fineness import Fineness
 
     fineness = Fineness(choices.segments, choices.granularity)
     written = convert_file(choices.result, fineness, choices.output, output_options(choices))

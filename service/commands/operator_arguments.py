@@ -5,8 +5,8 @@ from collections.abc import Callable
 from pathlib import Path
 from typing import TYPE_CHECKING, TypeAlias
 
-from worker.logs import configure_logging
-from worker.settings import Settings, load_settings
+from cleave.logs import configure_logging
+from cleave.settings import Settings, load_settings
 
 if TYPE_CHECKING:
     from service.commands.file_arguments import Commands
@@ -89,7 +89,7 @@ def _work(choices: argparse.Namespace, say: Say) -> int | None:
 
         return check_workers(load_settings(redis_url=choices.redis_url, data_dir=choices.data_dir), say)
     from service.commands.serve import work
-    from worker.size_class import SizeClass
+    from worker.jobs.size_class import SizeClass
 
     _configure_logging()
     only = None if choices.queue == "both" else SizeClass(choices.queue)

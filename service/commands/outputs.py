@@ -7,12 +7,12 @@ from pathlib import Path
 from typing import BinaryIO
 
 from segcore.hierarchy import Hierarchy
-from segcore.io.glb import write_glb
-from segcore.io.parts_writer import PartFormat, write_parts
-from segcore.io.threemf_writer import write_3mf
+from segcore.io.gltf.writer import write_glb
+from segcore.io.parts.writer import PartFormat, write_parts
+from segcore.io.threemf.writer import write_3mf
 from segcore.io.writing import writer_for
 from segcore.mesh import Mesh
-from worker.storage.durable import replace_file
+from worker.jobs.objects.durable import replace_file
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

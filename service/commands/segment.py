@@ -10,9 +10,9 @@ from typing import BinaryIO
 import segcore
 from segcore.io.labels import hierarchy_document, write_seg
 from segcore.io.result import write_result
+from segcore.levels import Fineness
 from service.commands.outputs import OutputOptions, check_outputs, write_file, write_model
 from service.commands.progress_bar import ProgressBar
-from service.fineness import Fineness
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

@@ -8,13 +8,13 @@ from contextlib import ExitStack
 from pathlib import Path
 from urllib.parse import urlsplit
 
-from service.api_keys import key_ring
-from service.processes.programs import api_program, queue_server_program, worker_programs
-from service.processes.queue_server import NoQueueServer, embedded_queue_server, stop_orphan
-from service.processes.supervisor import Program, Supervisor, lock_data
-from worker.settings import InvalidSettings, Settings, load_settings
-from worker.size_class import SizeClass
-from worker.storage.opening import open_store
+from cleave.settings import InvalidSettings, Settings, load_settings
+from service.host.programs import api_program, queue_server_program, worker_programs
+from service.host.queue_server import NoQueueServer, embedded_queue_server, stop_orphan
+from service.host.supervisor import Program, Supervisor, lock_data
+from service.keys import key_ring
+from worker.jobs.size_class import SizeClass
+from worker.jobs.store.opening import open_store
 
 Say = Callable[[str], None]  # tells the person who gave the command
 

@@ -8,10 +8,10 @@ from contextlib import suppress
 from importlib.metadata import version
 from pathlib import Path
 
+from cleave.settings import InvalidSettings, Settings
 from service.app import installed_version
 from service.commands.serve import check_guarded
 from service.doctor.findings import Finding, error, ok, warning
-from worker.settings import InvalidSettings, Settings
 
 _CONNECTIONS = 1024  # that wait to be taken, besides those that are answered
 _BYTES_PER_FACE, _BYTES_AT_LEAST = 400, 500 * 2**20  # of a work-horse, measured on large meshes

@@ -8,8 +8,8 @@ from urllib.parse import SplitResult, urlsplit, urlunsplit
 from redis import Redis
 
 from service.doctor.findings import Finding, error, ok, warning
-from worker.queue import JobQueue, QueueError, connect_impatiently
-from worker.size_class import SizeClass
+from worker.jobs.queue.queue import JobQueue, QueueError, connect_impatiently
+from worker.jobs.size_class import SizeClass
 
 _OLDEST_VERSION = (6, 2)  # that moves entries from list to list atomically
 _CLOCK_S = 2.0

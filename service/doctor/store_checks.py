@@ -7,11 +7,11 @@ import time
 from collections.abc import Iterator
 from pathlib import Path
 
+from cleave.settings import InvalidSettings, Settings
 from service.doctor.findings import Finding, error, ok, warning
 from service.doctor.queue_checks import check_clock
-from worker.settings import InvalidSettings, Settings
-from worker.storage.objects import ObjectStorage
-from worker.storage.opening import open_store
+from worker.jobs.objects.seam import ObjectStorage
+from worker.jobs.store.opening import open_store
 
 _PROBES = "probe"
 _UPLOADS_LEFT = 8  # that a disk has room for before somebody should look at it

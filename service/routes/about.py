@@ -7,9 +7,9 @@ from fastapi import APIRouter
 import segcore.io
 from segcore.io.writing import WRITERS
 from segcore.parameters import parameters_schema
+from service.answer.label_formats import LABELS
 from service.context import ContextOf
 from service.documents import FormatDocument, FormatsDocument
-from service.labels import LABELS
 
 router = APIRouter(prefix="/v1", tags=["about"])
 

@@ -11,35 +11,29 @@ from python_multipart.multipart import parse_options_header
 from starlette.concurrency import run_in_threadpool
 from starlette.responses import Response, StreamingResponse
 
-from service.access import Caller, CallerOf
-from service.answers import NOT_MODIFIED, answer_json
-from service.archiving import ZIP, batch_archive
+from cleave.settings import LONGEST_WAIT_S
+from segcore.levels import Fineness
+from service.answer.archive import ZIP, batch_archive
+from service.answer.level import Granularity
+from service.answer.renditions import NOT_MODIFIED, answer_json
+from service.answer.waiting import wait_for_end
 from service.context import Context, ContextOf
 from service.documents import BatchDocument, BatchedJob, BatchJobs, BatchLinks, JobDocument
-from service.fineness import Fineness
-from service.form import Form, write_capped
-from service.intake import Wish, take_in
-from service.levels import Granularity
-from service.limits import check_limits
+from service.guard.callers import Caller, CallerOf
 from service.lookup import describe_all, known_job
-from service.openapi import PARAMETERS, ref
+from service.openapi.document import PARAMETERS, ref
 from service.problems import Problem, documented
-from service.receiving import declared_length, pieces
 from service.routes.submission import check_webhook
-from service.submission_contract import (
-    MESH_SCHEMA,
-    PARAMETERS_IN_QUERY,
-    SUBMISSION_PROBLEMS,
-    ParametersInQuery,
-    Webhook,
-)
-from service.unpacking import unpack
-from service.upload import FORM_TYPE, receive_form, requested_parameters
-from service.waiting import wait_for_end
-from worker.jobs import Job, new_job_id, now
-from worker.settings import LONGEST_WAIT_S
-from worker.storage.batches import Batch
-from worker.storage.upload import MeshUpload
+from service.submit.body import declared_length, pieces
+from service.submit.contract import MESH_SCHEMA, PARAMETERS_IN_QUERY, SUBMISSION_PROBLEMS, ParametersInQuery, Webhook
+from service.submit.form import Form, write_capped
+from service.submit.intake import Wish, take_in
+from service.submit.limits import check_limits
+from service.submit.request import FORM_TYPE, receive_form, requested_parameters
+from service.submit.zip_archive import unpack
+from worker.jobs.job import Job, new_job_id, now
+from worker.jobs.store.batches import Batch
+from worker.jobs.store.upload import MeshUpload
 
 router = APIRouter(prefix="/v1/batches", tags=["batches"])
 

@@ -3,7 +3,7 @@
 from fastapi import APIRouter, Request
 from starlette.responses import HTMLResponse, Response
 
-from service.reference import html_body
+from service.openapi.reference import html_body
 
 router = APIRouter(include_in_schema=False)
 

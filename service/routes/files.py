@@ -7,9 +7,9 @@ from typing import Annotated, BinaryIO
 from fastapi import APIRouter, Query, Request
 from starlette.responses import Response, StreamingResponse
 
-from service.access import CallerOf
-from service.answers import FOR_EVER, NOT_MODIFIED, entity_tag, is_current
+from service.answer.renditions import FOR_EVER, NOT_MODIFIED, entity_tag, is_current
 from service.context import ContextOf
+from service.guard.callers import CallerOf
 from service.lookup import check_succeeded, known_job
 from service.problems import documented
 from service.routes.jobs import JobId

@@ -4,12 +4,12 @@ from fastapi import APIRouter
 from prometheus_client.exposition import CONTENT_TYPE_PLAIN_1_0_0, generate_latest
 from starlette.responses import Response
 
-from service.access import CallerOf
 from service.context import Context, ContextOf
 from service.documents import Health, Readiness
+from service.guard.callers import CallerOf
 from service.problems import documented
-from worker.queue import QueueError
-from worker.size_class import SizeClass
+from worker.jobs.queue.queue import QueueError
+from worker.jobs.size_class import SizeClass
 
 router = APIRouter(tags=["health"])
 

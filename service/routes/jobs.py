@@ -6,17 +6,17 @@ from fastapi import APIRouter, Header, Path, Query, Request
 from starlette.concurrency import run_in_threadpool
 from starlette.responses import Response, StreamingResponse
 
-from service.access import CallerOf
-from service.answers import NOT_MODIFIED, answer_json
+from cleave.settings import LONGEST_WAIT_S
+from service.answer.events import EVENT_SCHEMA, has_seen_the_end, job_events
+from service.answer.renditions import NOT_MODIFIED, answer_json
+from service.answer.waiting import wait_for_end
 from service.context import ContextOf
 from service.documents import JobDocument, JobPageDocument, Status
+from service.guard.callers import CallerOf
 from service.lookup import describe, describe_all, known_job
 from service.problems import Problem, documented
-from service.routes.events import EVENT_SCHEMA, has_seen_the_end, job_events
-from service.waiting import wait_for_end
-from worker.jobs import Canceled
-from worker.settings import LONGEST_WAIT_S
-from worker.storage.index import CURSOR
+from worker.jobs.job import Canceled
+from worker.jobs.store.index import CURSOR
 
 router = APIRouter(prefix="/v1/jobs", tags=["jobs"])
 

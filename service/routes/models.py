@@ -8,20 +8,19 @@ from typing import Annotated, Any, BinaryIO, Literal
 from fastapi import APIRouter, Query, Request
 from starlette.responses import Response
 
-from segcore.io.glb import write_glb
-from segcore.io.obj_writer import write_obj
-from segcore.io.parts_writer import write_parts
-from segcore.io.ply_writer import write_ply
-from segcore.io.png import write_png
-from segcore.io.threemf_writer import write_3mf
+from segcore.io.gltf.writer import write_glb
+from segcore.io.obj.writer import write_obj
+from segcore.io.parts.writer import write_parts
+from segcore.io.picture import draw, write_png
+from segcore.io.ply.writer import write_ply
+from segcore.io.threemf.writer import write_3mf
 from segcore.io.writing import WRITERS
-from segcore.picture import draw
-from service.access import Caller, CallerOf
-from service.answers import Rendition, answer_rendition, rendition_responses
+from service.answer.level import Level, LevelOf
+from service.answer.part_names import PartNames, named
+from service.answer.renditions import Rendition, answer_rendition, rendition_responses
 from service.context import Context, ContextOf
-from service.levels import Level, LevelOf
+from service.guard.callers import Caller, CallerOf
 from service.lookup import known_job, result_of
-from service.part_names import PartNames, named
 from service.routes.jobs import JobId
 from service.routes.results import LEVEL_PROBLEMS
 

@@ -5,14 +5,14 @@ from typing import Annotated, Any
 from fastapi import APIRouter, Header, Query, Request
 from starlette.responses import Response
 
-from service.access import CallerOf
-from service.answers import Rendition, answer_rendition, rendition_responses
+from service.answer.label_formats import LABELS, LabelsFormat, compact_json, negotiate
+from service.answer.level import LevelOf
+from service.answer.renditions import Rendition, answer_rendition, rendition_responses
 from service.context import ContextOf
 from service.documents import HierarchyDocument, LabelsDocument, RunsDocument
-from service.labels import LABELS, LabelsFormat, compact_json, negotiate
-from service.levels import LevelOf
+from service.guard.callers import CallerOf
 from service.lookup import known_job, result_of
-from service.openapi import ref
+from service.openapi.document import ref
 from service.problems import documented
 from service.result_documents import hierarchy_of
 from service.routes.jobs import JobId

@@ -7,26 +7,26 @@ from fastapi import APIRouter, Header, Query, Request
 from starlette.concurrency import run_in_threadpool
 from starlette.responses import Response
 
+from cleave.logs import note_job
 from segcore.errors import InvalidParameters
 from segcore.io import FORMATS
 from segcore.io.labels import labels_document
-from service.access import Caller, CallerOf
+from segcore.levels import Fineness
+from service.answer.label_formats import compact_json
+from service.answer.level import Granularity
+from service.answer.waiting import wait_for_end
 from service.context import Context, ContextOf
-from service.fineness import Fineness
-from service.form import ReceivedMesh
-from service.intake import Taken, Wish, take_in
-from service.labels import compact_json
-from service.levels import Granularity
-from service.limits import check_limits
+from service.guard.callers import Caller, CallerOf
 from service.lookup import describe, result_of
-from service.preference import Preference, read_preference
 from service.problems import documented
-from service.receiving import declared_length
-from service.submission_contract import ANSWERS, BODY, SUBMISSION_PROBLEMS, ParametersInQuery, Webhook
-from service.upload import receive_mesh, requested_format, requested_parameters
-from service.waiting import wait_for_end
-from service.webhook import objection_to
-from worker.logs import note_job
+from service.submit.body import declared_length
+from service.submit.contract import ANSWERS, BODY, SUBMISSION_PROBLEMS, ParametersInQuery, Webhook
+from service.submit.form import ReceivedMesh
+from service.submit.intake import Taken, Wish, take_in
+from service.submit.limits import check_limits
+from service.submit.preference import Preference, read_preference
+from service.submit.request import receive_mesh, requested_format, requested_parameters
+from worker.webhooks.message import objection_to
 
 router = APIRouter(prefix="/v1/jobs", tags=["jobs"])
 

@@ -2,12 +2,12 @@
 
 from fastapi import APIRouter
 
-from service.access import CallerOf
 from service.context import ContextOf
 from service.documents import WebhookSecret
+from service.guard.callers import CallerOf
 from service.problems import documented
-from service.processes.courier import webhook_secret
-from service.webhook import shown_secret
+from worker.webhooks.delivery import webhook_secret
+from worker.webhooks.message import shown_secret
 
 router = APIRouter(prefix="/v1/webhooks", tags=["webhooks"])
 

@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from bench.errors import BenchmarkError
-from bench.surface import Surface
+from bench.princeton.surface import Surface
 from segcore.mesh import Mesh
 
 

@@ -7,8 +7,8 @@ import pytest
 from strips import EvenSegmenter, cut_at, strip
 
 from bench.commands.boundaries import CutLengths, length_of_cuts, measure, render
-from bench.dataset import Model
-from bench.surface import Surface
+from bench.princeton.dataset import Model
+from bench.princeton.surface import Surface
 from segcore.mesh import Mesh
 
 COLUMNS = 12

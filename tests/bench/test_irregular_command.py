@@ -5,7 +5,7 @@ import pytest
 from strips import cut_at, strip
 
 from bench.commands.irregular import render
-from bench.dataset import Model
+from bench.princeton.dataset import Model
 from bench.remeshing import VERSIONS, Remeshed, agreement, areas, refined
 from segcore import shapes
 from segcore.mesh import Mesh

@@ -9,9 +9,7 @@ import pytest
 from paper_models import SHAPES, Slices, write_benchmark
 
 from bench.charts import PANELS, Bar, metric_chart
-from bench.dataset import read_models
 from bench.errors import BenchmarkError
-from bench.evaluation import evaluate_model
 from bench.paper.evaluation import MethodResults, evaluate_methods
 from bench.paper.label_cache import LabelCache
 from bench.paper.pictures import broad_view, matched, side_by_side
@@ -19,8 +17,10 @@ from bench.paper.processes import one_thread
 from bench.paper.tables import PAPER_SECONDS, difference_table, metric_table, rank_table, ranks, time_table
 from bench.peers.method import Method, Outcome, source_digest
 from bench.pool import THREAD_SETTINGS
-from bench.results import load_results, save_results
-from bench.summary import overall
+from bench.princeton.dataset import read_models
+from bench.princeton.evaluation import evaluate_model
+from bench.princeton.results import load_results, save_results
+from bench.princeton.summary import overall
 from segcore.mesh import Mesh
 from segcore.shapes import box
 

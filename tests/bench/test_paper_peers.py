@@ -14,7 +14,7 @@ from bench.peers.kmeans import KMeans, weighted_kmeans
 from bench.peers.method import MethodFailed
 from bench.peers.pieces import keep_largest_pieces
 from bench.peers.vhacd import VHacd, distance_to_hull
-from bench.surface import Surface
+from bench.princeton.surface import Surface
 from meshes import pieces_of_labels
 from segcore.shapes import box, burr, dumbbell
 

@@ -10,13 +10,13 @@ from strips import EvenSegmenter, cut_at, strip
 
 from bench.__main__ import main
 from bench.commands.compare import paired_difference
-from bench.dataset import read_models
 from bench.errors import BenchmarkError
-from bench.evaluation import ModelResult, Segmenter, evaluate_model
-from bench.metrics import METRICS
 from bench.pool import evaluate_models
-from bench.report import render
-from bench.results import load_results, save_results
+from bench.princeton.dataset import read_models
+from bench.princeton.evaluation import ModelResult, Segmenter, evaluate_model
+from bench.princeton.metrics import METRICS
+from bench.princeton.report import render
+from bench.princeton.results import load_results, save_results
 
 COLUMNS = 12
 # Two categories of different size, so that the mean over models and that over categories differ.

@@ -6,10 +6,10 @@ from pathlib import Path
 
 import pytest
 
-from bench.dataset import Model, read_labels, read_models
-from bench.evaluation import leave_one_out
-from bench.metrics import evaluate, mean_scores
-from bench.surface import Segmentation, Surface
+from bench.princeton.dataset import Model, read_labels, read_models
+from bench.princeton.evaluation import leave_one_out
+from bench.princeton.metrics import evaluate, mean_scores
+from bench.princeton.surface import Segmentation, Surface
 
 TOLERANCE = 1e-9
 PAIR = ("model", "candidate", "reference")

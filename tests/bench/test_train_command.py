@@ -7,14 +7,14 @@ import numpy as np
 import pytest
 
 from bench.__main__ import main
-from bench.dataset import read_models
 from bench.learning.boundaries import boundary_rows, cut_share
 from bench.learning.fitting import fit
 from bench.learning.folds import read_folds
+from bench.princeton.dataset import read_models
 from segcore import shapes
-from segcore.learned import LearnedModels
-from segcore.logistic import basis
-from segcore.surface import build_surface
+from segcore.clean.surface import build_surface
+from segcore.learned.logistic import basis
+from segcore.learned.models import LearnedModels
 
 
 @pytest.fixture

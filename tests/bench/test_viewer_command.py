@@ -5,9 +5,9 @@ from pathlib import Path
 
 import pytest
 
-from bench.browser import chromium
 from bench.commands.viewer import Figures, render, run
 from bench.errors import BenchmarkError
+from bench.viewer.browser import chromium
 
 
 def test_the_table_has_the_median_and_the_longest_update() -> None:

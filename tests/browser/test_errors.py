@@ -83,9 +83,9 @@ def test_a_service_that_is_killed_is_waited_for_until_it_is_back(visit: Visit, i
     try:
         with visit.page.expect_response("**/v1/jobs"):
             visit.drop("survivor.ply", small_burr() + b"       ")
-        (service,) = installation.children("service.processes.server")
+        (service,) = installation.children("service.host.http_server")
         os.kill(service, signal.SIGKILL)
-        wait_until(lambda: installation.children("service.processes.server") not in ([service], []))
+        wait_until(lambda: installation.children("service.host.http_server") not in ([service], []))
     finally:
         os.kill(worker, signal.SIGCONT)
     visit.wait_for_parts()

@@ -9,7 +9,7 @@ from browser.conftest import NewVisit
 from browser.test_access import violations
 from browser.visit import Visit
 from end_to_end.installation import Installation
-from service.api_keys import key_digest
+from service.keys import key_digest
 
 ANNA, BERTA = "cleave_anna", "cleave_berta"
 

@@ -6,11 +6,11 @@ import httpx
 
 from browser.meshes import small_burr
 from browser.visit import Visit
+from cleave.settings import Settings
 from end_to_end.installation import Installation
 from support import accepted
-from worker.settings import Settings
-from worker.storage.opening import open_store
-from worker.tasks import perform
+from worker.jobs.store.opening import open_store
+from worker.process.perform import perform
 
 
 def test_a_dropped_mesh_is_sent_followed_and_shown(visit: Visit, installation: Installation) -> None:

@@ -7,8 +7,8 @@ import pytest
 from redis import Redis
 from servers import serving, working
 
-from worker.settings import Settings
-from worker.store import JobStore
+from cleave.settings import Settings
+from worker.jobs.store.store import JobStore
 
 
 @pytest.fixture

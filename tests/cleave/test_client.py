@@ -8,8 +8,8 @@ import httpx
 import numpy as np
 import pytest
 
-from cleave.client import AsyncClient, Client
-from cleave.errors import JobEnded, RequestRefused, ServerUnreachable
+from cleave.client.errors import JobEnded, RequestRefused, ServerUnreachable
+from cleave.client.sync_client import AsyncClient, Client
 from support import sphere
 
 

@@ -5,8 +5,8 @@ from pathlib import Path
 
 import pytest
 
-from cleave.client import Client
-from service.cli import main
+from cleave.client.sync_client import Client
+from service.commands.main import main
 from support import sphere
 
 

@@ -7,8 +7,8 @@ from typing import Any
 import pytest
 import yaml
 
+from cleave.settings import Settings
 from deploy.dockerfile import parse
-from worker.settings import Settings
 
 ROOT = Path(__file__).parents[2]
 COMPOSE = yaml.safe_load((ROOT / "docker-compose.yml").read_text())

@@ -5,11 +5,11 @@ from pathlib import Path
 
 import pytest
 
-from service.metrics import Metrics
+from cleave.settings import Settings
 from service.problems import STATUS
-from worker.queue import JobQueue
-from worker.settings import Settings
-from worker.store import JobStore
+from service.telemetry.metrics import Metrics
+from worker.jobs.queue.queue import JobQueue
+from worker.jobs.store.store import JobStore
 
 ROOT = Path(__file__).parents[2]
 OPERATIONS = (ROOT / "docs" / "operations.md").read_text()

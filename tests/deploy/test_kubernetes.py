@@ -7,9 +7,9 @@ import kubernetes_validate
 import pytest
 import yaml
 
-from worker.queue import QUEUE_NAMES
-from worker.settings import Settings
-from worker.size_class import SizeClass
+from cleave.settings import Settings
+from worker.jobs.queue.queue import QUEUE_NAMES
+from worker.jobs.size_class import SizeClass
 
 FOLDER = Path(__file__).parents[2] / "deploy" / "kubernetes"
 KUSTOMIZATION = yaml.safe_load((FOLDER / "kustomization.yaml").read_text())

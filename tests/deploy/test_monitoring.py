@@ -8,12 +8,12 @@ import pytest
 import yaml
 from redis import Redis
 
-from service.metrics import Metrics
+from service.telemetry.metrics import Metrics
 from support import accepted
-from worker.jobs import Failed, Succeeded, now
-from worker.queue import JobQueue
-from worker.store import JobStore
-from worker.tallies import Tallies
+from worker.jobs.job import Failed, Succeeded, now
+from worker.jobs.queue.counters import Tallies
+from worker.jobs.queue.queue import JobQueue
+from worker.jobs.store.store import JobStore
 
 FOLDER = Path(__file__).parents[2] / "deploy"
 DASHBOARD = json.loads((FOLDER / "grafana" / "cleave.json").read_text())

@@ -49,7 +49,7 @@ class Installation:
     def command(self, *arguments: str) -> "subprocess.Popen[str]":
         """Start the command `cleave` with the data folder of this installation."""
         return subprocess.Popen(
-            [sys.executable, "-m", "service.cli", *arguments],
+            [sys.executable, "-m", "service.commands", *arguments],
             env=os.environ | self.settings | {"CLEAVE_DATA_DIR": str(self.data_dir)},
             stdout=subprocess.PIPE,
             text=True,
@@ -158,7 +158,7 @@ class LoggingInstallation(Installation):
     def command(self, *arguments: str) -> "subprocess.Popen[str]":
         with self.log.open("ab") as log:
             return subprocess.Popen(
-                [sys.executable, "-m", "service.cli", *arguments],
+                [sys.executable, "-m", "service.commands", *arguments],
                 env=os.environ | self.settings | {"CLEAVE_DATA_DIR": str(self.data_dir)},
                 stdout=subprocess.PIPE,
                 stderr=log,

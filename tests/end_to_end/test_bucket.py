@@ -10,8 +10,8 @@ import httpx
 from buckets import below
 from end_to_end.installation import Installation
 from support import sphere, wait_until
-from worker.jobs import new_job_id
-from worker.storage.opening import open_url
+from worker.jobs.job import new_job_id
+from worker.jobs.store.opening import open_url
 
 
 def in_bucket(url: str) -> Installation:
@@ -41,7 +41,7 @@ def test_jobs_outlive_the_machine_that_took_them_in(s3_url: str, tmp_path: Path)
 
 def test_a_bucket_that_is_not_there_is_said_at_the_start(s3_url: str, tmp_path: Path) -> None:
     wrong = {"CLEAVE_STORE_URL": s3_url.replace("cleave-test", "no-such-bucket"), "CLEAVE_DATA_DIR": str(tmp_path)}
-    command = [sys.executable, "-m", "service.cli", "serve", "--port", "0"]
+    command = [sys.executable, "-m", "service.commands", "serve", "--port", "0"]
     ended = subprocess.run(command, env=os.environ | wrong, capture_output=True, text=True)
     assert ended.returncode == 2
     assert "There is no such bucket" in ended.stderr

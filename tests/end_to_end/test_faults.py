@@ -11,7 +11,7 @@ import pytest
 
 from end_to_end.installation import Installation
 from support import LONG, children_of, sphere, wait_until
-from worker.jobs import now
+from worker.jobs.job import now
 
 
 def test_a_job_whose_worker_and_work_horse_are_killed_together_runs_again_within_thirty_seconds() -> None:

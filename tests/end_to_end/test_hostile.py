@@ -48,7 +48,7 @@ def test_hostile_files_hurt_nothing_but_their_jobs(tmp_path: Path, target: socke
     with AuditedInstallation(notes) as installation:
         submit(installation, "warm.off", sphere(12))
         wait_until(lambda: ended(installation))
-        (service,) = installation.children("service.processes.server")
+        (service,) = installation.children("service.host.http_server")
         before = memory_bytes(service, "VmRSS")
         expected = {
             submit(installation, name, content): (name, codes)
@@ -58,7 +58,7 @@ def test_hostile_files_hurt_nothing_but_their_jobs(tmp_path: Path, target: socke
         wait_until(lambda: ended(installation), within_s=120)
         found = {name: code_of(installation, path) for path, (name, _) in expected.items()}
         assert not {name: found[name] for name, codes in expected.values() if found[name] not in codes}
-        assert installation.children("service.processes.server") == [service]
+        assert installation.children("service.host.http_server") == [service]
         assert memory_bytes(service, "VmHWM") - before < GROWTH_BYTES
         assert max(work_horse_bytes(installation)) < MEMORY_BYTES
         assert code_of(installation, submit(installation, "fine.off", sphere(12)), wait=True) is None

@@ -12,15 +12,15 @@ from redis import Redis
 
 from buckets import CREDENTIALS
 from end_to_end.hosts import Host, Network, can_make_hosts
-from service.processes.queue_server import find_server_binary
+from service.host.queue_server import find_server_binary
 from support import LONG, sphere, wait_until
-from worker.storage.opening import open_url
-from worker.store import JobStore
-from worker.vital_signs import living_workers
+from worker.jobs.queue.workers import living_workers
+from worker.jobs.store.opening import open_url
+from worker.jobs.store.store import JobStore
 
 pytestmark = pytest.mark.skipif(not can_make_hosts(), reason="network namespaces need the rights of root")
 
-CLEAVE = [sys.executable, "-m", "service.cli"]
+CLEAVE = [sys.executable, "-m", "service.commands"]
 JOBS = 6
 
 

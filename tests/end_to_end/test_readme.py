@@ -9,8 +9,8 @@ from pathlib import Path
 
 import pytest
 
+from cleave.settings import Settings
 from end_to_end.installation import Installation
-from worker.settings import Settings
 
 ADDRESS = "http://127.0.0.1:8000"
 README = Path(__file__).parents[2] / "README.md"
@@ -48,7 +48,7 @@ def test_the_walk_through_with_curl_works_as_pasted_and_so_do_the_ways_without_a
     assert len(set((tmp_path / "burr.seg").read_text().split())) == 7
 
     (tmp_path / "parts.glb").unlink()
-    segment = block("sh", "cleave segment").replace("cleave segment", f"{sys.executable} -m service.cli segment")
+    segment = block("sh", "cleave segment").replace("cleave segment", f"{sys.executable} -m service.commands segment")
     assert "7" in run(["bash", "-euc", segment], tmp_path)
     assert (tmp_path / "parts.glb").read_bytes()[:4] == b"glTF"
     assert len(set((tmp_path / "labels.seg").read_text().split())) == 7
@@ -64,7 +64,7 @@ def check_the_clients(url: str, folder: Path) -> None:
     assert run([sys.executable, "-c", python], folder).startswith("7 [")
     assert (folder / "parts.glb").read_bytes()[:4] == b"glTF"
 
-    submit = block("sh", "cleave submit").replace("cleave submit", f"{sys.executable} -m service.cli submit")
+    submit = block("sh", "cleave submit").replace("cleave submit", f"{sys.executable} -m service.commands submit")
     run(["bash", "-euc", f"{submit.strip()} --server {url}"], folder)
     assert len(set((folder / "results" / "burr.seg").read_text().split())) == 7
 

@@ -111,7 +111,7 @@ def test_a_large_upload_is_never_whole_in_memory(installation: Installation) -> 
             yield bytes(2**20)
         yield b"\r\n--b--\r\n"
 
-    (service,) = installation.children("service.processes.server")
+    (service,) = installation.children("service.host.http_server")
     before = peak_bytes(service)
     content_type = {"Content-Type": "multipart/form-data; boundary=b"}
     answer = httpx.post(f"{installation.url}/v1/jobs", content=megabytes(), headers=content_type, timeout=120)
@@ -134,7 +134,7 @@ def test_a_wiped_queue_loses_no_job(installation: Installation) -> None:
     wait_until(lambda: installation.statuses(paths) == {"succeeded"})
 
 
-@pytest.mark.parametrize("name", ["service.processes.server", "worker.janitor"])
+@pytest.mark.parametrize("name", ["service.host.http_server", "worker.janitor"])
 def test_a_killed_process_is_replaced(installation: Installation, name: str) -> None:
     (killed,) = installation.children(name)
     os.kill(killed, signal.SIGKILL)

@@ -1,12 +1,12 @@
 import numpy as np
 
 from segcore import shapes
-from segcore.affinity import concavity
-from segcore.edge_geometry import dihedral_angles, edge_lengths
-from segcore.measurements import measure
+from segcore.affinity.affinities import concavity
+from segcore.affinity.measurements import measure
+from segcore.clean.edge_geometry import dihedral_angles, edge_lengths
+from segcore.clean.surface import build_surface
 from segcore.mesh import Mesh
 from segcore.parameters import SegmentationParameters
-from segcore.surface import build_surface
 
 
 def test_the_edges_of_a_box_bend_by_a_right_angle_and_none_is_concave():

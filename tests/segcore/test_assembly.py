@@ -4,8 +4,8 @@ import pytest
 from meshes import agreement, areas, moved, refined
 from segcore import shapes
 from segcore.mesh import Mesh
+from segcore.method import segment
 from segcore.parameters import SegmentationParameters
-from segcore.segment import segment
 
 box = shapes.box
 

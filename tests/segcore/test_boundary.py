@@ -7,15 +7,15 @@ from hypothesis import strategies as st
 
 from meshes import agreement, areas, rotation
 from segcore import shapes
-from segcore.boundary import BAND, draw_boundaries
-from segcore.edge_geometry import edge_lengths
-from segcore.graph import connected_components
+from segcore.affinity.mesh_graphs import mesh_graph
+from segcore.clean.edge_geometry import edge_lengths
+from segcore.clean.surface import build_surface
+from segcore.coarsen.contacts import Links
+from segcore.graphs.surface_graph import connected_components
+from segcore.graphs.tree import Tree
+from segcore.label.boundary import BAND, draw_boundaries
 from segcore.mesh import Mesh
-from segcore.mesh_graph import mesh_graph
 from segcore.parameters import SegmentationParameters
-from segcore.proximity import Links
-from segcore.surface import build_surface
-from segcore.tree import Tree
 
 
 def plain(mesh):
@@ -76,7 +76,7 @@ SPHERE, SPHERE_FACES = plain(shapes.icosphere(3))
 def test_every_part_stays_connected_and_none_vanishes(leaves, seed, band):
     tree = grown_tree(SPHERE_FACES.graph, leaves, seed)
     with pytest.MonkeyPatch.context() as patch:
-        patch.setattr("segcore.boundary.BAND", band)
+        patch.setattr("segcore.label.boundary.BAND", band)
         drawn = draw_boundaries(tree, SPHERE_FACES, Links.none(), SPHERE)
     assert len(drawn.split_node) == len(tree.split_node)
     for members in nodes_of(drawn):

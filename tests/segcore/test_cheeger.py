@@ -4,8 +4,8 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from graphs import graphs, laplacian
-from segcore.cheeger import Criterion, cut_of, cut_weight, ncc, ncut, sweep
-from segcore.graph import SurfaceGraph
+from segcore.graphs.cheeger import Criterion, cut_of, cut_weight, ncc, ncut, sweep
+from segcore.graphs.surface_graph import SurfaceGraph
 
 
 @given(graphs(connected=False), st.data())

@@ -2,8 +2,8 @@ import numpy as np
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from segcore.coarsen import coarsen
-from segcore.graph import SurfaceGraph, connected_components
+from segcore.coarsen.matching import coarsen
+from segcore.graphs.surface_graph import SurfaceGraph, connected_components
 
 
 @st.composite

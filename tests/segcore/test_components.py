@@ -1,6 +1,6 @@
 import numpy as np
 
-from segcore.components import group_by_nearness, largest, nearest_hosts
+from segcore.coarsen.components import group_by_nearness, largest, nearest_hosts
 
 
 def blob(at, count, rng):

@@ -4,10 +4,17 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from segcore import shapes
-from segcore.concavity import DEEP, _mahalanobis, _region_statistics, cleaned_up, concave_vertices, z_scores
-from segcore.curvature import PrincipalCurvatures, principal_curvatures
-from segcore.graph import rows_of
-from segcore.topology import mesh_edges
+from segcore.affinity.concave_regions import (
+    DEEP,
+    _mahalanobis,
+    _region_statistics,
+    cleaned_up,
+    concave_vertices,
+    z_scores,
+)
+from segcore.affinity.curvature import PrincipalCurvatures, principal_curvatures
+from segcore.clean.topology import mesh_edges
+from segcore.graphs.surface_graph import rows_of
 
 BURR = shapes.burr(5).mesh
 CURVATURES = principal_curvatures(BURR.vertices, BURR.faces)

@@ -2,7 +2,7 @@ import numpy as np
 import pytest
 
 from segcore import shapes
-from segcore.curvature import principal_curvatures
+from segcore.affinity.curvature import principal_curvatures
 
 
 @pytest.mark.parametrize("radius", [0.1, 1.0, 30.0])

@@ -6,9 +6,9 @@ from scipy.linalg import eigh
 
 from graphs import best_ncc, cycle, graph_of, graphs, laplacian, mesh_like, path, two_cliques
 from segcore.arrays import FloatArray
-from segcore.cheeger import sweep
-from segcore.fiedler import fiedler_vectors
-from segcore.graph import SurfaceGraph
+from segcore.graphs.cheeger import sweep
+from segcore.graphs.surface_graph import SurfaceGraph
+from segcore.solvers.fiedler import fiedler_vectors
 
 
 def rayleigh_quotients(graph: SurfaceGraph, vectors: FloatArray) -> FloatArray:

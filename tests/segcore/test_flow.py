@@ -4,10 +4,10 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from graphs import all_sides, best_ncc, cuts, cycle, graphs, grid, mesh_like, path, two_cliques
-from segcore.cheeger import cut_of, ncc, sweep
-from segcore.fiedler import fiedler_vectors
-from segcore.flow import flow_cut, improve
-from segcore.graph import SurfaceGraph
+from segcore.graphs.cheeger import cut_of, ncc, sweep
+from segcore.graphs.surface_graph import SurfaceGraph
+from segcore.solvers.fiedler import fiedler_vectors
+from segcore.solvers.flow import flow_cut, improve
 
 
 @st.composite

@@ -4,7 +4,7 @@ from hypothesis import strategies as st
 from scipy.sparse.csgraph import connected_components as scipy_components
 
 from graphs import graphs, laplacian
-from segcore.graph import SurfaceGraph, connected_components
+from segcore.graphs.surface_graph import SurfaceGraph, connected_components
 
 
 @given(graphs(connected=False))

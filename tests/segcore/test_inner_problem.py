@@ -5,9 +5,9 @@ from hypothesis import strategies as st
 
 from graphs import all_sides, cuts, graphs
 from segcore.arrays import FloatArray
-from segcore.cheeger import balance_subgradient, cut_of
-from segcore.graph import SurfaceGraph
-from segcore.inner_problem import InnerProblem
+from segcore.graphs.cheeger import balance_subgradient, cut_of
+from segcore.graphs.surface_graph import SurfaceGraph
+from segcore.solvers.inner_problem import InnerProblem
 
 
 @st.composite

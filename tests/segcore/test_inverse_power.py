@@ -5,11 +5,11 @@ from hypothesis import strategies as st
 
 from graphs import best_ncc, cycle, graphs, grid, mesh_like, path, two_cliques
 from segcore.arrays import FloatArray
-from segcore.cheeger import balance_subgradient, sweep
-from segcore.fiedler import fiedler_vectors
-from segcore.graph import SurfaceGraph
-from segcore.inner_problem import InnerProblem
-from segcore.inverse_power import inverse_power_cut
+from segcore.graphs.cheeger import balance_subgradient, sweep
+from segcore.graphs.surface_graph import SurfaceGraph
+from segcore.solvers.fiedler import fiedler_vectors
+from segcore.solvers.inner_problem import InnerProblem
+from segcore.solvers.inverse_power import inverse_power_cut
 
 
 def functional(graph: SurfaceGraph, values: FloatArray) -> float:

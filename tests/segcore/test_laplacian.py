@@ -4,8 +4,8 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from graphs import graph_of, graphs, laplacian, mesh_like
-from segcore.graph import SurfaceGraph, connected_components
-from segcore.laplacian import factorise
+from segcore.graphs.laplacian import factorise
+from segcore.graphs.surface_graph import SurfaceGraph, connected_components
 
 
 @given(graphs(most_nodes=14, connected=False))

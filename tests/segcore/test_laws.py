@@ -9,7 +9,7 @@ import pytest
 from meshes import agreement, areas, refined, rotation
 from segcore import shapes
 from segcore.mesh import Mesh
-from segcore.segment import segment
+from segcore.method import segment
 
 SHAPES = {
     "burr": shapes.burr(4),

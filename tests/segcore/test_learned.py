@@ -3,9 +3,12 @@ import json
 import numpy as np
 import pytest
 
-from segcore import boundary_model, segment, shapes, split_model
-from segcore.learned import LearnedModels, learned_models, using
-from segcore.logistic import LogisticModel
+from segcore import method as segment
+from segcore import shapes
+from segcore.affinity import boundary_features as boundary_model
+from segcore.cut import features as split_model
+from segcore.learned.logistic import LogisticModel
+from segcore.learned.models import LearnedModels, learned_models, using
 from segcore.parameters import SegmentationParameters
 
 

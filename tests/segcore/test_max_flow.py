@@ -3,8 +3,8 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from graphs import all_sides, cuts, graphs, mesh_like
-from segcore.graph import SurfaceGraph
-from segcore.max_flow import Network
+from segcore.graphs.max_flow import Network
+from segcore.graphs.surface_graph import SurfaceGraph
 
 
 @given(graphs(), st.data())

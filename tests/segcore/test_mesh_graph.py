@@ -3,15 +3,15 @@ import pytest
 
 from meshes import agreement, areas, pieces_of_labels
 from segcore import shapes
-from segcore.concavity import z_scores
-from segcore.curvature import principal_curvatures
+from segcore.affinity.concave_regions import z_scores
+from segcore.affinity.curvature import principal_curvatures
+from segcore.affinity.mesh_graphs import mesh_graph
+from segcore.clean.surface import build_surface
 from segcore.errors import InvalidParameters
-from segcore.graph import connected_components
+from segcore.graphs.surface_graph import connected_components
 from segcore.mesh import Mesh
-from segcore.mesh_graph import mesh_graph
+from segcore.method import segment
 from segcore.parameters import SegmentationParameters
-from segcore.segment import segment
-from segcore.surface import build_surface
 
 BURR = shapes.burr(4)
 

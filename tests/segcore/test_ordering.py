@@ -1,9 +1,9 @@
 from hypothesis import given
 
 from graphs import graph_of, graphs, grid
-from segcore.graph import SurfaceGraph
-from segcore.laplacian import factorise
-from segcore.ordering import minimum_degree
+from segcore.graphs.laplacian import factorise
+from segcore.graphs.ordering import minimum_degree
+from segcore.graphs.surface_graph import SurfaceGraph
 
 
 @given(graphs(most_nodes=14, connected=False))

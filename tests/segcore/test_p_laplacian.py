@@ -7,11 +7,11 @@ from scipy.optimize import minimize_scalar
 
 from graphs import all_sides, best_ncc, cuts, cycle, graphs, laplacian, mesh_like, path, two_cliques
 from segcore.arrays import FloatArray
-from segcore.cheeger import sweep
 from segcore.errors import InvalidParameters
-from segcore.fiedler import fiedler_vectors
-from segcore.graph import SurfaceGraph
-from segcore.p_laplacian import minimise, p_laplacian_cut, rayleigh_quotient
+from segcore.graphs.cheeger import sweep
+from segcore.graphs.surface_graph import SurfaceGraph
+from segcore.solvers.fiedler import fiedler_vectors
+from segcore.solvers.p_laplacian import minimise, p_laplacian_cut, rayleigh_quotient
 
 exponents = st.floats(1.05, 1.95)
 

@@ -2,11 +2,11 @@ import numpy as np
 import pytest
 
 from segcore import shapes
-from segcore.edge_geometry import EdgeGeometry
-from segcore.graph import SurfaceGraph, connected_components
+from segcore.affinity.patches import COUNT, patches_of
+from segcore.clean.edge_geometry import EdgeGeometry
+from segcore.clean.surface import build_surface
+from segcore.graphs.surface_graph import SurfaceGraph, connected_components
 from segcore.mesh import Mesh
-from segcore.patches import COUNT, patches_of
-from segcore.surface import build_surface
 
 
 def patches(mesh, seed=0):

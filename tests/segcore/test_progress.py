@@ -4,8 +4,8 @@ import numpy as np
 import pytest
 
 from segcore import shapes
+from segcore.method import segment
 from segcore.progress import Progress
-from segcore.segment import segment
 
 STAGES = ["clean", "affinity", "coarsen", "cut", "label"]
 

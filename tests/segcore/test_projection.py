@@ -3,10 +3,10 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from segcore import shapes
-from segcore.graph import connected_components
-from segcore.projection import _connected, project
-from segcore.surface import build_surface
-from segcore.tree import Tree
+from segcore.clean.surface import build_surface
+from segcore.graphs.surface_graph import connected_components
+from segcore.graphs.tree import Tree
+from segcore.label.projection import _connected, project
 
 SURFACE = build_surface(shapes.icosphere(1))
 FACES = SURFACE.face_graph()

@@ -3,9 +3,9 @@ import pytest
 
 from meshes import areas, moved, refined, rotation
 from segcore import shapes
+from segcore.clean.surface import build_surface
+from segcore.coarsen.contacts import REACH, find_contacts, spread_points
 from segcore.mesh import Mesh
-from segcore.proximity import REACH, find_contacts, spread_points
-from segcore.surface import build_surface
 
 
 def length_of_contact(*meshes):

@@ -3,7 +3,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from segcore import shapes
-from segcore.rays import RayCaster
+from segcore.affinity.rays import RayCaster
 
 
 def nearest_exit(vertices, faces, origin, direction):

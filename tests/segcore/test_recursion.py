@@ -2,12 +2,12 @@ import numpy as np
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from segcore.cheeger import cut_of
-from segcore.connected_sides import with_connected_sides
-from segcore.graph import SurfaceGraph, connected_components
+from segcore.cut.bisection import bisect
+from segcore.cut.rules import AUTOMATIC_NCUT, RatioRule
+from segcore.graphs.cheeger import cut_of
+from segcore.graphs.connected_sides import with_connected_sides
+from segcore.graphs.surface_graph import SurfaceGraph, connected_components
 from segcore.parameters import SegmentationParameters
-from segcore.recursion import bisect
-from segcore.split_rules import AUTOMATIC_NCUT, RatioRule
 
 
 def graph_of(pairs, count, weights=None, volume=None):

@@ -9,7 +9,7 @@ from hypothesis import strategies as st
 
 from segcore.errors import InvalidParameters
 from segcore.hierarchy import Hierarchy
-from segcore.recut import keep_splits
+from segcore.levels import keep_splits
 
 
 @st.composite

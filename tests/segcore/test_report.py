@@ -9,9 +9,9 @@ from hypothesis import strategies as st
 
 from meshes import exploded
 from segcore import shapes
+from segcore.clean.welding import WELD_TOLERANCE, weld
 from segcore.mesh import Mesh
 from segcore.report import mesh_report
-from segcore.welding import WELD_TOLERANCE, weld
 
 BALL = shapes.icosphere(2)
 

@@ -7,8 +7,8 @@ from hypothesis.extra import numpy as npst
 from meshes import agreement, areas, exploded, pieces_of_labels, rotation
 from segcore import shapes
 from segcore.mesh import Mesh
+from segcore.method import segment
 from segcore.parameters import SegmentationParameters
-from segcore.segment import segment
 
 BURR = shapes.burr(4)
 DUMBBELL = shapes.dumbbell(rings=60, around=32)

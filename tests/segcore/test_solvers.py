@@ -2,10 +2,10 @@ import numpy as np
 import pytest
 
 from segcore import shapes
-from segcore.mesh_graph import mesh_graph
+from segcore.affinity.mesh_graphs import mesh_graph
+from segcore.clean.surface import build_surface
 from segcore.parameters import SegmentationParameters
-from segcore.solvers import SOLVERS
-from segcore.surface import build_surface
+from segcore.solvers.solvers import SOLVERS
 
 NECK, AROUND = 0.3, 32
 DUMBBELL = shapes.dumbbell(rings=60, around=AROUND, neck=NECK)

@@ -4,11 +4,11 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from graphs import best_ncc, cycle, graphs, grid, mesh_like, path, two_cliques
-from segcore.cheeger import sweep
-from segcore.fiedler import fiedler_vectors
-from segcore.flow import improve
-from segcore.graph import SurfaceGraph
-from segcore.split_bregman import split_bregman_cut
+from segcore.graphs.cheeger import sweep
+from segcore.graphs.surface_graph import SurfaceGraph
+from segcore.solvers.fiedler import fiedler_vectors
+from segcore.solvers.flow import improve
+from segcore.solvers.split_bregman import split_bregman_cut
 
 
 @given(graphs(), st.integers(1, 3), st.integers(1, 200))

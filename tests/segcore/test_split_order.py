@@ -4,7 +4,7 @@ import numpy as np
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from segcore.split_order import best_order
+from segcore.cut.order import best_order
 
 
 @st.composite

@@ -8,10 +8,10 @@ from hypothesis.extra import numpy as npst
 
 from meshes import exploded
 from segcore import shapes
+from segcore.clean.orientation import patch_volumes, reliable_normals, turned_round
+from segcore.clean.surface import build_surface
+from segcore.clean.topology import dual_edges, first_equal_row
 from segcore.mesh import Mesh, face_normals_and_areas
-from segcore.orientation import patch_volumes, reliable_normals, turned_round
-from segcore.surface import build_surface
-from segcore.topology import dual_edges, first_equal_row
 
 
 @given(npst.arrays(np.int64, st.tuples(st.integers(0, 40), st.just(3)), elements=st.integers(-2, 2)))

@@ -2,9 +2,9 @@ import numpy as np
 import pytest
 
 from segcore import shapes
-from segcore.measurements import measure
+from segcore.affinity.measurements import measure
+from segcore.clean.surface import build_surface
 from segcore.mesh import Mesh
-from segcore.surface import build_surface
 
 
 def measured(mesh):

@@ -7,10 +7,10 @@ from hypothesis import strategies as st
 
 from graphs import best_ncc, graphs, laplacian, mesh_like, two_cliques
 from segcore.arrays import FloatArray
-from segcore.cheeger import sweep
-from segcore.fiedler import fiedler_vectors
-from segcore.graph import SurfaceGraph
-from segcore.total_variation import TIME_STEP, TotalVariationFlow
+from segcore.graphs.cheeger import sweep
+from segcore.graphs.surface_graph import SurfaceGraph
+from segcore.solvers.fiedler import fiedler_vectors
+from segcore.solvers.total_variation import TIME_STEP, TotalVariationFlow
 
 
 @st.composite

@@ -9,10 +9,10 @@ from asking import AGAIN
 from redis import Redis
 from servers import serving
 
+from cleave.settings import Settings
 from support import sphere
-from worker.settings import Settings
-from worker.store import JobStore
-from worker.tasks import perform
+from worker.jobs.store.store import JobStore
+from worker.process.perform import perform
 
 
 @pytest.fixture

@@ -8,17 +8,17 @@ from contextlib import contextmanager
 import httpx
 import uvicorn
 
+from cleave.settings import Settings
 from service.app import create_app
-from service.processes.server import server_config
-from worker.settings import Settings
-from worker.store import JobStore
-from worker.tasks import perform
+from service.host.http_server import server_config
+from worker.jobs.store.store import JobStore
+from worker.process.perform import perform
 
 
 @contextmanager
 def serving(settings: Settings) -> Iterator[httpx.Client]:
     """A client of an application that runs in a thread of this process."""
-    # By its descriptor, as in service.processes.server: asyncio sends at once only where it knows the protocol.
+    # By its descriptor, as in service.host.http_server: asyncio sends at once only where it knows the protocol.
     listening = socket.socket(fileno=socket.create_server(("127.0.0.1", 0)).detach())
     server = uvicorn.Server(server_config(create_app(settings)))
     thread = threading.Thread(target=server.run, kwargs={"sockets": [listening]})

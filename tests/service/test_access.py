@@ -8,9 +8,9 @@ import pytest
 from asking import UNKNOWN, problem, submit
 from servers import serving
 
-from service.api_keys import key_digest, key_ring, new_key, parse_keys
+from cleave.settings import InvalidSettings, Settings
 from service.commands.serve import check_guarded
-from worker.settings import InvalidSettings, Settings
+from service.keys import key_digest, key_ring, new_key, parse_keys
 
 ANNA, BORIS = new_key(), new_key()
 KEYS = f"anna:{key_digest(ANNA)}, boris:{key_digest(BORIS)}"

@@ -7,11 +7,11 @@ import httpx
 import pytest
 from asking import FACES, UNKNOWN, problem, submit, traces
 
+from cleave.settings import Settings
 from segcore.io.result import read_result
 from support import SMALL, sphere
-from worker.queue import JobQueue, Progress
-from worker.settings import Settings
-from worker.store import JobStore
+from worker.jobs.queue.queue import JobQueue, Progress
+from worker.jobs.store.store import JobStore
 
 
 def test_a_submitted_mesh_is_a_queued_job_at_its_location(
@@ -219,7 +219,7 @@ def test_a_full_disk_is_said_and_leaves_nothing(
     def fail(*_: object) -> None:
         raise OSError(28, "No space left on device")
 
-    monkeypatch.setattr("worker.storage.upload.MeshUpload.write", fail)
+    monkeypatch.setattr("worker.jobs.store.upload.MeshUpload.write", fail)
     answer = client.post("/v1/jobs", files={"mesh": ("mesh.off", sphere(12))})
     problem(answer, 507, "insufficient_storage")
     assert traces(settings.data_dir) == []

@@ -11,10 +11,10 @@ import pytest
 from asking import problem, submit, traces
 from servers import serving
 
+from cleave.settings import Settings
 from support import sphere
-from worker.settings import Settings
-from worker.store import JobStore
-from worker.tasks import perform
+from worker.jobs.store.store import JobStore
+from worker.process.perform import perform
 
 UNKNOWN = "/v1/batches/" + "0" * 32
 MESHES = {f"mesh{rows}.off": sphere(rows) for rows in (10, 11, 12)}

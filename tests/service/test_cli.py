@@ -12,7 +12,7 @@ import pytest
 
 import segcore
 from segcore.io.result import read_result
-from service.cli import main
+from service.commands.main import main
 from service.commands.progress_bar import ProgressBar
 from support import sphere
 
@@ -135,7 +135,7 @@ def test_a_setting_that_cannot_be_used_is_named(
 def test_an_output_that_is_no_file_is_not_replaced(mesh: Path, tmp_path: Path) -> None:
     pipe = tmp_path / "pipe"
     os.mkfifo(pipe)
-    command = [sys.executable, "-m", "service.cli", "segment", str(mesh), "--labels", str(pipe)]
+    command = [sys.executable, "-m", "service.commands", "segment", str(mesh), "--labels", str(pipe)]
     with subprocess.Popen(command, stdout=subprocess.DEVNULL):
         assert len(pipe.read_text().split()) == 4 * 12 * 11
     assert pipe.is_fifo()
@@ -155,7 +155,7 @@ def test_help_and_version_are_for_people(capsys: pytest.CaptureFixture[str]) -> 
 
 def test_a_person_at_a_terminal_sees_a_progress_bar(mesh: Path) -> None:
     reader, terminal = pty.openpty()
-    command = [sys.executable, "-m", "service.cli", "segment", str(mesh)]
+    command = [sys.executable, "-m", "service.commands", "segment", str(mesh)]
     with subprocess.Popen(command, stdout=subprocess.DEVNULL, stderr=terminal):
         os.close(terminal)
         shown = read_terminal(reader)

@@ -14,12 +14,12 @@ from redis import Redis
 from schemathesis.config import SchemathesisConfig
 from servers import serving, working
 
-from service.api_keys import key_digest, new_key
-from service.contract import DOCS
-from worker.queue import QUEUE_NAMES
-from worker.settings import Settings
-from worker.size_class import SizeClass
-from worker.storage.opening import open_store
+from cleave.settings import Settings
+from service.keys import key_digest, new_key
+from service.openapi.export import DOCS
+from worker.jobs.queue.queue import QUEUE_NAMES
+from worker.jobs.size_class import SizeClass
+from worker.jobs.store.opening import open_store
 
 
 @pytest.fixture(scope="module")

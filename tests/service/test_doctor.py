@@ -13,16 +13,16 @@ import pytest
 from redis import Redis
 from redis.exceptions import RedisError
 
-from service.cli import main
+from cleave.settings import Settings
+from service.commands.main import main
 from service.doctor.findings import Finding
 from service.doctor.machine_checks import check_machine
 from service.doctor.queue_checks import check_queue
 from service.doctor.store_checks import check_store
-from service.processes.queue_server import find_server_binary
+from service.host.queue_server import find_server_binary
 from support import wait_until
-from worker.queue import QUEUE_NAMES
-from worker.settings import Settings
-from worker.storage.objects import ObjectInfo
+from worker.jobs.objects.seam import ObjectInfo
+from worker.jobs.queue.queue import QUEUE_NAMES
 
 StartServer = Callable[..., str]
 LIMITS = ("open files", "file size", "memory", "memory of a job", "kernels", "settings")
@@ -140,7 +140,7 @@ def test_a_full_disk_and_a_folder_open_to_others_are_found_out(tmp_path: Path, m
 
 
 def test_the_clock_of_a_store_is_looked_at(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    from worker.storage.local_objects import LocalObjects
+    from worker.jobs.objects.local import LocalObjects
 
     true_list = LocalObjects.list_below
 

@@ -8,11 +8,11 @@ from typing import Any
 import httpx
 import pytest
 
-from service.contract import DOCS, contract, contract_text
+from service.openapi.export import DOCS, contract, contract_text
+from service.openapi.reference import markdown
 from service.problems import STATUS
-from service.reference import markdown
 
-RENEW = "run python -m service.contract, look at what changed, and commit it"
+RENEW = "run python -m service.openapi.export, look at what changed, and commit it"
 
 
 def losses(old: Any, new: Any, place: str = "") -> Iterator[str]:

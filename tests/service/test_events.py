@@ -7,7 +7,7 @@ from collections.abc import Callable
 import httpx
 from asking import UNKNOWN, problem, submit
 
-from worker.queue import JobQueue, Progress
+from worker.jobs.queue.queue import JobQueue, Progress
 
 
 def events(client: httpx.Client, path: str, **headers: str) -> list[tuple[int, dict[str, object]]]:

@@ -13,8 +13,8 @@ import segcore
 from segcore.io.result import read_result
 from segcore.io.writing import WRITERS
 from segcore.report import mesh_report
-from service.cli import main
 from service.commands.file_arguments import OUTPUTS
+from service.commands.main import main
 from support import sphere
 
 

@@ -8,8 +8,8 @@ import httpx
 import pytest
 from servers import serving
 
-from worker.settings import Settings
-from worker.store import JobStore
+from cleave.settings import Settings
+from worker.jobs.store.store import JobStore
 
 POLICY = ("form-action 'self'", "base-uri 'none'", "frame-ancestors 'none'")
 

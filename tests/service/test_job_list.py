@@ -8,7 +8,7 @@ from asking import problem, submit
 
 from service.documents import Status
 from support import SMALL, sphere
-from worker.queue import JobQueue
+from worker.jobs.queue.queue import JobQueue
 
 
 def test_jobs_are_listed_newest_first_page_by_page(client: httpx.Client) -> None:

@@ -5,7 +5,7 @@ from pathlib import Path
 
 import pytest
 
-from service.processes.kernel_cache import prepare_kernel_cache
+from service.host.kernel_cache import prepare_kernel_cache
 
 VARIABLE = "NUMBA_CACHE_DIR"
 

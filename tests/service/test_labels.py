@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 from asking import problem
 
-from service.labels import LABELS, LabelsFormat, negotiate
+from service.answer.label_formats import LABELS, LabelsFormat, negotiate
 from service.problems import Problem
 
 

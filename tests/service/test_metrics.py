@@ -7,13 +7,13 @@ import pytest
 from asking import submit
 from test_server import samples
 
+from cleave.settings import Settings
 from support import SMALL
-from worker.jobs import now
-from worker.queue import JobQueue, Progress
-from worker.settings import Settings
-from worker.store import JobStore
-from worker.tallies import Tallies
-from worker.tasks import perform
+from worker.jobs.job import now
+from worker.jobs.queue.counters import Tallies
+from worker.jobs.queue.queue import JobQueue, Progress
+from worker.jobs.store.store import JobStore
+from worker.process.perform import perform
 
 
 def test_running_jobs_are_told_by_their_stage(client: httpx.Client, queue: JobQueue) -> None:

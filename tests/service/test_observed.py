@@ -9,11 +9,11 @@ import httpx
 import pytest
 from asking import UNKNOWN, submit
 
+from cleave.logs import JsonFormatter
+from cleave.trace import parse_traceparent
 from support import sphere, wait_until
-from worker.logs import JsonFormatter
-from worker.queue import JobQueue
-from worker.store import JobStore
-from worker.trace import parse_traceparent
+from worker.jobs.queue.queue import JobQueue
+from worker.jobs.store.store import JobStore
 
 PARENT = "00-4bf92f3577b34da6a3ce929d0e0e4736-00f067aa0ba902b7-01"
 TRACE_ID = PARENT.split("-")[1]
@@ -108,6 +108,6 @@ def test_a_job_that_the_queue_does_not_take_is_told(
         raise ConnectionError("gone")
 
     monkeypatch.setattr(JobQueue, "enqueue", fail)
-    monkeypatch.setattr("service.intake.QueueError", ConnectionError)
+    monkeypatch.setattr("service.submit.intake.QueueError", ConnectionError)
     submit(client)
     assert any("janitor" in line["message"] for line in logged)

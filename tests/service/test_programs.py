@@ -2,11 +2,11 @@
 
 import pytest
 
+from cleave.settings import Settings
 from service.commands.serve import worker_counts
-from service.processes.programs import worker_programs
+from service.host.programs import worker_programs
 from support import LARGE, SMALL
-from worker.settings import Settings
-from worker.size_class import SizeClass
+from worker.jobs.size_class import SizeClass
 
 
 @pytest.mark.parametrize(("workers", "small", "large"), [(1, 1, 1), (2, 1, 1), (4, 3, 1), (8, 6, 2)])

@@ -7,14 +7,8 @@ from pathlib import Path
 
 import pytest
 
-from service.processes import queue_server
-from service.processes.queue_server import (
-    NoQueueServer,
-    embedded_queue_server,
-    find_server_binary,
-    socket_path,
-    stop_orphan,
-)
+from service.host import queue_server
+from service.host.queue_server import NoQueueServer, embedded_queue_server, find_server_binary, socket_path, stop_orphan
 from support import wait_until
 
 

@@ -8,10 +8,10 @@ import pytest
 from asking import submit
 from servers import serving
 
-from service.impatience import ImpatientProtocol
+from cleave.settings import Settings
+from service.host.http_protocol import ImpatientProtocol
 from support import SMALL
-from worker.queue import JobQueue
-from worker.settings import Settings
+from worker.jobs.queue.queue import JobQueue
 
 
 def samples(client: httpx.Client) -> dict[str, float]:

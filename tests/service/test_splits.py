@@ -8,7 +8,7 @@ import pytest
 from asking import problem
 
 from segcore.io.result import read_result
-from worker.store import JobStore
+from worker.jobs.store.store import JobStore
 
 FORMS = ("labels", "model.glb", "model.ply", "model.obj", "model.3mf", "parts.zip", "preview.png")
 

@@ -13,13 +13,13 @@ from asking import problem, submit, traces
 from servers import serving
 
 from buckets import below, s3_server
+from cleave.settings import Settings
 from segcore.io.result import read_result
 from support import sphere
-from worker.jobs import new_job_id
-from worker.settings import Settings
-from worker.storage.opening import open_store
-from worker.store import JobStore
-from worker.tasks import perform
+from worker.jobs.job import new_job_id
+from worker.jobs.store.opening import open_store
+from worker.jobs.store.store import JobStore
+from worker.process.perform import perform
 
 
 @pytest.fixture

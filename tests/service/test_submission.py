@@ -8,11 +8,11 @@ import pytest
 from asking import AGAIN, problem, submit
 from servers import working
 
-from service.preference import Preference, read_preference
+from cleave.settings import Settings
+from service.submit.preference import Preference, read_preference
 from support import SMALL, sphere, wait_until
-from worker.queue import JobQueue
-from worker.settings import Settings
-from worker.store import JobStore
+from worker.jobs.queue.queue import JobQueue
+from worker.jobs.store.store import JobStore
 
 MESH = sphere(12)
 

@@ -9,7 +9,7 @@ from pathlib import Path
 
 import pytest
 
-from service.processes.supervisor import DataInUse, lock_data
+from service.host.supervisor import DataInUse, lock_data
 from support import children_of, is_alive, wait_until
 
 

@@ -13,12 +13,12 @@ from asking import problem, traces
 from hypothesis import strategies as st
 from starlette.requests import ClientDisconnect, Request
 
+from cleave.settings import Settings
 from segcore.errors import InvalidParameters
-from service.form import FormReader
 from service.problems import Problem
-from service.upload import file_label, mesh_format, parse_parameters, receive_mesh
-from worker.settings import Settings
-from worker.store import JobStore
+from service.submit.form import FormReader
+from service.submit.request import file_label, mesh_format, parse_parameters, receive_mesh
+from worker.jobs.store.store import JobStore
 
 BOUNDARY = "----boundary"
 LIMITED = Settings(max_upload_bytes=10_000, upload_idle_s=0.2)

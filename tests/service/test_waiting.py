@@ -5,8 +5,8 @@ from typing import cast
 
 import pytest
 
-from service import waiting
-from worker.store import JobStore
+from service.answer import waiting
+from worker.jobs.store.store import JobStore
 
 
 class Clock:

@@ -14,15 +14,15 @@ from asking import problem
 from servers import serving
 from standardwebhooks import Webhook, WebhookVerificationError
 
-from service.processes.courier import BACK_OFF_S, Courier
-from service.webhook import Undeliverable, objection_to, send
+from cleave.settings import Settings
 from support import sphere
-from worker.jobs import now
-from worker.queue import JobQueue
-from worker.settings import Settings
-from worker.storage.opening import open_folder
-from worker.store import JobStore
-from worker.tasks import perform
+from worker.jobs.job import now
+from worker.jobs.queue.queue import JobQueue
+from worker.jobs.store.opening import open_folder
+from worker.jobs.store.store import JobStore
+from worker.process.perform import perform
+from worker.webhooks.delivery import BACK_OFF_S, Courier
+from worker.webhooks.message import Undeliverable, objection_to, send
 
 
 class Receiver:

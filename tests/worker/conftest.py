@@ -11,10 +11,10 @@ from redis import Redis
 
 from buckets import below
 from support import SMALL, StartWorker
-from worker.jobs import new_job_id
-from worker.size_class import SizeClass
-from worker.storage.opening import open_folder, open_url
-from worker.store import JobStore
+from worker.jobs.job import new_job_id
+from worker.jobs.size_class import SizeClass
+from worker.jobs.store.opening import open_folder, open_url
+from worker.jobs.store.store import JobStore
 
 PLACES = ("local", "memory", "s3")
 

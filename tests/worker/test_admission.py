@@ -5,13 +5,13 @@ from dataclasses import replace
 
 import pytest
 
+from cleave.settings import Settings
 from support import SMALL, accepted
-from worker.admission import admit, may_wait_outside
-from worker.janitor import MISSING_S, Janitor
-from worker.jobs import Canceled, Job, new_job_id, now
-from worker.queue import JobQueue
-from worker.settings import Settings
-from worker.store import JobStore
+from worker.janitor.janitor import MISSING_S, Janitor
+from worker.jobs.admission import admit, may_wait_outside
+from worker.jobs.job import Canceled, Job, new_job_id, now
+from worker.jobs.queue.queue import JobQueue
+from worker.jobs.store.store import JobStore
 
 
 @pytest.fixture

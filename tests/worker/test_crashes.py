@@ -9,13 +9,13 @@ from typing import Any
 
 import pytest
 
-from worker.jobs import Job, Succeeded, new_job_id, now
-from worker.storage.acceptance import JobExists
-from worker.storage.objects import ObjectStorage, StoreError
-from worker.storage.outbox import Letter
-from worker.storage.retention import stored_jobs
-from worker.storage.spool import Spool
-from worker.store import JobStore, UnknownJob
+from worker.janitor.retention import stored_jobs
+from worker.jobs.job import Job, Succeeded, new_job_id, now
+from worker.jobs.objects.seam import ObjectStorage, StoreError
+from worker.jobs.store.acceptance import JobExists
+from worker.jobs.store.outbox import Letter
+from worker.jobs.store.spool import Spool
+from worker.jobs.store.store import JobStore, UnknownJob
 
 _WRITES = ("create", "put", "put_file", "delete")
 
@@ -63,8 +63,8 @@ def reopen(placed: JobStore, tmp_path: Path) -> Callable[..., JobStore]:
 @pytest.fixture
 def nothing_is_young(monkeypatch: pytest.MonkeyPatch) -> None:
     """Whatever has no job is not on its way to one any more."""
-    monkeypatch.setattr("worker.storage.pending._GRACE_S", -10.0)
-    monkeypatch.setattr("worker.storage.pages._ON_ITS_WAY", timedelta(days=-1))
+    monkeypatch.setattr("worker.jobs.store.pending._GRACE_S", -10.0)
+    monkeypatch.setattr("worker.jobs.store.pages._ON_ITS_WAY", timedelta(days=-1))
 
 
 def a_job() -> Job:

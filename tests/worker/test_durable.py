@@ -5,8 +5,8 @@ from pathlib import Path
 
 import pytest
 
-from worker.storage.durable import create_file, replace_file
-from worker.storage.spool import Spool
+from worker.jobs.objects.durable import create_file, replace_file
+from worker.jobs.store.spool import Spool
 
 
 def files_below(folder: Path) -> list[str]:

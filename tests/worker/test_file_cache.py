@@ -7,7 +7,7 @@ from typing import BinaryIO
 
 import pytest
 
-from worker.storage.file_cache import FileCache
+from worker.jobs.objects.file_cache import FileCache
 
 
 class Bucket:

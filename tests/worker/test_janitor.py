@@ -8,12 +8,12 @@ from redis import Redis
 from rq import Queue
 from rq.serializers import JSONSerializer
 
+from cleave.settings import Settings
 from support import LARGE, SMALL, accepted
-from worker.janitor import MISSING_S, Janitor
-from worker.jobs import Failed, new_job_id
-from worker.queue import TASK, JobQueue, QueueError
-from worker.settings import Settings
-from worker.store import JobStore
+from worker.janitor.janitor import MISSING_S, Janitor
+from worker.jobs.job import Failed, new_job_id
+from worker.jobs.queue.queue import TASK, JobQueue, QueueError
+from worker.jobs.store.store import JobStore
 
 
 @pytest.fixture

@@ -8,8 +8,8 @@ from contextlib import contextmanager
 
 import pytest
 
-from worker.logs import JsonFormatter, TextFormatter, about, current_traceparent, note_job
-from worker.trace import Trace, new_trace
+from cleave.logs import JsonFormatter, TextFormatter, about, current_traceparent, note_job
+from cleave.trace import Trace, new_trace
 
 log = logging.getLogger("cleave.test")
 

@@ -6,9 +6,9 @@ from pathlib import Path
 
 import pytest
 
-from worker.settings import InvalidSettings, Settings, load_settings
-from worker.storage.buckets import open_bucket
-from worker.storage.opening import open_store
+from cleave.settings import InvalidSettings, Settings, load_settings
+from worker.jobs.objects.buckets import open_bucket
+from worker.jobs.store.opening import open_store
 
 
 def test_without_a_url_the_data_folder_is_the_store(tmp_path: Path) -> None:
@@ -31,7 +31,7 @@ def test_a_store_in_the_memory_of_a_process_is_none_for_an_installation(monkeypa
 
 
 def test_what_is_missing_for_buckets_is_named(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
-    for name in ("obstore", "worker.storage.buckets", "worker.storage.remote_objects"):
+    for name in ("obstore", "worker.jobs.objects.buckets", "worker.jobs.objects.remote"):
         monkeypatch.setitem(sys.modules, name, None)
     with pytest.raises(InvalidSettings, match=r"cleave\[cloud\]"):
         open_store(Settings(data_dir=tmp_path, store_url="s3://bucket"))

@@ -7,11 +7,11 @@ from pathlib import Path
 
 import pytest
 
-from service.processes.queue_server import QueueServer, embedded_queue_server
+from service.host.queue_server import QueueServer, embedded_queue_server
 from support import LONG, SMALL, StartWorker, accepted, children_of, sphere, wait_until
-from worker.jobs import Job, Succeeded
-from worker.queue import JobQueue, QueueError, connect_impatiently
-from worker.store import JobStore
+from worker.jobs.job import Job, Succeeded
+from worker.jobs.queue.queue import JobQueue, QueueError, connect_impatiently
+from worker.jobs.store.store import JobStore
 
 
 class Server:

@@ -11,9 +11,9 @@ import pytest
 from redis import Redis
 
 from support import LARGE, LONG, SMALL, StartWorker, accepted, children_of, is_alive, sphere, wait_until
-from worker.jobs import Canceled, Failed, Job, Outcome, Succeeded, now
-from worker.queue import JobQueue
-from worker.store import JobStore
+from worker.jobs.job import Canceled, Failed, Job, Outcome, Succeeded, now
+from worker.jobs.queue.queue import JobQueue
+from worker.jobs.store.store import JobStore
 
 
 def outcome_of(store: JobStore, job: Job, within_s: float = 60.0) -> Outcome:
@@ -98,8 +98,8 @@ def perform(store, settings, job_id, on_progress):
     if store.open_mesh(job_id).read() == b"poison":
         {statement}
     store.finish(job_id, Canceled(finished_at=now()))
-worker.process.perform = perform
-worker.process.main()
+worker.process.process.perform = perform
+worker.process.process.main()
 """
     return "-c", source
 

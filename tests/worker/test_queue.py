@@ -4,8 +4,8 @@ import pytest
 from redis import Redis
 
 from support import LARGE, SMALL, wait_until
-from worker.jobs import new_job_id
-from worker.queue import Activity, JobQueue, Progress, QueueError, connect_impatiently
+from worker.jobs.job import new_job_id
+from worker.jobs.queue.queue import Activity, JobQueue, Progress, QueueError, connect_impatiently
 
 
 def waiting(queue: JobQueue) -> list[str]:

@@ -6,11 +6,11 @@ from pathlib import Path
 
 import pytest
 
+from cleave.settings import Settings
 from support import accepted
-from worker.jobs import Job, Succeeded, new_job_id, now
-from worker.settings import Settings
-from worker.storage.retention import Housekeeping, StoredJob, remove_surplus, stored_jobs, surplus
-from worker.store import JobStore
+from worker.janitor.retention import Housekeeping, StoredJob, remove_surplus, stored_jobs, surplus
+from worker.jobs.job import Job, Succeeded, new_job_id, now
+from worker.jobs.store.store import JobStore
 
 DAY_S = 24 * 3600.0
 NOW_S = 1000 * DAY_S
@@ -83,7 +83,7 @@ def test_everything_is_looked_at_now_and_then_only(
     store: JobStore, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     looks: list[float] = []
-    monkeypatch.setattr("worker.storage.retention.remove_surplus", lambda *_: looks.append(0))
+    monkeypatch.setattr("worker.janitor.retention.remove_surplus", lambda *_: looks.append(0))
     housekeeping = Housekeeping(store, Settings(data_dir=tmp_path))
     for at_s in (0.0, 1.0, 29.0, 31.0, 32.0):
         housekeeping.sweep(at_s)

@@ -4,7 +4,7 @@ from pathlib import Path
 
 import pytest
 
-from worker.settings import InvalidSettings, load_settings
+from cleave.settings import InvalidSettings, load_settings
 
 
 def test_the_environment_overrides_the_defaults(monkeypatch: pytest.MonkeyPatch) -> None:

@@ -8,15 +8,15 @@ from pathlib import Path
 import pytest
 
 from support import accepted
-from worker.jobs import Canceled, Failed, Job, Succeeded, new_job_id, now
-from worker.storage.acceptance import JobExists
-from worker.storage.index import turned
-from worker.storage.installation_secret import InstallationSecret
-from worker.storage.layout import entry_name
-from worker.storage.opening import open_folder
-from worker.storage.outbox import Letter
-from worker.storage.spool import Spool
-from worker.store import JobStore, UnknownJob
+from worker.jobs.job import Canceled, Failed, Job, Succeeded, new_job_id, now
+from worker.jobs.store.acceptance import JobExists
+from worker.jobs.store.index import turned
+from worker.jobs.store.installation_secret import InstallationSecret
+from worker.jobs.store.layout import entry_name
+from worker.jobs.store.opening import open_folder
+from worker.jobs.store.outbox import Letter
+from worker.jobs.store.spool import Spool
+from worker.jobs.store.store import JobStore, UnknownJob
 
 
 def keys(store: JobStore) -> list[str]:
@@ -195,7 +195,7 @@ def test_a_marker_without_a_job_is_no_job(placed: JobStore, tmp_path: Path, monk
     placed.objects.delete(f"jobs/{job.id}/job.json")
     assert reopened(placed, tmp_path).unfinished() == {}
     assert any(job.id in key for key in keys(placed))  # it may be on its way in
-    monkeypatch.setattr("worker.storage.pending._GRACE_S", -10.0)
+    monkeypatch.setattr("worker.jobs.store.pending._GRACE_S", -10.0)
     assert reopened(placed, tmp_path).unfinished() == {}
     assert [key for key in keys(placed) if key.startswith(("pending", "jobs"))] == []
 

@@ -5,11 +5,11 @@ from datetime import timedelta
 from redis import Redis
 
 from support import accepted
-from worker.jobs import Failed, Succeeded
-from worker.queue import connect_impatiently
-from worker.stage_clock import StageClock
-from worker.store import JobStore
-from worker.tallies import BOUNDS_S, Tallies, durations
+from worker.jobs.job import Failed, Succeeded
+from worker.jobs.queue.counters import BOUNDS_S, Tallies, durations
+from worker.jobs.queue.queue import connect_impatiently
+from worker.jobs.store.store import JobStore
+from worker.process.stage_clock import StageClock
 
 
 def test_jobs_are_counted_by_their_outcome_with_faces_and_durations(connection: Redis, store: JobStore) -> None:

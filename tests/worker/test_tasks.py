@@ -8,13 +8,13 @@ from pathlib import Path
 import pytest
 
 import segcore
+from cleave.settings import Settings
 from segcore.io.result import read_result
 from segcore.report import mesh_report
 from support import accepted, sphere
-from worker.jobs import Canceled, Failed, Succeeded, now
-from worker.settings import Settings
-from worker.store import JobStore
-from worker.tasks import perform
+from worker.jobs.job import Canceled, Failed, Succeeded, now
+from worker.jobs.store.store import JobStore
+from worker.process.perform import perform
 
 TETRAHEDRON = b"OFF\n4 4 0\n0 0 0\n1 0 0\n0 1 0\n0 0 1\n3 0 2 1\n3 0 1 3\n3 1 2 3\n3 0 3 2\n"
 

@@ -2,7 +2,7 @@
 
 import pytest
 
-from worker.trace import new_trace, parse_traceparent
+from cleave.trace import new_trace, parse_traceparent
 
 TRACE, SPAN = "4bf92f3577b34da6a3ce929d0e0e4736", "00f067aa0ba902b7"
 

@@ -8,7 +8,7 @@ import sys
 
 import pytest
 
-from worker.work_horse import (
+from worker.process.work_horse import (
     EXIT_CANNOT_STORE,
     EXIT_FILE_TOO_LARGE,
     EXIT_OUT_OF_MEMORY,

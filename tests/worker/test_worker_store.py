@@ -7,11 +7,11 @@ from pathlib import Path
 
 from buckets import s3_server
 from support import LONG, StartWorker, accepted, children_of, sphere, wait_until
-from worker.jobs import Succeeded
-from worker.queue import JobQueue
-from worker.size_class import SizeClass
-from worker.storage.opening import open_folder, open_url
-from worker.store import JobStore
+from worker.jobs.job import Succeeded
+from worker.jobs.queue.queue import JobQueue
+from worker.jobs.size_class import SizeClass
+from worker.jobs.store.opening import open_folder, open_url
+from worker.jobs.store.store import JobStore
 
 
 def submitted(store: JobStore, queue: JobQueue, mesh: bytes, **parameters: object) -> str:

@@ -9,8 +9,8 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from segcore.errors import InvalidMesh
-from segcore.io.number_kernels import parse_floats
-from segcore.io.text import find_words, plain_text, without_comments
+from segcore.io.text.number_kernels import parse_floats
+from segcore.io.text.words import find_words, plain_text, without_comments
 
 decimals = st.one_of(
     st.floats(allow_nan=False).map(repr),

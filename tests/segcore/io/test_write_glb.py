@@ -17,7 +17,7 @@ from trees import looks, segmentations, two_strips
 
 from segcore.errors import InvalidParameters
 from segcore.hierarchy import Hierarchy
-from segcore.io.glb import write_glb
+from segcore.io.gltf.writer import write_glb
 from segcore.mesh import Mesh
 
 Segmented = tuple[Mesh, Hierarchy, int]

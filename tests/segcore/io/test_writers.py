@@ -16,12 +16,12 @@ from segcore.appearance import Appearance
 from segcore.errors import InvalidParameters, UnsupportedFormat
 from segcore.hierarchy import Hierarchy
 from segcore.io.labels import hierarchy_document
-from segcore.io.parts import closed_parts
-from segcore.io.parts_writer import write_parts
-from segcore.io.threemf_writer import write_3mf
+from segcore.io.parts.pieces import closed_parts
+from segcore.io.parts.writer import write_parts
+from segcore.io.threemf.writer import write_3mf
 from segcore.io.writing import WRITERS, writer_for
 from segcore.mesh import Mesh
-from segcore.segment import segment
+from segcore.method import segment
 
 Segmented = tuple[Mesh, Hierarchy, int]
 

@@ -132,7 +132,7 @@ function pythonLines({ fileName, session }: Shown, chosen: [string, unknown][]):
   return [
     "import segcore",
     ...(values === "" ? [] : ["from segcore.parameters import SegmentationParameters"]),
-    ...(level === null ? ["from segcore.recut import keep_splits"] : []),
+    ...(level === null ? ["from segcore.levels import keep_splits"] : []),
     "",
     `mesh = segcore.read_mesh(${JSON.stringify(fileName)})`,
     `hierarchy = segcore.segment(${call})`,

@@ -1,0 +1,1 @@
+"""The Princeton Segmentation Benchmark: data, metrics and reports."""

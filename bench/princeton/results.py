@@ -1,0 +1,90 @@
+"""Results of the Princeton benchmark as a JSON file, to be compared with another one later."""
+
+from __future__ import annotations
+
+import json
+import math
+from collections.abc import Sequence
+from dataclasses import asdict, dataclass
+from pathlib import Path
+
+from bench.errors import BenchmarkError
+from bench.princeton.evaluation import ModelResult, SegmentChoice
+from bench.princeton.metrics import METRICS, Scores
+from bench.princeton.summary import overall
+
+FORMAT = "cleave-princeton-1"
+
+
+@dataclass(frozen=True, slots=True)
+class SavedResults:
+    """What a comparison needs of a saved run."""
+
+    settings: str  # how the run was made, for people
+    scores: dict[int, Scores]  # by model number
+
+
+def save_results(
+    path: Path, results: Sequence[ModelResult], choice: SegmentChoice, parameters: dict[str, object]
+) -> None:
+    """Write the results; a score that is undefined is null.
+
+    Raises
+    ------
+    BenchmarkError
+        Where the file cannot be written.
+    """
+    summary = overall(results)
+    document = {
+        "format": FORMAT,
+        "segments": choice,
+        "seeds": [run.seed for run in results[0].runs],
+        "parameters": parameters,
+        "scores": _scores_to_json(summary.scores),
+        "people_scores": _scores_to_json(summary.people_scores),
+        "models": [_model_to_json(result) for result in results],
+    }
+    try:
+        path.write_text(json.dumps(document, indent=1, allow_nan=False) + "\n", encoding="utf-8")
+    except OSError as error:
+        raise BenchmarkError(f"The results cannot be written to {path}: {error.strerror}.") from error
+
+
+def load_results(path: Path) -> SavedResults:
+    """Read what ``save_results`` wrote.
+
+    Raises
+    ------
+    BenchmarkError
+        Where the file cannot be read or is something else.
+    """
+    try:
+        document = json.loads(path.read_text(encoding="utf-8"))
+    except OSError as error:
+        raise BenchmarkError(f"{path} cannot be read: {error.strerror}.") from error
+    except ValueError as error:
+        raise BenchmarkError(f"{path} is not JSON: give a file that princeton --output wrote.") from error
+    if not isinstance(document, dict) or document.get("format") != FORMAT:
+        raise BenchmarkError(f"{path} is not of format {FORMAT}: give a file that princeton --output wrote.")
+    parameters = json.dumps(document["parameters"], sort_keys=True)
+    return SavedResults(
+        settings=f"segments {document['segments']}, seeds {document['seeds']}, parameters {parameters}",
+        scores={entry["model"]: _scores_from_json(entry["scores"]) for entry in document["models"]},
+    )
+
+
+def _model_to_json(result: ModelResult) -> dict[str, object]:
+    return {
+        **asdict(result),
+        "scores": _scores_to_json(result.scores),
+        "people_scores": _scores_to_json(result.people_scores),
+        "runs": [{**asdict(run), "scores": _scores_to_json(run.scores)} for run in result.runs],
+    }
+
+
+def _scores_to_json(scores: Scores) -> dict[str, float | None]:
+    return {metric: None if math.isnan(value) else value for metric, value in asdict(scores).items()}
+
+
+def _scores_from_json(values: dict[str, float | None]) -> Scores:
+    return Scores(**{metric: math.nan if (value := values[metric]) is None else value for metric in METRICS})

@@ -1,0 +1,1 @@
+"""Measurements and pictures of the viewer in a browser."""

@@ -1,0 +1,11 @@
+"""A typed client, for programs that wait and for asyncio.
+
+with Client("http://127.0.0.1:8000") as client:
+    parts = client.segment("hand.off", segments=6)
+    parts.labels  # (F,) int32, in the order of the file
+"""
+
+from cleave.client.async_client import AsyncClient
+from cleave.client.sync_client import Client
+
+__all__ = ["AsyncClient", "Client"]

@@ -1,0 +1,149 @@
+"""The client for asyncio."""
+
+import asyncio
+import os
+from collections.abc import AsyncIterator, Mapping
+from types import TracebackType
+from typing import Any
+
+import httpx
+
+from cleave.client import flows
+from cleave.client.connection import CHUNK_BYTES, Connection, Mesh, async_chunks, partial_path, submission_of, texts
+from cleave.client.documents import Job, Segmentation, Status
+from cleave.client.flows import Call, Flow, Value
+
+
+class AsyncClient:
+    """The same as :class:`cleave.client.Client`, to be awaited."""
+
+    def __init__(
+        self,
+        url: str = "http://127.0.0.1:8000",
+        api_key: str | None = None,
+        *,
+        timeout_s: float = 60.0,
+        retries: int = 4,
+        transport: httpx.AsyncBaseTransport | None = None,
+    ) -> None:
+        self._connection = Connection(url, api_key, timeout_s, retries)
+        self._http = httpx.AsyncClient(
+            base_url=self._connection.url, headers=self._connection.headers, transport=transport
+        )
+
+    async def __aenter__(self) -> "AsyncClient":
+        return self
+
+    async def __aexit__(
+        self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
+    ) -> None:
+        await self.close()
+
+    async def close(self) -> None:
+        await self._http.aclose()
+
+    async def submit(
+        self,
+        mesh: Mesh,
+        *,
+        parameters: Mapping[str, object] | None = None,
+        format: str | None = None,  # noqa: A002
+        webhook: str | None = None,
+        idempotency_key: str | None = None,
+        recompute: bool = False,
+    ) -> Job:
+        """Submit a mesh and return at once."""
+        return await self._run(
+            flows.submit(submission_of(mesh, parameters, format, webhook, idempotency_key, recompute))
+        )
+
+    async def segment(
+        self,
+        mesh: Mesh,
+        *,
+        segments: int | None = None,
+        granularity: float | None = None,
+        parameters: Mapping[str, object] | None = None,
+        format: str | None = None,  # noqa: A002
+    ) -> Segmentation:
+        """Submit a mesh and wait for its labels: at a number of segments, or a granularity from 0 to 1, or neither."""
+        submission = submission_of(mesh, parameters, format, None, None, False)
+        return await self._run(flows.segment(submission, flows.level_of(segments, granularity)))
+
+    async def job(self, job_id: str, *, wait_s: float = 0.0) -> Job:
+        """How a job is; the answer comes when it has ended, or after ``wait_s``."""
+        return await self._run(flows.get(job_id, wait_s))
+
+    async def wait(self, job_id: str) -> Job:
+        """Wait for the end of a job."""
+        return await self._run(flows.wait(job_id))
+
+    async def jobs(self, status: Status | None = None) -> AsyncIterator[Job]:
+        """All jobs, newest first."""
+        cursor: str | None = None
+        while True:
+            jobs, cursor = await self._run(flows.page(status, cursor))
+            for job in jobs:
+                yield job
+            if cursor is None:
+                return
+
+    async def labels(self, job: Job, segments: int | None = None, *, granularity: float | None = None) -> Segmentation:
+        """The labels of a job that has succeeded."""
+        return await self._run(flows.labels(job, flows.level_of(segments, granularity)))
+
+    async def hierarchy(self, job_id: str) -> dict[str, Any]:
+        """The tree of cuts."""
+        return await self._run(flows.hierarchy(job_id))
+
+    async def download(self, job_id: str, result: str, target: str | os.PathLike[str], **params: object) -> None:
+        """Save a result, such as ``model.glb``; the file is there whole or not at all."""
+        path = f"/v1/jobs/{job_id}/{result}"
+        partial = partial_path(target)
+        try:
+            async with self._http.stream(
+                "GET", path, params=texts(params), timeout=self._connection.timeout_s
+            ) as answer:
+                if answer.is_error:
+                    await answer.aread()
+                    raise flows.refusal(answer)
+                with partial.open("wb") as file:
+                    async for chunk in answer.aiter_bytes(CHUNK_BYTES):
+                        await asyncio.to_thread(file.write, chunk)
+        except httpx.TransportError as error:
+            raise self._connection.failure(None, error) from error
+        else:
+            os.replace(partial, target)
+        finally:
+            partial.unlink(missing_ok=True)
+
+    async def cancel(self, job_id: str) -> Job:
+        return await self._run(flows.cancel(job_id))
+
+    async def delete(self, job_id: str) -> None:
+        await self._run(flows.delete(job_id))
+
+    async def _run(self, flow: Flow[Value]) -> Value:
+        try:
+            call = next(flow)
+            while True:
+                call = flow.send(await self._send(call))
+        except StopIteration as end:
+            value: Value = end.value
+            return value
+
+    async def _send(self, call: Call) -> httpx.Response:
+        attempt = 0
+        while True:
+            answer, failure = None, None
+            try:
+                answer = await self._http.send(self._connection.request(self._http, call, async_chunks(call.body)))
+                if not answer.is_error:
+                    return answer
+            except httpx.TransportError as error:
+                failure = error
+            pause_s = self._connection.pause_s(attempt, answer)
+            if pause_s is None:
+                raise self._connection.failure(answer, failure)
+            attempt += 1
+            await asyncio.sleep(pause_s)

@@ -1,0 +1,102 @@
+"""What both clients have in common: requests, patience, and bytes that come piece by piece."""
+
+import asyncio
+import os
+from collections.abc import AsyncIterator, Iterator, Mapping
+from pathlib import Path
+from typing import Any, TypeAlias
+
+import httpx
+
+from cleave.client.errors import ClientError, ServerUnreachable
+from cleave.client.flows import Call, Submission, refusal
+
+Mesh: TypeAlias = str | os.PathLike[str] | bytes  # a path, or the bytes of a file
+
+CHUNK_BYTES = 256 * 1024
+_RETRIED = (429, 502, 503, 504)
+_LONGEST_PAUSE_S = 30.0
+
+
+class Connection:
+    """How a server is talked to, whoever waits for it."""
+
+    def __init__(self, url: str, api_key: str | None, timeout_s: float, retries: int) -> None:
+        self.url = url.rstrip("/")
+        self.headers = {} if api_key is None else {"Authorization": f"Bearer {api_key}"}
+        self.timeout_s = timeout_s
+        self.retries = retries
+
+    def request(self, client: httpx.Client | httpx.AsyncClient, call: Call, content: Any) -> httpx.Request:
+        headers = dict(call.headers)
+        if isinstance(call.body, Path):
+            headers["Content-Length"] = str(call.body.stat().st_size)
+        return client.build_request(
+            call.method,
+            call.path,
+            params=call.params,
+            headers=headers,
+            content=content,
+            timeout=self.timeout_s + call.patience_s,
+        )
+
+    def pause_s(self, attempt: int, answer: httpx.Response | None) -> float | None:
+        """How long to wait before the next try; None where this was the last, or the answer is final."""
+        if answer is not None and answer.status_code not in _RETRIED:
+            return None
+        if attempt >= self.retries:
+            return None
+        asked = answer.headers.get("Retry-After", "") if answer is not None else ""
+        return min(float(asked) if asked.isdigit() else 0.25 * 2**attempt, _LONGEST_PAUSE_S)
+
+    def failure(self, answer: httpx.Response | None, error: httpx.TransportError | None) -> ClientError:
+        """What is raised where no further try is made."""
+        if answer is not None:
+            return refusal(answer)
+        return ServerUnreachable(f"Nobody answers at {self.url} ({type(error).__name__}): is the server running?")
+
+
+def submission_of(
+    mesh: Mesh,
+    parameters: Mapping[str, object] | None,
+    format: str | None,  # noqa: A002
+    webhook: str | None,
+    idempotency_key: str | None,
+    recompute: bool,
+) -> Submission:
+    source = mesh if isinstance(mesh, bytes) else Path(mesh)
+    key = {} if idempotency_key is None else {"idempotency_key": idempotency_key}
+    return Submission(
+        mesh=source, format=format, parameters=parameters or {}, webhook=webhook, recompute=recompute, **key
+    )
+
+
+def chunks(body: Path | bytes | None) -> bytes | Iterator[bytes] | None:
+    return _read(body) if isinstance(body, Path) else body
+
+
+def _read(path: Path) -> Iterator[bytes]:
+    with path.open("rb") as file:
+        while chunk := file.read(CHUNK_BYTES):
+            yield chunk
+
+
+def async_chunks(body: Path | bytes | None) -> bytes | AsyncIterator[bytes] | None:
+    return _read_async(body) if isinstance(body, Path) else body
+
+
+async def _read_async(path: Path) -> AsyncIterator[bytes]:
+    with path.open("rb") as file:
+        while chunk := await asyncio.to_thread(file.read, CHUNK_BYTES):
+            yield chunk
+
+
+def partial_path(target: str | os.PathLike[str]) -> Path:
+    path = Path(target)
+    return path.with_name(f".{path.name}.{os.getpid()}.part")
+
+
+def texts(params: Mapping[str, object]) -> dict[str, str | list[str]]:
+    """Parameters of an address; those that are lists are given several times, those that are None not at all."""
+    given = {name: value for name, value in params.items() if value is not None}
+    return {name: [*map(str, value)] if isinstance(value, list) else str(value) for name, value in given.items()}

@@ -1,0 +1,155 @@
+"""The client for programs that wait."""
+
+import os
+import time
+from collections.abc import Iterator, Mapping
+from types import TracebackType
+from typing import Any
+
+import httpx
+
+from cleave.client import flows
+from cleave.client.connection import CHUNK_BYTES, Connection, Mesh, chunks, partial_path, submission_of, texts
+from cleave.client.documents import Job, Segmentation, Status
+from cleave.client.flows import Call, Flow, Value
+
+
+class Client:
+    """A client that waits for its answers.
+
+    Parameters
+    ----------
+    url : of the server.
+    api_key : where the server requires one.
+    timeout_s : longest silence of the server, beyond what it was asked to wait.
+    retries : how often a request is sent again where nobody answers or the server is busy; no job is made twice by it.
+
+    Raises
+    ------
+    ServerUnreachable, RequestRefused, JobEnded
+        Every method: see :mod:`cleave.client.errors`.
+    """
+
+    def __init__(
+        self,
+        url: str = "http://127.0.0.1:8000",
+        api_key: str | None = None,
+        *,
+        timeout_s: float = 60.0,
+        retries: int = 4,
+        transport: httpx.BaseTransport | None = None,
+    ) -> None:
+        self._connection = Connection(url, api_key, timeout_s, retries)
+        self._http = httpx.Client(base_url=self._connection.url, headers=self._connection.headers, transport=transport)
+
+    def __enter__(self) -> "Client":
+        return self
+
+    def __exit__(
+        self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
+    ) -> None:
+        self.close()
+
+    def close(self) -> None:
+        self._http.close()
+
+    def submit(
+        self,
+        mesh: Mesh,
+        *,
+        parameters: Mapping[str, object] | None = None,
+        format: str | None = None,  # noqa: A002
+        webhook: str | None = None,
+        idempotency_key: str | None = None,
+        recompute: bool = False,
+    ) -> Job:
+        """Submit a mesh and return at once."""
+        return self._run(flows.submit(submission_of(mesh, parameters, format, webhook, idempotency_key, recompute)))
+
+    def segment(
+        self,
+        mesh: Mesh,
+        *,
+        segments: int | None = None,
+        granularity: float | None = None,
+        parameters: Mapping[str, object] | None = None,
+        format: str | None = None,  # noqa: A002
+    ) -> Segmentation:
+        """Submit a mesh and wait for its labels: at a number of segments, or a granularity from 0 to 1, or neither."""
+        submission = submission_of(mesh, parameters, format, None, None, False)
+        return self._run(flows.segment(submission, flows.level_of(segments, granularity)))
+
+    def job(self, job_id: str, *, wait_s: float = 0.0) -> Job:
+        """How a job is; the answer comes when it has ended, or after ``wait_s``."""
+        return self._run(flows.get(job_id, wait_s))
+
+    def wait(self, job_id: str) -> Job:
+        """Wait for the end of a job."""
+        return self._run(flows.wait(job_id))
+
+    def jobs(self, status: Status | None = None) -> Iterator[Job]:
+        """All jobs, newest first."""
+        cursor: str | None = None
+        while True:
+            jobs, cursor = self._run(flows.page(status, cursor))
+            yield from jobs
+            if cursor is None:
+                return
+
+    def labels(self, job: Job, segments: int | None = None, *, granularity: float | None = None) -> Segmentation:
+        """The labels of a job that has succeeded."""
+        return self._run(flows.labels(job, flows.level_of(segments, granularity)))
+
+    def hierarchy(self, job_id: str) -> dict[str, Any]:
+        """The tree of cuts."""
+        return self._run(flows.hierarchy(job_id))
+
+    def download(self, job_id: str, result: str, target: str | os.PathLike[str], **params: object) -> None:
+        """Save a result, such as ``model.glb``; the file is there whole or not at all."""
+        path = f"/v1/jobs/{job_id}/{result}"
+        partial = partial_path(target)
+        try:
+            with self._http.stream("GET", path, params=texts(params), timeout=self._connection.timeout_s) as answer:
+                if answer.is_error:
+                    answer.read()
+                    raise flows.refusal(answer)
+                with partial.open("wb") as file:
+                    for chunk in answer.iter_bytes(CHUNK_BYTES):
+                        file.write(chunk)
+        except httpx.TransportError as error:
+            raise self._connection.failure(None, error) from error
+        else:
+            os.replace(partial, target)
+        finally:
+            partial.unlink(missing_ok=True)
+
+    def cancel(self, job_id: str) -> Job:
+        return self._run(flows.cancel(job_id))
+
+    def delete(self, job_id: str) -> None:
+        self._run(flows.delete(job_id))
+
+    def _run(self, flow: Flow[Value]) -> Value:
+        try:
+            call = next(flow)
+            while True:
+                call = flow.send(self._send(call))
+        except StopIteration as end:
+            value: Value = end.value
+            return value
+
+    def _send(self, call: Call) -> httpx.Response:
+        attempt = 0
+        while True:
+            answer, failure = None, None
+            try:
+                answer = self._http.send(self._connection.request(self._http, call, chunks(call.body)))
+                if not answer.is_error:
+                    return answer
+            except httpx.TransportError as error:
+                failure = error
+            pause_s = self._connection.pause_s(attempt, answer)
+            if pause_s is None:
+                raise self._connection.failure(answer, failure)
+            attempt += 1
+            time.sleep(pause_s)

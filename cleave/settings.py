@@ -1,0 +1,137 @@
+"""What an installation may choose, read once at the edge of a process from the environment."""
+
+from pathlib import Path
+from typing import Annotated, Any, Literal
+
+from platformdirs import user_data_path
+from pydantic import AfterValidator, Field, ValidationError
+from pydantic_settings import BaseSettings, SettingsConfigDict
+
+from cleave.logs import LogFormat
+
+LONGEST_WAIT_S = 600.0  # that any installation may hold back an answer
+
+
+class InvalidSettings(Exception):  # noqa: N818
+    """A variable of the environment has a value that cannot be used; the message names it."""
+
+
+class Settings(BaseSettings):
+    """The settings of one installation; each is the environment variable CLEAVE_ and its name in capitals."""
+
+    model_config = SettingsConfigDict(env_prefix="CLEAVE_", env_ignore_empty=True, extra="ignore", frozen=True)
+
+    data_dir: Annotated[Path, AfterValidator(lambda path: path.expanduser().absolute())] = Field(
+        default_factory=lambda: user_data_path("cleave", appauthor=False),
+        description="Folder of the jobs and their files; service and workers share it.",
+    )
+    store_url: str | None = Field(
+        default=None,
+        pattern=r"^(s3|gs|az)://",
+        description="The bucket of the jobs, such as s3://bucket/prefix; the data folder where none is set.",
+    )
+    store_cache_bytes: int = Field(
+        default=2**30, ge=0, description="Results of a bucket that are kept in the data folder of a service."
+    )
+    retention_s: float | None = Field(
+        default=None, ge=0, description="Age after its end at which a job is deleted; never where none is set."
+    )
+    retention_bytes: int | None = Field(
+        default=None, ge=0, description="Size of all jobs above which those go that ended first; any where none is set."
+    )
+    redis_url: str | None = Field(
+        default=None,
+        pattern=r"^(redis|rediss|unix)://",
+        description="The queue server, such as redis://host:6379/0; `cleave serve` brings its own where none is set.",
+    )
+    auth: Literal["auto", "required", "off"] = Field(
+        default="auto",
+        description="Whether API keys are required; auto: where there are any, or the address is not loopback.",
+    )
+    api_keys: str | None = Field(
+        default=None, description="API keys, NAME:DIGEST with commas between, as `cleave key NAME` prints them."
+    )
+    api_keys_file: Path | None = Field(
+        default=None, description="File with one NAME:DIGEST per line; it is read again when it changes."
+    )
+    cors_origins: str | None = Field(
+        default=None, description="Origins whose pages may use the API, with commas between; * for all."
+    )
+    key_max_queued_jobs: int = Field(default=1000, ge=1, description="Unfinished jobs that a key may have.")
+    key_max_running_jobs: int | None = Field(
+        default=None, ge=1, description="Jobs of a key that are in the queue or run at a time; the others wait outside."
+    )
+    key_upload_bytes_per_hour: int | None = Field(
+        default=None, ge=1, description="Bytes that a key may upload in an hour."
+    )
+    max_queued_jobs: int = Field(default=10_000, ge=1, description="Unfinished jobs that the installation may have.")
+    max_wait_s: float = Field(
+        default=60.0, ge=0, le=LONGEST_WAIT_S, description="Longest time that an answer is held back."
+    )
+    max_stream_s: float = Field(
+        default=3600.0, gt=0, description="Longest stream of events; a client that wants more comes back by itself."
+    )
+    max_batch_jobs: int = Field(default=1000, ge=1, le=10_000, description="Most jobs in a batch.")
+    webhook_private_targets: bool = Field(
+        default=False, description="Whether webhooks may go to private, link-local and loopback addresses."
+    )
+    max_upload_bytes: int = Field(default=512 * 2**20, gt=0, description="Largest mesh file that is accepted.")
+    max_batch_bytes: int = Field(default=4 * 2**30, gt=0, description="Largest batch, packed and unpacked.")
+    upload_idle_s: float = Field(default=30.0, gt=0, description="Silence after which an upload is given up.")
+    upload_bytes_per_s: int = Field(
+        default=1024, ge=0, description="Least speed of an upload, on average after its first upload_idle_s."
+    )
+    max_uncompressed_bytes: int = Field(
+        default=2 * 2**30, gt=0, description="Largest mesh file after it is unpacked, where it is a compressed one."
+    )
+    max_faces: int = Field(default=5_000_000, gt=0, description="Largest number of faces that is segmented.")
+    max_vertices: int = Field(
+        default=15_000_000,
+        gt=0,
+        description="Largest number of vertices of a mesh; STL files have three for every face.",
+    )
+    large_job_bytes: int = Field(
+        default=4 * 2**20, gt=0, description="Mesh files from this size on wait in the queue of the large jobs."
+    )
+    max_attempts: int = Field(default=3, ge=1, description="Runs of a job that keeps killing its worker.")
+    job_timeout_s: float = Field(default=3600.0, gt=0, description="Longest run of a job.")
+    job_cpu_s: int = Field(default=3600, gt=0, description="Longest time of a processor that a job may use.")
+    job_memory_bytes: int = Field(default=8 * 2**30, gt=0, description="Address space of the process that runs a job.")
+    job_file_bytes: int = Field(default=4 * 2**30, gt=0, description="Largest file that a job may write.")
+    lease_s: float = Field(
+        default=10.0, ge=3, le=30, description="A running job whose worker was silent for this long is run again."
+    )
+    janitor_interval_s: float = Field(
+        default=2.0, gt=0, le=30, description="Pause between two searches for jobs that the queue has lost."
+    )
+    shutdown_grace_s: float = Field(
+        default=3.0,
+        ge=0,
+        description="Time a running job has to end when its worker is stopped; then it is handed back.",
+    )
+    result_cache_bytes: int = Field(
+        default=64 * 2**20, ge=0, description="Memory in which the service keeps results that it has opened."
+    )
+    rendered_cache_bytes: int = Field(
+        default=64 * 2**20, ge=0, description="Memory in which it keeps pictures and models that it has made of them."
+    )
+    log_level: str = Field(default="info", pattern=r"^(debug|info|warning|error)$", description="Least level logged.")
+    log_format: LogFormat = Field(
+        default="auto", description="How lines are logged: text, json, or auto: text at a terminal, JSON elsewhere."
+    )
+
+
+def load_settings(**overrides: Any) -> Settings:
+    """The settings from the environment; an override that is None leaves the environment's value.
+
+    Raises
+    ------
+    InvalidSettings
+        Where a value cannot be used.
+    """
+    try:
+        return Settings(**{name: value for name, value in overrides.items() if value is not None})
+    except ValidationError as error:
+        first = error.errors(include_url=False)[0]
+        name = "_".join(str(part) for part in first["loc"])
+        raise InvalidSettings(f"CLEAVE_{name.upper()} is {first['input']!r}: {first['msg']}.") from error

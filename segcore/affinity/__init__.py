@@ -1,0 +1,1 @@
+"""How strongly neighbouring faces or vertices belong together, and what is measured for it."""

@@ -1,0 +1,76 @@
+"""How strongly two neighbouring faces belong together: the edge weights of the face dual graph.
+
+An affinity turns a surface into g, one number in (0, 1] for every dual edge; the weight of the edge is its length
+times g and the volume of a node is the area of its face, so that cuts and volumes do not depend on how finely the
+shape is meshed.
+"""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from segcore.affinity.boundary_features import boundary_probability
+from segcore.affinity.measurements import Measurements, measure
+from segcore.affinity.minima_rule import minima_rule_of_faces, minima_rule_of_vertices
+from segcore.arrays import FloatArray, IntArray
+from segcore.clean.surface import Surface
+from segcore.parameters import SegmentationParameters
+
+_FLOOR = 0.03  # g of the strongest boundary: lower lets noise be cut out, higher lets boundaries be ignored
+_BENDING_SCALE = 1.4  # concave bending
+_CHANGE_SCALE = 0.3  # change of thickness
+_CHANCE_SCALE = 0.05  # learned probability of a cut
+_LEARNED_BENDING = 0.4  # weights of what is measured next to what is learned
+_LEARNED_CHANGE = 1.5
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Affinity:
+    """The affinity of a surface, and what was measured on the way."""
+
+    value: FloatArray  # (E,) g in (0, 1]
+    thickness: FloatArray | None = None  # (F,) logarithm of the shape diameter over sqrt(total area), smoothed
+
+
+def concavity(surface: Surface, parameters: SegmentationParameters) -> Affinity:
+    """g = 0.03 + 0.97 exp(-x / 1.4 - x3 / 0.3), x the concave bending of an edge, x3 the change of thickness across it.
+
+    See ``segcore.affinity.measurements.measure``.
+    """
+    measured = measure(surface, parameters.seed)
+    return _affinity(measured, measured.bending / _BENDING_SCALE + measured.change / _CHANGE_SCALE)
+
+
+def learned(surface: Surface, parameters: SegmentationParameters) -> Affinity:
+    """g = 0.03 + 0.97 exp(-p / 0.05 - 0.4 x - 1.5 x3), p the chance that a person cuts along the edge.
+
+    See ``segcore.affinity.boundary_features``.
+    """
+    measured = measure(surface, parameters.seed)
+    chance = boundary_probability(surface, measured)
+    return _affinity(
+        measured, chance / _CHANCE_SCALE + _LEARNED_BENDING * measured.bending + _LEARNED_CHANGE * measured.change
+    )
+
+
+def adjacency_of_faces(surface: Surface, _: SegmentationParameters) -> Affinity:
+    """g = 1: the standard adjacency matrix."""
+    return Affinity(np.ones(len(surface.edge_faces)))
+
+
+def adjacency_of_vertices(_surface: Surface, ends: IntArray, _: SegmentationParameters) -> FloatArray:
+    """g = 1: the standard adjacency matrix."""
+    return np.ones(len(ends))
+
+
+FACE_AFFINITIES = {
+    "concavity": concavity,
+    "learned": learned,
+    "minima_rule": lambda surface, parameters: Affinity(minima_rule_of_faces(surface, parameters)),
+    "adjacency": adjacency_of_faces,
+}
+VERTEX_AFFINITIES = {"minima_rule": minima_rule_of_vertices, "adjacency": adjacency_of_vertices}
+
+
+def _affinity(measured: Measurements, distance: FloatArray) -> Affinity:
+    return Affinity(_FLOOR + (1.0 - _FLOOR) * np.exp(-distance), measured.log_thickness[measured.patches.of_face])

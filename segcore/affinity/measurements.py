@@ -1,0 +1,68 @@
+"""What is measured on a surface before anything is cut: bending along its edges, and how thick the body is under it."""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from segcore.affinity.curvature import principal_curvatures
+from segcore.affinity.patches import Patches, patches_of
+from segcore.affinity.thickness import Thickness, patch_thickness, smooth_logarithm
+from segcore.arrays import FloatArray, IntArray
+from segcore.clean.edge_geometry import EdgeGeometry
+from segcore.clean.surface import Surface
+
+_CURVATURE_SCALE = 8.0  # concave minimum curvatures are measured in 1 / sqrt(total area)
+_LOWEST_GUARD = 0.03  # affinity of the deepest concavity where patches are concerned
+THICKNESS_RADIUS = 0.06  # over which the thickness is smoothed, in sqrt(total area)
+_LARGEST_CHANGE = 3.0
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Measurements:
+    """Dimensionless quantities on the dual edges of a surface, and on its patches."""
+
+    edges: EdgeGeometry
+    k1: FloatArray  # (E,) maximum curvature times sqrt(total area), mean over the ends of the edge
+    k2: FloatArray  # (E,) minimum curvature, likewise
+    bending: FloatArray  # (E,) concave bending, see ``measure``
+    change: FloatArray  # (E,) change of thickness across the edge, 0 to 3
+    patches: Patches
+    thickness: Thickness
+    log_thickness: FloatArray  # (P,) its logarithm, smoothed over 0.06 sqrt(A)
+
+
+def measure(surface: Surface, seed: int) -> Measurements:
+    """Measure a surface.
+
+    The concave bending of an edge is x1 + x2 / 8, x1 = max(0, -theta) / mean |theta|, theta the dihedral angle (0 where
+    flat, negative where concave), the mean weighted by edge length; x2 = sqrt(A) max(0, -k2), k2 the minimum curvature
+    averaged over the ends of the edge, A the total area.
+
+    The change of thickness is x3 = min(3, 0.06 sqrt(A) c |dt|), dt the derivative across the edge of the logarithm of
+    the shape diameter, smoothed over 0.06 sqrt(A), and c the share of rays that met the other side from within: where
+    the surface is open or turned the wrong way there is no thickness to go by.
+
+    Parameters
+    ----------
+    seed : of the random order in which faces are gathered into patches.
+    """
+    edges = EdgeGeometry.of(surface)
+    size = float(np.sqrt(surface.areas.sum()))
+    curvatures = principal_curvatures(surface.vertices, surface.faces)
+    ends = surface.edge_vertices
+    k1, k2 = (0.5 * size * (k[ends[:, 0]] + k[ends[:, 1]]) for k in (curvatures.k1, curvatures.k2))
+    bending = np.maximum(0.0, -edges.dihedral) / edges.typical_dihedral + np.maximum(0.0, -k2) / _CURVATURE_SCALE
+    guard = _LOWEST_GUARD + (1.0 - _LOWEST_GUARD) * np.exp(-bending)
+    patches = patches_of(surface, guard, edges.positive_length, np.random.default_rng(seed))
+    thickness = patch_thickness(surface, patches)
+    log = smooth_logarithm(thickness, patches, THICKNESS_RADIUS * size)
+    slope = patches.gradients(log) * (THICKNESS_RADIUS * size * thickness.confidence)[:, None]
+    change = _change_across(slope, patches.of_face[surface.edge_faces], edges.across)
+    return Measurements(edges, k1, k2, bending, change, patches, thickness, log)
+
+
+def _change_across(slope: FloatArray, ends: IntArray, across: FloatArray) -> FloatArray:
+    """(E,) the derivative across every edge, from the slopes (P, 3) of the patches (E, 2) at its sides."""
+    along = np.einsum("ij,ij->i", 0.5 * (slope[ends[:, 0]] + slope[ends[:, 1]]), across)
+    change: FloatArray = np.minimum(_LARGEST_CHANGE, np.abs(along))
+    return change

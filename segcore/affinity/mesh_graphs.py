@@ -1,0 +1,58 @@
+"""The graphs of a surface: its faces or its vertices as nodes, weighted by an affinity."""
+
+import numpy as np
+
+from segcore.affinity.affinities import FACE_AFFINITIES, VERTEX_AFFINITIES
+from segcore.arrays import IntArray, at_least
+from segcore.clean.edge_geometry import edge_lengths
+from segcore.clean.surface import Surface
+from segcore.clean.topology import mesh_edges
+from segcore.graphs.mesh_graph import MeshGraph
+from segcore.graphs.surface_graph import SurfaceGraph, connected_components
+from segcore.mesh import face_centroids
+from segcore.parameters import SegmentationParameters
+
+_SMALLEST_FACE = 1e-4  # least volume of a face, in mean areas
+_SHORTEST_EDGE = 1e-2  # least length of an edge, in mean lengths: as that of a face with the least volume
+
+
+def mesh_graph(surface: Surface, parameters: SegmentationParameters) -> MeshGraph:
+    """The graph that the parameters name, with the affinity that they name."""
+    return _GRAPHS[parameters.graph](surface, parameters)
+
+
+def face_dual_graph(surface: Surface, parameters: SegmentationParameters) -> MeshGraph:
+    """The face dual graph: W = edge length times affinity, the volume of a node is the area of its face.
+
+    A face counts for at least 1e-4 of the mean area and an edge for 1e-2 of the mean length, so that degenerate
+    ones do not vanish from the sums, and a face that is a point is not cheaper to cut out than it is worth.
+    """
+    affinity = FACE_AFFINITIES[parameters.affinity](surface, parameters)
+    length = at_least(edge_lengths(surface), _SHORTEST_EDGE)
+    graph = SurfaceGraph(surface.edge_faces, length * affinity.value, at_least(surface.areas, _SMALLEST_FACE), length)
+    centroids = face_centroids(surface.vertices, surface.faces)
+    return MeshGraph(graph, centroids, np.arange(len(surface.faces), dtype=np.int32)[:, None], affinity.thickness)
+
+
+def vertex_graph(surface: Surface, parameters: SegmentationParameters) -> MeshGraph:
+    """The vertex graph of the paper: W = affinity, the volume of a node is its weighted degree.
+
+    A vertex at which components touch is a node of each of them.
+    """
+    corners, vertex = _vertices_of_components(surface)
+    edges = mesh_edges(corners)
+    affinity = VERTEX_AFFINITIES[parameters.affinity](surface, vertex[edges], parameters)
+    degrees = SurfaceGraph(edges, affinity, np.ones(len(vertex))).degrees()
+    return MeshGraph(SurfaceGraph(edges, affinity, degrees, np.ones(len(edges))), surface.vertices[vertex], corners)
+
+
+_GRAPHS = {"faces": face_dual_graph, "vertices": vertex_graph}
+
+
+def _vertices_of_components(surface: Surface) -> tuple[IntArray, IntArray]:
+    """(F, 3) the nodes at the corners of every face, and (N,) the vertex of every node."""
+    faces = SurfaceGraph(surface.edge_faces, np.ones(len(surface.edge_faces)), np.ones(len(surface.faces)))
+    component = connected_components(faces).astype(np.int64)
+    keys = component[:, None] * len(surface.vertices) + surface.faces
+    unique, corners = np.unique(keys, return_inverse=True)
+    return corners.reshape(-1, 3).astype(np.int32), (unique % len(surface.vertices)).astype(np.int32)

@@ -1,0 +1,1 @@
+"""A small graph that is cut in place of the mesh, over all components that touch."""

@@ -1,0 +1,125 @@
+"""Which of several cuts of a segment is made, which segment is next, and when people would stop."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import Protocol
+
+import numpy as np
+
+from segcore.arrays import FloatArray
+from segcore.coarsen.clusters import Clusters
+from segcore.cut.features import ClusterFields, Segment, cut_features
+from segcore.cut.order import best_order
+from segcore.graphs.cheeger import Cut
+from segcore.graphs.connected_sides import with_connected_sides
+from segcore.graphs.surface_graph import SurfaceGraph
+from segcore.graphs.tree import Tree
+from segcore.learned.models import learned_models
+from segcore.parameters import SegmentationParameters
+from segcore.solvers.solvers import SOLVERS, candidate_cuts
+
+# The normalized cut times sqrt(total area) from which people no longer cut, on the odd-numbered benchmark models.
+AUTOMATIC_NCUT = 1.44
+SMALLEST_SIDE = 0.002  # share of the total area below which a part is cut off only after everything else
+_NCUT_WEIGHT = 0.4  # of the normalized cut next to the learned share, where candidates are compared
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Split:
+    """The cut that is made if a segment is split."""
+
+    cut: Cut
+    value: float  # normalized cut, or the ratio that orders the splits, times sqrt(total volume)
+    priority: float  # the least is next
+    late: bool  # parts off so little that it waits for everything else
+
+
+class SplitRule(Protocol):
+    """How a tree grows."""
+
+    def best_split(self, segment: Segment) -> Split: ...
+
+    def finished(self, tree: Tree, splits: Sequence[Split | None]) -> Tree:
+        """The tree in its final order with its automatic number of segments.
+
+        Parameters
+        ----------
+        splits : (S,) None where components part; those come first.
+        """
+
+
+def split_rule(clusters: Clusters, parameters: SegmentationParameters, rng: np.random.Generator) -> SplitRule:
+    """The rule that the parameters name. The learned one needs to know the thickness of the clusters."""
+    if parameters.split_order != "learned" or clusters.thickness is None:
+        return RatioRule(clusters.graph, parameters, rng)
+    return LearnedRule(ClusterFields.of(clusters.graph, clusters.points, clusters.thickness), parameters, rng)
+
+
+class RatioRule:
+    """The solver's cut; the least normalized cut (or Cheeger cut, or the largest volume) first; a threshold."""
+
+    def __init__(self, graph: SurfaceGraph, parameters: SegmentationParameters, rng: np.random.Generator) -> None:
+        self._parameters = parameters
+        self._rng = rng
+        self._total = graph.total_volume
+
+    def best_split(self, segment: Segment) -> Split:
+        cut = SOLVERS[self._parameters.solver](segment.graph, self._parameters, self._rng)
+        cut = with_connected_sides(segment.graph, cut)
+        order = self._parameters.split_order
+        value = (cut.ncc if order == "ncc" else cut.ncut) * np.sqrt(self._total)
+        priority = -segment.graph.total_volume if order == "volume" else value
+        return Split(cut, value, priority, min(cut.inside, cut.outside) < SMALLEST_SIDE * self._total)
+
+    def finished(self, tree: Tree, splits: Sequence[Split | None]) -> Tree:
+        size = np.sqrt(self._total)
+        enough = (
+            s for s, split in enumerate(splits) if split and (split.late or split.cut.ncut * size >= AUTOMATIC_NCUT)
+        )
+        return tree.reordered(range(len(splits)), next(enough, len(splits)) + 1)
+
+
+class LearnedRule:
+    """The cut, the order and the end that people would choose, as far as ``segcore.cut.features`` knows."""
+
+    def __init__(self, fields: ClusterFields, parameters: SegmentationParameters, rng: np.random.Generator) -> None:
+        self._model = learned_models().split
+        self._fields = fields
+        self._parameters = parameters
+        self._rng = rng
+        self._total = fields.graph.total_volume
+
+    def best_split(self, segment: Segment) -> Split:
+        candidates = self.candidates(segment)
+        return self.best_of(candidates, self.features(segment, candidates))
+
+    def best_of(self, candidates: Sequence[Cut], features: FloatArray) -> Split:
+        """The candidate that people would rather make; one that has to wait only where there is no other."""
+        kept = self._model.probability(features)
+        size = np.sqrt(self._total)
+        late = [min(cut.inside, cut.outside) < SMALLEST_SIDE * self._total for cut in candidates]
+        loss = [q + _NCUT_WEIGHT * cut.ncut * size for q, cut in zip(kept, candidates, strict=True)]
+        best = min(range(len(candidates)), key=lambda i: (late[i], loss[i]))
+        cut = candidates[best]
+        return Split(cut, cut.ncut * size, float(kept[best]), late[best])
+
+    def candidates(self, segment: Segment) -> list[Cut]:
+        """Different cuts with connected sides. Of a segment that can only be split late there is one."""
+        cuts = candidate_cuts(segment.graph, self._parameters, self._rng)
+        connected = (with_connected_sides(segment.graph, cut) for cut in cuts)
+        return list({cut.key: cut for cut in connected}.values())
+
+    def features(self, segment: Segment, candidates: Sequence[Cut]) -> FloatArray:
+        """(N, M): see ``segcore.cut.features``."""
+        return np.stack([cut_features(self._fields, segment, cut) for cut in candidates])
+
+    def finished(self, tree: Tree, splits: Sequence[Split | None]) -> Tree:
+        apart = sum(split is None for split in splits)
+        learned = [split for split in splits if split is not None]
+        parent = np.maximum((tree.split_node[apart:] - 1) // 2 - apart, -1)
+        # Of all pairs of points those that a split parts; of these, those that more people part than keep together.
+        pairs = np.array([2.0 * split.cut.inside * split.cut.outside / self._total**2 for split in learned])
+        kept = np.array([split.priority for split in learned])
+        gain = np.where([split.late for split in learned], -1.0, pairs * (1.0 - 2.0 * kept))
+        order, worthwhile = best_order(parent, gain, pairs)
+        return tree.reordered([*range(apart), *(apart + s for s in order)], apart + worthwhile + 1)

@@ -1,0 +1,1 @@
+"""Weighted graphs and trees, and the algorithms on them that know nothing of meshes."""

@@ -1,0 +1,158 @@
+"""Cut, volume, normalized Cheeger cut, and the best threshold of a function on the nodes."""
+
+from dataclasses import dataclass
+from math import inf
+from typing import Literal, TypeAlias
+
+import numpy as np
+from numba import njit
+
+from segcore.arrays import BoolArray, FloatArray
+from segcore.graphs.surface_graph import SurfaceGraph
+
+Criterion: TypeAlias = Literal["ncc", "ncut"]
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Cut:
+    """A bipartition of the nodes of a graph, and what it costs."""
+
+    side: BoolArray  # (N,) True for the nodes of S
+    weight: float  # cut(S, T): sum of the weights between the sides
+    inside: float  # vol(S)
+    outside: float  # vol(T)
+
+    @property
+    def ncc(self) -> float:
+        """Normalized Cheeger cut, cut(S, T) / min(vol(S), vol(T)); infinity where a side is empty."""
+        smaller = min(self.inside, self.outside)
+        return self.weight / smaller if smaller > 0 else inf
+
+    @property
+    def ncut(self) -> float:
+        """Normalized cut, cut(S, T) (1 / vol(S) + 1 / vol(T)); infinity where a side is empty."""
+        if min(self.inside, self.outside) <= 0:
+            return inf
+        return self.weight / self.inside + self.weight / self.outside
+
+    def value(self, criterion: Criterion) -> float:
+        return self.ncc if criterion == "ncc" else self.ncut
+
+    @property
+    def canonical(self) -> "Cut":
+        """The same bipartition with node 0 in S: what is left of a cut when it does not matter which side is which."""
+        return self if self.side[0] else Cut(~self.side, self.weight, self.outside, self.inside)
+
+    @property
+    def key(self) -> bytes:
+        """The same for two cuts of a graph just when they are the same bipartition."""
+        return np.packbits(self.canonical.side).tobytes()
+
+
+def cut_of(graph: SurfaceGraph, side: BoolArray) -> Cut:
+    """The cut that a set of nodes makes.
+
+    Parameters
+    ----------
+    side : (N,) True for the nodes of S.
+    """
+    crossing = side[graph.edges[:, 0]] != side[graph.edges[:, 1]]
+    weight = graph.weight[crossing].sum()
+    return Cut(side, float(weight), float(graph.volume[side].sum()), float(graph.volume[~side].sum()))
+
+
+def cut_weight(graph: SurfaceGraph, side: BoolArray) -> float:
+    """cut(S, T) = sum of W[i, j] over i in S and j not in S."""
+    return cut_of(graph, side).weight
+
+
+def ncc(graph: SurfaceGraph, side: BoolArray) -> float:
+    """Normalized Cheeger cut of a bipartition.
+
+    NCC(S, T) = cut(S, T) / min(vol(S), vol(T)), infinity where a side is empty.
+
+    References
+    ----------
+    Buehler and Hein, Spectral clustering based on the graph p-Laplacian, ICML 2009, section 2.
+    """
+    return cut_of(graph, side).ncc
+
+
+def ncut(graph: SurfaceGraph, side: BoolArray) -> float:
+    """Normalized cut of a bipartition.
+
+    NCut(S, T) = cut(S, T) (1 / vol(S) + 1 / vol(T)), infinity where a side is empty.
+
+    References
+    ----------
+    Shi and Malik, Normalized cuts and image segmentation, PAMI 22(8), 2000.
+    """
+    return cut_of(graph, side).ncut
+
+
+def balance_subgradient(graph: SurfaceGraph, cut: Cut) -> FloatArray:
+    """(N,): vol[i] on the smaller side, -r vol[i] on the larger one, r = vol(smaller) / vol(larger); the sum is 0.
+
+    At the indicator of the smaller side it is a subgradient of the balance B(f) = min over c of sum vol[i] |f[i] - c|.
+    B is min(vol(A), vol(rest)) at the indicator of any set A, and the sum over A is at most that.
+    """
+    if cut.inside <= cut.outside:
+        return np.where(cut.side, graph.volume, -cut.inside / cut.outside * graph.volume)
+    return np.where(cut.side, -cut.outside / cut.inside * graph.volume, graph.volume)
+
+
+def sweep(graph: SurfaceGraph, values: FloatArray, criterion: Criterion = "ncc") -> Cut:
+    """The best cut among the upper level sets {i : values[i] > t} of a function. O(E + N log N).
+
+    Nodes of equal value always stay together; of equally good thresholds the lowest wins.
+
+    Parameters
+    ----------
+    values : (N,) finite.
+    criterion : what is minimised, the normalized Cheeger cut or the normalized cut.
+
+    Returns
+    -------
+    The cut, whose ``side`` is the upper level set; it is empty (and both ratios infinite) where all values are equal.
+    """
+    values = np.ascontiguousarray(values)
+    order = np.argsort(values)
+    threshold = _best_threshold(graph.edges, graph.weight, graph.volume, values, order, criterion == "ncut")
+    return cut_of(graph, values > threshold)
+
+
+@njit(cache=True)
+def _best_threshold(edges, weight, volume, values, order, both_sides):  # type: ignore[no-untyped-def]
+    """The value whose upper level set has the least ratio.
+
+    An edge between ranks a < b is cut by the thresholds after rank a, a + 1, ..., b - 1: adding its weight at a and
+    taking it away at b makes the cut of every threshold a running sum.
+    """
+    node_count = len(volume)
+    rank = np.empty(node_count, dtype=np.int32)
+    for r in range(node_count):
+        rank[order[r]] = r
+    change = np.zeros(node_count)
+    for e in range(len(edges)):
+        a = rank[edges[e, 0]]
+        b = rank[edges[e, 1]]
+        change[min(a, b)] += weight[e]
+        change[max(a, b)] -= weight[e]
+    total = 0.0
+    for i in range(node_count):
+        total += volume[i]
+    best_ratio = np.inf
+    best_threshold = values[order[node_count - 1]]
+    cut = 0.0
+    below = 0.0
+    for r in range(node_count - 1):
+        cut += change[r]
+        below += volume[order[r]]
+        if values[order[r]] == values[order[r + 1]]:
+            continue
+        above = total - below
+        ratio = cut / below + cut / above if both_sides else cut / min(below, above)
+        if ratio < best_ratio:
+            best_ratio = ratio
+            best_threshold = values[order[r]]
+    return best_threshold

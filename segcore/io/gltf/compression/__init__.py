@@ -1,0 +1,1 @@
+"""The compressions of glTF: meshopt and Draco."""

@@ -1,0 +1,125 @@
+"""The glTF 2.0 reader, for GLB files and for JSON with embedded buffers."""
+
+import numpy as np
+
+from segcore.arrays import FloatArray, IntArray
+from segcore.errors import InvalidMesh
+from segcore.io.gltf.accessors import Accessors
+from segcore.io.gltf.appearance import gltf_appearance
+from segcore.io.gltf.compression.draco import DRACO, decode_draco
+from segcore.io.gltf.document import Document, Item, integer, member, read_document
+from segcore.io.gltf.primitive import FAN, STRIP, TRIANGLES, Primitive
+from segcore.io.gltf.scene import Instance, mesh_instances
+from segcore.io.limits import ReadLimits
+from segcore.io.polygons import strip_faces
+from segcore.mesh import Mesh
+
+
+def read_gltf(data: bytes, limits: ReadLimits, with_appearance: bool = False) -> Mesh:
+    """Read all triangles of the default scene, in the coordinates of the scene.
+
+    Face order: the nodes of the scene depth first, the primitives of each mesh, the triangles of each primitive. A mesh
+    that stands at several places is there several times. Points and lines are passed over. Where a transform mirrors a
+    mesh, its faces are turned, as glTF wants it, so that their outside stays outside. The appearance is NORMAL,
+    TEXCOORD_0 and COLOR_0, each where all primitives have it, and the names of the nodes or else of their meshes.
+
+    Raises
+    ------
+    InvalidMesh, UnsupportedFormat, LimitExceeded
+    """
+    document = read_document(data)
+    accessors = Accessors(document, limits)
+    instances = mesh_instances(document)
+    primitives = {mesh: _primitives(document, accessors, mesh) for mesh in {at.mesh for at in instances}}
+    parts = [(instance, primitive) for instance in instances for primitive in primitives[instance.mesh]]
+    limits.check_faces(sum(primitive.face_count for _, primitive in parts))
+    return _assemble(parts, accessors, limits, with_appearance)
+
+
+def _primitives(document: Document, accessors: Accessors, mesh: int) -> list[Primitive]:
+    entries = document.item("meshes", mesh).get("primitives")
+    if not isinstance(entries, list) or not all(isinstance(entry, dict) for entry in entries):
+        raise InvalidMesh(f"meshes[{mesh}].primitives of the glTF file must be a list of objects.")
+    for i, entry in enumerate(entries):
+        _decompress(document, accessors, entry, f"meshes[{mesh}].primitives[{i}]")
+    described = (_primitive(entry, accessors, f"meshes[{mesh}].primitives[{i}]") for i, entry in enumerate(entries))
+    return [primitive for primitive in described if primitive.mode in (TRIANGLES, STRIP, FAN)]
+
+
+def _decompress(document: Document, accessors: Accessors, entry: Item, where: str) -> None:
+    """Give the accessors of a primitive that Draco compressed their values."""
+    extensions = entry.get("extensions")
+    if not isinstance(extensions, dict) or DRACO not in extensions:
+        return
+    decoded = decode_draco(document, member(extensions, DRACO, where), where)
+    attributes = member(entry, "attributes", where)
+    for name, values in decoded.attributes.items():
+        if name in attributes:
+            accessors.supply(integer(attributes, name, where), values, where)
+    accessors.supply(integer(entry, "indices", where), decoded.corners, where)
+
+
+def _primitive(entry: Item, accessors: Accessors, where: str) -> Primitive:
+    mode = integer(entry, "mode", where, TRIANGLES)
+    positions = integer(member(entry, "attributes", where), "POSITION", f"{where}.attributes")
+    indices = integer(entry, "indices", where) if "indices" in entry else None
+    corners = accessors.count(positions if indices is None else indices)
+    if mode == TRIANGLES and corners % 3:
+        raise InvalidMesh(f"{where} of the glTF file has {corners} corners, which are not whole triangles.")
+    return Primitive(where, mode, positions, indices, corners, member(entry, "attributes", where))
+
+
+def _assemble(
+    parts: list[tuple[Instance, Primitive]], accessors: Accessors, limits: ReadLimits, with_appearance: bool
+) -> Mesh:
+    """The mesh; an accessor that several primitives share at one place gives its vertices once."""
+    blocks: dict[tuple[int, bytes], int] = {}
+    vertex_count = 0
+    for instance, primitive in parts:
+        key = (primitive.positions, instance.transform.tobytes())
+        if key not in blocks:
+            blocks[key] = vertex_count
+            vertex_count += accessors.count(primitive.positions)
+    limits.check_vertices(vertex_count)
+    vertices = [_place(accessors, positions, np.frombuffer(place)) for positions, place in blocks]
+    faces = []
+    for instance, primitive in parts:
+        faces.append(_faces(primitive, accessors, instance))
+        faces[-1] += np.int32(blocks[primitive.positions, instance.transform.tobytes()])
+    return Mesh(
+        np.concatenate([np.zeros((0, 3)), *vertices]) if len(vertices) != 1 else vertices[0],
+        np.concatenate([np.zeros((0, 3), dtype=np.int32), *faces]) if len(faces) != 1 else faces[0],
+        appearance=gltf_appearance(parts, accessors) if with_appearance else None,
+    )
+
+
+def _place(accessors: Accessors, positions: int, transform: FloatArray) -> FloatArray:
+    """(V, 3) positions in the scene."""
+    values = accessors.read(positions, "VEC3").astype(np.float64)
+    matrix = transform.reshape(4, 4)
+    return values if (matrix == np.eye(4)).all() else values @ matrix[:3, :3].T + matrix[:3, 3]
+
+
+def _faces(primitive: Primitive, accessors: Accessors, instance: Instance) -> IntArray:
+    """(F, 3) indices into the positions of the primitive, as an array of its own."""
+    corners = _corners(primitive, accessors)
+    if primitive.mode == TRIANGLES:
+        faces = corners.reshape(-1, 3)
+    elif primitive.mode == STRIP:
+        faces = strip_faces(corners, np.arange(len(corners)) == 0).astype(np.int32)
+    else:
+        faces = np.stack([corners[1:-1], corners[2:], np.full(primitive.face_count, corners[0])], axis=1)
+    mirrored = np.linalg.det(instance.transform[:3, :3]) < 0
+    return faces[:, [0, 2, 1]] if mirrored else faces
+
+
+def _corners(primitive: Primitive, accessors: Accessors) -> IntArray:
+    if primitive.indices is None:
+        return np.arange(primitive.corners, dtype=np.int32)
+    corners = accessors.read(primitive.indices, "SCALAR")[:, 0]
+    if corners.dtype.kind != "u":
+        raise InvalidMesh(f"The indices of {primitive.where} of the glTF file must be unsigned whole numbers.")
+    vertices = accessors.count(primitive.positions)
+    if corners.size and corners.max() >= vertices:
+        raise InvalidMesh(f"{primitive.where} of the glTF file has the index {corners.max()}, but {vertices} vertices.")
+    return corners.astype(np.int32)

@@ -1,0 +1,158 @@
+"""The JSON of a GLB file: nodes that are the tree of cuts, and the materials of its segments."""
+
+from dataclasses import dataclass, replace
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from segcore.arrays import FloatArray, IntArray
+from segcore.hierarchy import Hierarchy
+from segcore.io.gltf.writer_geometry import Placement
+from segcore.io.labels import node_documents
+from segcore.io.palette import linear_rgb, segment_colors
+from segcore.io.slices import Slices
+
+_UNSIGNED_INT, _FLOAT = 5125, 5126
+_ARRAY_BUFFER, _ELEMENT_ARRAY_BUFFER = 34962, 34963
+_VARIANTS = "KHR_materials_variants"
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Drawing:
+    """Which nodes of a hierarchy carry geometry, and with which materials."""
+
+    segments: int  # the level that is shown
+    nodes: IntArray  # (D,) the nodes that carry geometry, node k having label k
+    of_face: IntArray  # (F,) the entry of ``nodes`` that every face belongs to
+    material: IntArray  # (D,) of the level that is shown
+    variants: IntArray  # (L, D) the material at every level, or (0, D) where there is one level only
+
+
+def level_drawing(hierarchy: Hierarchy, segments: int | None) -> Drawing:
+    """The segments of one level."""
+    nodes = hierarchy.segment_nodes(segments)
+    count = len(nodes)
+    one_level = np.zeros((0, count), dtype=np.int32)
+    return Drawing(count, nodes, hierarchy.labels(segments), np.arange(count, dtype=np.int32), one_level)
+
+
+def all_levels_drawing(hierarchy: Hierarchy, segments: int | None) -> Drawing:
+    """The leaves, coloured as the segments of a level, and of every other level as variants."""
+    count = len(hierarchy.segment_nodes(segments))
+    leaves = hierarchy.segment_nodes(hierarchy.max_segments)
+    of_leaves = replace(hierarchy, face_leaf=leaves)  # a face for each leaf: its labels are those of the leaves
+    variants = np.stack([of_leaves.labels(k + 1) for k in range(hierarchy.max_segments)])
+    return Drawing(count, leaves, hierarchy.labels(hierarchy.max_segments), variants[count - 1], variants)
+
+
+def scene_document(
+    hierarchy: Hierarchy, drawing: Drawing, placement: Placement, slices: Slices, sizes: list[int], names: list[str]
+) -> dict[str, Any]:
+    """The glTF document over three blobs of ``sizes`` bytes: positions, corners in slices, input faces.
+
+    Parameters
+    ----------
+    names : (D,) what the parts that carry geometry are called.
+    """
+    offsets = [0, sizes[0], sizes[0] + sizes[1]]
+    parts = range(len(drawing.nodes))
+    colors = linear_rgb(segment_colors(len(drawing.nodes)))
+    document = {
+        "asset": {"version": "2.0", "generator": "Cleave"},
+        "scene": 0,
+        "scenes": [{"nodes": [0], "extras": _scene_extras(hierarchy, drawing)}],
+        "nodes": _nodes(hierarchy, drawing, placement, slices, names),
+        "meshes": [_mesh(drawing, k, names[k]) for k in parts],
+        "materials": [_material(name, color) for name, color in zip(names, colors, strict=True)],
+        "accessors": [_position_accessor(placement.positions), *(_index_accessor(slices, k) for k in parts)],
+        "bufferViews": [
+            {"buffer": 0, "byteOffset": offsets[0], "byteLength": sizes[0], "target": _ARRAY_BUFFER},
+            {"buffer": 0, "byteOffset": offsets[1], "byteLength": sizes[1], "target": _ELEMENT_ARRAY_BUFFER},
+            {"buffer": 0, "byteOffset": offsets[2], "byteLength": sizes[2], "name": "input_faces"},
+        ],
+        "buffers": [{"byteLength": sum(sizes)}],
+    }
+    return document | (_variants(len(drawing.variants)) if len(drawing.variants) else {})
+
+
+def _scene_extras(hierarchy: Hierarchy, drawing: Drawing) -> dict[str, Any]:
+    return {
+        "segments": drawing.segments,
+        "max_segments": hierarchy.max_segments,
+        "automatic_segments": hierarchy.automatic_segments,
+        "input_faces": {"bufferView": 2, "componentType": _UNSIGNED_INT, "count": len(drawing.of_face)},
+    }
+
+
+def _variants(count: int) -> dict[str, Any]:
+    names = [{"name": f"{k} segment{'s' if k > 1 else ''}"} for k in range(1, count + 1)]
+    return {"extensionsUsed": [_VARIANTS], "extensions": {_VARIANTS: {"variants": names}}}
+
+
+def _nodes(
+    hierarchy: Hierarchy, drawing: Drawing, placement: Placement, slices: Slices, names: list[str]
+) -> list[dict[str, Any]]:
+    part_of = {node: k for k, node in enumerate(drawing.nodes.tolist())}
+    nodes = []
+    for entry in node_documents(hierarchy)[: 2 * len(part_of) - 1]:
+        extras = {name: entry[name] for name in ("level", "label", "area", "faces", "cut_value")}
+        if (k := part_of.get(entry["id"])) is None:
+            nodes.append({"name": f"group {entry['id']}", "children": entry["children"], "extras": extras})
+        else:
+            extras |= {"first_face": int(slices.start[k])} | ({} if len(drawing.variants) else {"segment": k})
+            nodes.append({"name": names[k], "mesh": k, "extras": extras})
+    if any(placement.translation):
+        nodes[0]["translation"] = placement.translation
+    if placement.scale != 1.0:
+        nodes[0]["scale"] = [placement.scale] * 3
+    return nodes
+
+
+def _mesh(drawing: Drawing, k: int, name: str) -> dict[str, Any]:
+    primitive = {"attributes": {"POSITION": 0}, "indices": k + 1, "material": int(drawing.material[k])}
+    if len(drawing.variants):
+        primitive["extensions"] = {_VARIANTS: {"mappings": _mappings(drawing.variants[:, k])}}
+    return {"name": name, "primitives": [primitive]}
+
+
+def _mappings(materials: IntArray) -> list[dict[str, Any]]:
+    """Each material with the variants, one for each entry, in which it is used."""
+    return [
+        {"material": material, "variants": np.flatnonzero(materials == material).tolist()}
+        for material in np.unique(materials).tolist()
+    ]
+
+
+def _material(name: str, color: FloatArray) -> dict[str, Any]:
+    return {
+        "name": name,
+        "doubleSided": True,  # the input may be open or turned inside out
+        "pbrMetallicRoughness": {
+            "baseColorFactor": [*(round(channel, 6) for channel in color.tolist()), 1.0],
+            "metallicFactor": 0.0,
+            "roughnessFactor": 0.8,
+        },
+    }
+
+
+def _position_accessor(positions: NDArray[np.float32]) -> dict[str, Any]:
+    return {
+        "bufferView": 0,
+        "componentType": _FLOAT,
+        "type": "VEC3",
+        "count": len(positions),
+        "min": positions.min(axis=0).tolist(),
+        "max": positions.max(axis=0).tolist(),
+    }
+
+
+def _index_accessor(slices: Slices, k: int) -> dict[str, Any]:
+    first, end = int(slices.start[k]), int(slices.start[k + 1])
+    return {
+        "bufferView": 1,
+        "byteOffset": 12 * first,
+        "componentType": _UNSIGNED_INT,
+        "type": "SCALAR",
+        "count": 3 * (end - first),
+    }

@@ -1,0 +1,78 @@
+"""The OBJ reader (Wavefront)."""
+
+import re
+
+import numpy as np
+
+from segcore.arrays import BoolArray, FloatArray, LongArray
+from segcore.errors import InvalidMesh
+from segcore.io.limits import ReadLimits
+from segcore.io.obj.appearance import obj_appearance
+from segcore.io.obj.kernels import parse_face_lines, parse_vertex_lines
+from segcore.io.polygons import Polygons, mesh_of_polygons
+from segcore.io.text.words import Words, find_words, plain_text, without_comments
+from segcore.mesh import Mesh
+
+_CONTINUATION = re.compile(rb"\\[ \t\r]*\n")
+_CORNER = re.compile(r"[-+]?\d+(/-?\d*){0,2}", re.ASCII)
+
+
+def read_obj(data: bytes, limits: ReadLimits, with_appearance: bool = False) -> Mesh:
+    """Read the vertices and polygons of an OBJ file.
+
+    Materials, points and lines are passed over, and no file that is named in it is ever opened. A negative index counts
+    back from the last vertex before its line. The appearance is the texture coordinates and normals of the corners, the
+    colours of the vertices and the names of groups and objects.
+
+    An OBJ file does not say how long it is: one that is cut short between two lines cannot be told from a whole one.
+
+    Raises
+    ------
+    InvalidMesh, LimitExceeded
+    """
+    text = without_comments(plain_text(data))
+    if b"\\" in text:
+        text = _CONTINUATION.sub(lambda end: b" " * len(end[0]), text)
+    words = find_words(text)
+    is_vertex, is_face = words.lines_with(b"v"), words.lines_with(b"f")
+    limits.check_vertices(int(is_vertex.sum()))
+    limits.check_faces(int(is_face.sum()))
+    vertices = _vertices(words, is_vertex)
+    polygons = _polygons(words, is_vertex, is_face)
+    appearance = obj_appearance(words, is_vertex, is_face, polygons) if with_appearance else None
+    return mesh_of_polygons(vertices, polygons, limits, appearance)
+
+
+def _values_per_line(words: Words, lines: LongArray, what: str) -> LongArray:
+    """(N,) the number of words after the keyword of each line, at least three."""
+    counts = (words.line_start[lines + 1] - words.line_start[lines] - 1).astype(np.int64)
+    if (counts < 3).any():
+        first = words.line_start[lines[int(np.argmax(counts < 3))]]
+        raise InvalidMesh(f"Line {words.line_number(int(first))}: {what} needs at least three values.")
+    return counts
+
+
+def _vertices(words: Words, is_vertex: BoolArray) -> FloatArray:
+    lines = np.flatnonzero(is_vertex)
+    _values_per_line(words, lines, "a vertex")
+    vertices, unread = np.empty((len(lines), 3)), np.empty(len(lines), dtype=bool)
+    if parse_vertex_lines(words.letters, words.start, words.line_start, lines, vertices, unread):
+        for i in np.flatnonzero(unread).tolist():
+            first, last = words.line_start[lines[i] : lines[i] + 2].tolist()
+            vertices[i] = [words.float(word) for word in range(first + 1, last)][:3]
+    return vertices
+
+
+def _polygons(words: Words, is_vertex: BoolArray, is_face: BoolArray) -> Polygons:
+    lines = np.flatnonzero(is_face)
+    sizes = _values_per_line(words, lines, "a face")
+    before = np.cumsum(is_vertex, dtype=np.int32)[lines]
+    corners = np.empty(int(sizes.sum()), dtype=np.int32)
+    vertex_count = int(np.count_nonzero(is_vertex))
+    bad = parse_face_lines(words.letters, words.start, words.line_start, lines, before, vertex_count, corners)
+    if bad >= 0:
+        word, line = words.word(bad)[:40], words.line_number(bad)
+        if _CORNER.fullmatch(word):
+            raise InvalidMesh(f"Line {line}: there is no vertex {word} for this face.")
+        raise InvalidMesh(f"Line {line}: {word!r} is not a vertex index.")
+    return Polygons(corners, sizes)

@@ -1,0 +1,84 @@
+"""The OBJ writer: a group for every segment."""
+
+from collections.abc import Iterator
+from typing import BinaryIO
+
+import numpy as np
+
+from segcore.appearance import Appearance
+from segcore.arrays import IntArray
+from segcore.hierarchy import Hierarchy
+from segcore.io.names import SegmentNames, comment, group_names
+from segcore.io.slices import segment_slices
+from segcore.io.text.rows import format_rows
+from segcore.mesh import Mesh
+
+
+def write_obj(
+    target: BinaryIO,
+    mesh: Mesh,
+    hierarchy: Hierarchy,
+    segments: int | None = None,
+    *,
+    names: SegmentNames | None = None,
+) -> None:
+    """Write an OBJ file: all vertices in input order, then group ``segment_k`` for every segment.
+
+    A group holds its faces in input order, so triangle t of group k is the t-th input face with label k. Coordinates
+    are written as decimal numbers that give the same floating point numbers back. Normals, texture coordinates and the
+    colours of vertices stand where the input had them. A comment after the name of a group says which groups of the
+    input reach into it.
+
+    Parameters
+    ----------
+    names : what segments are called in place of ``segment_k``, see :func:`segcore.io.names.group_names`.
+
+    Raises
+    ------
+    InvalidParameters
+        Where ``segments`` is not in 1..max_segments.
+    """
+    slices = segment_slices(hierarchy, segments)
+    appearance = mesh.appearance or Appearance()
+    target.write(b"# written by Cleave: group k, counted from 0, holds the faces with label k, in input order\n")
+    for lines in _vertex_lines(mesh, appearance):
+        target.write(lines)
+    for label, name in enumerate(group_names(names, len(slices))):
+        faces = slices[label]
+        target.write(f"g {name}\n".encode())
+        for of_input in appearance.groups_of(faces):
+            target.write(f"# group of the input: {comment(of_input)}\n".encode())
+        for lines in _face_lines(mesh, appearance, faces):
+            target.write(lines)
+
+
+def _vertex_lines(mesh: Mesh, appearance: Appearance) -> Iterator[bytes]:
+    if appearance.colors is None:
+        yield from format_rows("v %r %r %r\n", mesh.vertices)
+    else:  # after the coordinates, the usual place where programs write colours of vertices
+        colors = np.round(appearance.colors[: len(mesh.vertices), :3] / 255, 4)
+        yield from format_rows("v %r %r %r %r %r %r\n", mesh.vertices, colors)
+    if appearance.uvs is not None:
+        yield from format_rows("vt %r %r\n", appearance.uvs.astype(np.float64) * [1, -1] + [0, 1])
+    if appearance.normals is not None:
+        yield from format_rows("vn %r %r %r\n", appearance.normals.astype(np.float64))
+
+
+def _face_lines(mesh: Mesh, appearance: Appearance, faces: IntArray) -> Iterator[bytes]:
+    corner = _corner_form(appearance)
+    rows = mesh.faces if appearance.corners is None else appearance.corners
+    columns = [mesh.faces[faces], *[rows[faces]] * (corner.count("%d") - 1)]
+    corners = np.stack(columns, axis=2).reshape(len(faces), -1) + 1
+    return format_rows(f"f {corner} {corner} {corner}\n", corners)
+
+
+def _corner_form(appearance: Appearance) -> str:
+    match appearance.uvs is not None, appearance.normals is not None:
+        case True, True:
+            return "%d/%d/%d"
+        case True, False:
+            return "%d/%d"
+        case False, True:
+            return "%d//%d"
+        case _:
+            return "%d"

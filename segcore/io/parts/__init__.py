@@ -1,0 +1,1 @@
+"""The segments of a mesh as meshes and files of their own."""

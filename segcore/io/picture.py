@@ -1,0 +1,154 @@
+"""Pictures of segmentations, drawn on the processor: no display and no graphics card needed."""
+
+import struct
+import zlib
+from typing import BinaryIO
+
+import numpy as np
+from numba import njit
+
+from segcore.arrays import FloatArray, IntArray
+from segcore.io.palette import segment_colors
+from segcore.mesh import Mesh, face_normals_and_areas
+
+ByteArray = np.ndarray[tuple[int, ...], np.dtype[np.uint8]]
+
+_SAMPLES = 2  # samples per pixel in each direction
+_MARGIN = 0.04  # free border, in widths of the picture
+_CREASE = np.cos(np.radians(40))  # faces that meet at a larger angle are shaded apart
+_KEY = np.array([0.35, 0.75, 0.56])  # direction to the main light: right, up, towards the viewer
+_NOTHING = -1
+
+
+def draw(mesh: Mesh, labels: IntArray, size: int = 512, azimuth: float = 30.0, elevation: float = 20.0) -> ByteArray:
+    """Draw a mesh in the colours of its segments, with dark lines between them.
+
+    Parameters
+    ----------
+    labels : (F,) the segment of every face.
+    size : width and height in pixels.
+    azimuth, elevation : where the viewer stands, in degrees: turned about the y axis from +z towards +x, and above it.
+
+    Returns
+    -------
+    (size, size, 4) uint8, red, green, blue and opacity; orthographic, y up, the mesh fills the picture.
+    """
+    view = _view(azimuth, elevation)
+    seen = mesh.vertices @ view.T
+    low, high = seen.min(axis=0), seen.max(axis=0)
+    resolution = size * _SAMPLES
+    scale = resolution * (1 - 2 * _MARGIN) / max(float((high - low)[:2].max()), float(np.finfo(float).tiny))
+    screen = (seen - 0.5 * (low + high)) * scale
+    screen[:, :2] = screen[:, :2] * [1, -1] + 0.5 * resolution
+    normals = _corner_normals(mesh.faces, face_normals_and_areas(mesh.corners)[0], len(mesh.vertices)) @ view.T
+    label, light = _rasterize(screen, mesh.faces, labels, normals, resolution)
+    return _shaded(label, light, size)
+
+
+def _view(azimuth: float, elevation: float) -> FloatArray:
+    """Rows: right, up, towards the viewer."""
+    a, e = np.radians(azimuth), np.radians(elevation)
+    towards = np.array([np.sin(a) * np.cos(e), np.sin(e), np.cos(a) * np.cos(e)])
+    right = np.array([np.cos(a), 0.0, -np.sin(a)])
+    return np.stack([right, np.cross(towards, right), towards])
+
+
+def _shaded(label: IntArray, light: FloatArray, size: int) -> ByteArray:
+    covered = label != _NOTHING
+    colors = segment_colors(int(label.max()) + 1)[label] if covered.any() else np.zeros((*label.shape, 3))
+    border = np.zeros(label.shape, dtype=bool)
+    for axis in (0, 1):
+        behind = np.roll(label, 1, axis)
+        border |= (label != behind) & covered & (behind != _NOTHING)
+    shade = np.where(border, 0.35, 1.0) * light
+    image = np.concatenate(
+        [np.minimum(colors * shade[..., None], 1.0) * covered[..., None], covered[..., None]], axis=2
+    )
+    image = image.reshape(size, _SAMPLES, size, _SAMPLES, 4).mean(axis=(1, 3))
+    image[..., :3] /= np.maximum(image[..., 3:], 1e-6)
+    pixels: ByteArray = np.rint(255 * image).astype(np.uint8)
+    return pixels
+
+
+@njit(cache=True, nogil=True)
+def _corner_normals(faces: IntArray, normals: FloatArray, vertex_count: int) -> FloatArray:
+    """(F, 3, 3): at every corner the mean normal of the faces there that lie within the crease angle."""
+    start = np.zeros(vertex_count + 1, np.int64)
+    for f in range(len(faces)):
+        for k in range(3):
+            start[faces[f, k] + 1] += 1
+    for v in range(vertex_count):
+        start[v + 1] += start[v]
+    fill = start[:-1].copy()
+    around = np.empty(3 * len(faces), np.int32)
+    for f in range(len(faces)):
+        for k in range(3):
+            around[fill[faces[f, k]]] = f
+            fill[faces[f, k]] += 1
+    result = np.empty((len(faces), 3, 3))
+    for f in range(len(faces)):
+        n = normals[f]
+        for k in range(3):
+            x, y, z = 0.0, 0.0, 0.0
+            v = faces[f, k]
+            for p in range(start[v], start[v + 1]):
+                m = normals[around[p]]
+                if n[0] * m[0] + n[1] * m[1] + n[2] * m[2] > _CREASE:
+                    x, y, z = x + m[0], y + m[1], z + m[2]
+            length = max(np.sqrt(x * x + y * y + z * z), 1e-12)
+            result[f, k, 0], result[f, k, 1], result[f, k, 2] = x / length, y / length, z / length
+    return result
+
+
+@njit(cache=True, nogil=True)
+def _rasterize(
+    screen: FloatArray, faces: IntArray, labels: IntArray, normals: FloatArray, resolution: int
+) -> tuple[IntArray, FloatArray]:
+    """The label (-1 where there is nothing) and the brightness of the nearest face at every sample."""
+    label = np.full((resolution, resolution), -1, np.int32)
+    light = np.zeros((resolution, resolution))
+    depth = np.full((resolution, resolution), -np.inf)
+    for f in range(len(faces)):
+        a, b, c = screen[faces[f, 0]], screen[faces[f, 1]], screen[faces[f, 2]]
+        doubled = (b[0] - a[0]) * (c[1] - a[1]) - (c[0] - a[0]) * (b[1] - a[1])
+        if doubled == 0.0:
+            continue
+        left = max(int(np.floor(min(a[0], b[0], c[0]))), 0)
+        right = min(int(np.ceil(max(a[0], b[0], c[0]))), resolution - 1)
+        top = max(int(np.floor(min(a[1], b[1], c[1]))), 0)
+        bottom = min(int(np.ceil(max(a[1], b[1], c[1]))), resolution - 1)
+        for row in range(top, bottom + 1):
+            for column in range(left, right + 1):
+                x, y = column + 0.5, row + 0.5
+                u = ((b[0] - x) * (c[1] - y) - (c[0] - x) * (b[1] - y)) / doubled
+                v = ((c[0] - x) * (a[1] - y) - (a[0] - x) * (c[1] - y)) / doubled
+                w = 1.0 - u - v
+                if u < 0.0 or v < 0.0 or w < 0.0:
+                    continue
+                z = u * a[2] + v * b[2] + w * c[2]
+                if z <= depth[row, column]:
+                    continue
+                depth[row, column] = z
+                label[row, column] = labels[f]
+                n = u * normals[f, 0] + v * normals[f, 1] + w * normals[f, 2]
+                length = max(np.sqrt(n[0] * n[0] + n[1] * n[1] + n[2] * n[2]), 1e-12)
+                # Faces seen from behind are lit as if turned round.
+                side = 1.0 if n[2] >= 0.0 else -1.0
+                key = max(0.0, side * (_KEY[0] * n[0] + _KEY[1] * n[1] + _KEY[2] * n[2]) / length)
+                light[row, column] = 0.30 + 0.28 * abs(n[2]) / length + 0.52 * key
+    return label, light
+
+
+def write_png(target: BinaryIO, pixels: NDArray[np.uint8]) -> None:
+    """Write (height, width, 4) uint8 pixels, the first row on top."""
+    height, width, _ = pixels.shape
+    unfiltered = np.zeros((height, 1 + 4 * width), dtype=np.uint8)
+    unfiltered[:, 1:] = pixels.reshape(height, -1)
+    target.write(b"\x89PNG\r\n\x1a\n")
+    _write_chunk(target, b"IHDR", struct.pack(">IIBBBBB", width, height, 8, 6, 0, 0, 0))
+    _write_chunk(target, b"IDAT", zlib.compress(unfiltered.tobytes(), 9))
+    _write_chunk(target, b"IEND", b"")
+
+
+def _write_chunk(target: BinaryIO, kind: bytes, data: bytes) -> None:
+    target.write(struct.pack(">I", len(data)) + kind + data + struct.pack(">I", zlib.crc32(kind + data)))

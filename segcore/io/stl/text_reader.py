@@ -1,0 +1,104 @@
+"""The reader of STL files in text."""
+
+import re
+
+import numpy as np
+
+from segcore.appearance import Appearance, group_appearance
+from segcore.arrays import BoolArray, FloatArray, LongArray
+from segcore.errors import InvalidMesh
+from segcore.io.limits import ReadLimits
+from segcore.io.polygons import Polygons, mesh_of_polygons
+from segcore.io.text.words import Words, find_words, plain_text
+from segcore.mesh import Mesh
+
+# The lines of a face as nearly every program writes them: how each begins, and how many words it has.
+_VERTEX = (b"vertex",)
+_LINES = ((b"facet", b"normal"), (b"outer", b"loop"), _VERTEX, _VERTEX, _VERTEX, (b"endloop",), (b"endfacet",))
+_WORDS = (5, 2, 4, 4, 4, 1, 1)
+_VERTICES = slice(2, 5)
+_SOLID = re.compile(rb"^[ \t]*(?:end)?solid(?!\S)[^\n]*", re.MULTILINE)
+_END = re.compile(rb"\s*+endsolid(?!\S)[^\n]*+\s*+\Z")
+_FACE = re.compile(
+    rb"\s*+facet(?:\s++normal(?:\s++\S++){3})?\s++outer\s++loop"
+    rb"((?:\s++vertex(?:\s++\S++){3}){3,}+)\s++endloop\s++endfacet(?!\S)"
+)
+
+
+def read_ascii_stl(data: bytes, limits: ReadLimits, with_appearance: bool = False) -> Mesh:
+    """Read an STL file in text: one or more solids; loops of more than three vertices are cut into fans.
+
+    Raises
+    ------
+    InvalidMesh, LimitExceeded
+    """
+    plain = plain_text(data)
+    text = plain.lower()
+    last_line = text[text.rfind(b"\n", 0, text.rfind(b"solid") + 1) + 1 :]
+    if not _END.match(last_line):
+        raise InvalidMesh("The STL file does not end with 'endsolid': it is cut short.")
+    words = find_words(text)
+    is_solid = words.lines_with(b"solid") | words.lines_with(b"endsolid")  # any name may follow
+    vertices = _regular_vertices(words, np.flatnonzero(~is_solid))
+    if vertices is None:
+        return _read_any_layout(_SOLID.sub(lambda line: b" " * len(line[0]), text), limits)
+    appearance = _solids(plain, words, is_solid) if with_appearance else None
+    polygons = Polygons(np.arange(len(vertices)), np.full(len(vertices) // 3, 3))
+    return mesh_of_polygons(vertices, polygons, limits, appearance)
+
+
+def _regular_vertices(words: Words, lines: LongArray) -> FloatArray | None:
+    """(3 F, 3) where ``lines``, those of the faces, are the usual seven for each, else None."""
+    if len(lines) == 0 or len(lines) % len(_LINES):
+        return None
+    lines = lines.reshape(-1, len(_LINES))
+    if not (np.diff(words.line_start)[lines] == _WORDS).all():
+        return None
+    first = words.line_start[lines]
+    begins = [(first[:, i] + at, word) for i, line in enumerate(_LINES) for at, word in enumerate(line)]
+    if not all(words.equal(indices, word).all() for indices, word in begins):
+        return None
+    try:
+        return words.floats_at(first[:, _VERTICES, None] + np.arange(1, 4)).reshape(-1, 3)
+    except InvalidMesh:
+        return None
+
+
+def _solids(text: bytes, words: Words, is_solid: BoolArray) -> Appearance | None:
+    """The names of the solids, as groups of faces; ``text`` has them in upper and lower case."""
+    solids = np.flatnonzero(words.lines_with(b"solid"))
+    faces_before = np.append(np.cumsum(~is_solid)[solids], np.count_nonzero(~is_solid)) // len(_LINES)
+    if faces_before[0] > 0:
+        return None
+    names = [_name(text, int(words.start[words.line_start[line]])) for line in solids]
+    return group_appearance(names, np.diff(faces_before).tolist())
+
+
+def _name(text: bytes, solid: int) -> str:
+    """What stands between the word ``solid`` at a byte and the end of its line."""
+    end = text.find(b"\n", solid)
+    return text[solid + len(b"solid") : end if end >= 0 else None].strip().decode("utf-8", "replace")
+
+
+def _read_any_layout(text: bytes, limits: ReadLimits) -> Mesh:
+    """The same for faces that are broken into lines in any way, with loops of any length."""
+    sizes: list[int] = []
+    at, end = 0, len(text.rstrip())
+    while at < end:
+        face = _FACE.match(text, at)
+        if face is None:
+            raise InvalidMesh(f"Line {_line_number(text, at)}: this is no whole STL face from 'facet' to 'endfacet'.")
+        sizes.append(face[1].count(b"vertex"))
+        at = face.end()
+    words = find_words(text)
+    vertices = np.flatnonzero(words.equal(np.arange(words.count), b"vertex"))
+    if len(vertices) != sum(sizes) or vertices.max(initial=-4) + 3 >= words.count:
+        raise InvalidMesh("The STL file has the word 'vertex' where a number should stand: it is damaged.")
+    coordinates = words.floats_at(vertices[:, None] + np.arange(1, 4))
+    return mesh_of_polygons(coordinates, Polygons(np.arange(len(vertices)), np.array(sizes, dtype=np.int64)), limits)
+
+
+def _line_number(text: bytes, offset: int) -> int:
+    """The line, counted from 1, of the first word at or after ``offset``."""
+    word = re.compile(rb"\S").search(text, offset)
+    return text.count(b"\n", 0, word.start() if word else offset) + 1

@@ -1,0 +1,1 @@
+"""Numbers and words in text files, read and written in bulk."""

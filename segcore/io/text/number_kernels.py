@@ -1,0 +1,135 @@
+"""Compiled kernels that turn words into numbers. Arrays in, arrays out."""
+
+from fractions import Fraction
+
+import numpy as np
+from numba import njit
+
+from segcore.arrays import BoolArray, FloatArray, LongArray
+from segcore.io.text.word_kernels import SPACE, Bytes, Offsets
+
+_PLUS, _MINUS, _POINT, _ZERO, _NINE = 43, 45, 46, 48, 57
+_UPPER_E, _LOWER_E = 69, 101
+_DIGITS = 18  # that int64 holds, whatever they are
+_EXACT_POWER = 22  # 10**22 is the largest power of ten that float64 holds exactly
+_LARGEST_POWER = 270  # beyond that, products might leave the range of float64
+_SPLIT = 134217729.0  # 2**27 + 1, which cuts a float64 in two halves
+_DOUBT = 2.0**-98  # relative error of a product of two double-doubles, with some to spare
+
+_POWERS = [Fraction(10) ** k for k in range(-_LARGEST_POWER, _LARGEST_POWER + 1)]
+_POWER = np.array([float(power) for power in _POWERS])
+_POWER_REST = np.array([float(power - Fraction(float(power))) for power in _POWERS])
+
+
+@njit(cache=True)
+def parse_integers(text: Bytes, start: Offsets, values: LongArray) -> bool:
+    """Fill ``values`` with the whole numbers that begin at ``start``; False where a word is no such number."""
+    for i in range(len(start)):
+        end, value = whole_number(text, start[i])
+        if end < 0 or (end < len(text) and text[end] > SPACE):
+            return False
+        values[i] = value
+    return True
+
+
+@njit(cache=True)
+def parse_floats(text: Bytes, start: Offsets, values: FloatArray, unread: BoolArray) -> int:
+    """Fill ``values`` with the nearest floats to the decimal numbers that begin at ``start``.
+
+    Returns
+    -------
+    How many could not be read here, as they are no plain numbers, very long or very near the middle between two
+    floats; these are marked in ``unread``.
+    """
+    count = 0
+    for i in range(len(start)):
+        is_read, value = decimal_number(text, start[i])
+        values[i] = value
+        unread[i] = not is_read
+        count += not is_read
+    return count
+
+
+@njit(cache=True)
+def whole_number(text: Bytes, at: int) -> tuple[int, int]:
+    """Where a whole number of at most 18 digits ends, or -1, and the number."""
+    negative = text[at] == _MINUS
+    if negative or text[at] == _PLUS:
+        at += 1
+    first, value = at, 0
+    while at < len(text) and _ZERO <= text[at] <= _NINE:
+        if at - first == _DIGITS:
+            return -1, 0
+        value = 10 * value + (text[at] - _ZERO)
+        at += 1
+    if at == first:
+        return -1, 0
+    return at, -value if negative else value
+
+
+@njit(cache=True)
+def decimal_number(text: Bytes, at: int) -> tuple[bool, float]:
+    """Whether a word is a decimal number that is read here, and the nearest float to it."""
+    negative = text[at] == _MINUS
+    if negative or text[at] == _PLUS:
+        at += 1
+    mantissa, digits, significant, power = 0, 0, 0, 0
+    after_point = False
+    while at < len(text):
+        if text[at] == _POINT and not after_point:
+            after_point = True
+        elif _ZERO <= text[at] <= _NINE:
+            digits += 1
+            mantissa = 10 * mantissa + (text[at] - _ZERO)
+            significant += significant > 0 or mantissa > 0
+            power -= after_point
+            if significant > _DIGITS:
+                return False, 0.0
+        else:
+            break
+        at += 1
+    if digits == 0:
+        return False, 0.0
+    if at < len(text) and (text[at] == _LOWER_E or text[at] == _UPPER_E):
+        at, exponent = whole_number(text, at + 1) if at + 1 < len(text) else (-1, 0)
+        if at < 0 or abs(exponent) > 1000:
+            return False, 0.0
+        power += exponent
+    if at < len(text) and text[at] > SPACE:
+        return False, 0.0
+    is_read, value = _scaled(mantissa, power)
+    return is_read, -value if negative else value
+
+
+@njit(cache=True)
+def _scaled(mantissa: int, power: int) -> tuple[bool, float]:
+    """The nearest float to mantissa * 10**power, where that is beyond doubt.
+
+    Small numbers by one rounded operation (Clinger, How to read floating point numbers accurately, 1990), others as
+    the product of two double-doubles (Dekker, A floating-point technique for extending the available precision, 1971).
+    """
+    if mantissa == 0:
+        return True, 0.0
+    high = float(mantissa)
+    if mantissa < 2**53 and -_EXACT_POWER <= power <= _EXACT_POWER:
+        factor = _POWER[_LARGEST_POWER + abs(power)]
+        return True, high * factor if power >= 0 else high / factor
+    if abs(power) > _LARGEST_POWER:
+        return False, 0.0
+    low = float(mantissa - np.int64(high))
+    factor, rest = _POWER[_LARGEST_POWER + power], _POWER_REST[_LARGEST_POWER + power]
+    product = high * factor
+    tail = _product_error(high, factor, product) + (high * rest + low * factor)
+    value = product + tail
+    tail -= value - product
+    doubt = value * _DOUBT
+    return value + (tail + doubt) == value and value + (tail - doubt) == value, value
+
+
+@njit(cache=True)
+def _product_error(a: float, b: float, product: float) -> float:
+    """a * b - product, exactly."""
+    a_high = a * _SPLIT - (a * _SPLIT - a)
+    b_high = b * _SPLIT - (b * _SPLIT - b)
+    a_low, b_low = a - a_high, b - b_high
+    return ((a_high * b_high - product) + a_high * b_low + a_low * b_high) + a_low * b_low

@@ -1,0 +1,143 @@
+"""The words of a text file, found and turned into numbers in bulk."""
+
+import re
+from collections.abc import Callable
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from segcore.arrays import BoolArray, FloatArray, LongArray
+from segcore.errors import InvalidMesh
+from segcore.io.text.number_kernels import parse_floats, parse_integers
+from segcore.io.text.word_kernels import Offsets, count_words, find_equal, find_word_starts, has_controls
+
+_WHITE_SPACE = b" \t\n\v\f\r"
+_NO_CONTROLS = _WHITE_SPACE + bytes(range(33, 256))
+_FILLING = b"\0\x1a"  # blocks that were not full, and the end of a file in DOS
+_SPACE = 32  # this byte and all below it separate words
+_NUMBER = re.compile(r"[-+]?((\d+\.?\d*|\.\d+)(e[-+]?\d+)?|nan|inf(inity)?)", re.ASCII | re.IGNORECASE)
+_EXACT = 2.0**53  # whole numbers up to here are exact in float64
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Words:
+    """Where the words and the lines of a text are; lines without a word do not count."""
+
+    text: bytes
+    start: Offsets  # (W,) offset of every word
+    line_start: Offsets  # (L + 1,) the first word of every line, and W
+
+    @property
+    def letters(self) -> NDArray[np.uint8]:
+        """The bytes of the text."""
+        return np.frombuffer(self.text, np.uint8)
+
+    @property
+    def count(self) -> int:
+        return len(self.start)
+
+    def word(self, index: int) -> str:
+        end = self.start[index + 1] if index + 1 < self.count else None
+        return self.text[self.start[index] : end].rstrip().decode("ascii", "backslashreplace")
+
+    def line_number(self, index: int) -> int:
+        """The line of the file, counted from 1, in which a word stands."""
+        return self.text.count(b"\n", 0, int(self.start[index])) + 1
+
+    def numbers(self, first: int, last: int) -> NDArray[Any]:
+        """Words first..last - 1 as int64, or as float64 where one of them is not a whole number.
+
+        Raises
+        ------
+        InvalidMesh
+            Where a word is not a number; the message has its line.
+        """
+        values = np.empty(last - first, np.int64)
+        if parse_integers(self.letters, self.start[first:last], values):
+            return values
+        return self.floats(first, last)
+
+    def floats(self, first: int, last: int) -> FloatArray:
+        """Words first..last - 1 as float64; raises InvalidMesh as :meth:`numbers` does."""
+        return self._floats(self.start[first:last], lambda place: first + place)
+
+    def floats_at(self, indices: LongArray) -> FloatArray:
+        """The words at ``indices``, of any shape, as float64; raises InvalidMesh as :meth:`numbers` does."""
+        flat = indices.reshape(-1)
+        return self._floats(self.start[flat], lambda place: int(flat[place])).reshape(indices.shape)
+
+    def _floats(self, starts: Offsets, word_of: Callable[[int], int]) -> FloatArray:
+        values, unread = np.empty(len(starts)), np.empty(len(starts), dtype=bool)
+        if parse_floats(self.letters, starts, values, unread):
+            for i in np.flatnonzero(unread).tolist():
+                values[i] = self.float(word_of(i))
+        return values
+
+    def float(self, index: int) -> float:
+        """One word as a number, also as infinity or as none; raises InvalidMesh with the line where it is another."""
+        word = self.word(index)
+        if not _NUMBER.fullmatch(word):
+            raise InvalidMesh(f"Line {self.line_number(index)}: {word[:40]!r} is not a number.")
+        return float(word)
+
+    def equal(self, indices: NDArray[np.signedinteger[Any]], word: bytes) -> BoolArray:
+        """(N,): which of the words at ``indices`` are ``word``."""
+        found = np.empty(len(indices), dtype=bool)
+        find_equal(self.letters, self.start, indices, np.frombuffer(word, np.uint8), found)
+        return found
+
+    def lines_with(self, keyword: bytes) -> BoolArray:
+        """(L,): the lines whose first word is ``keyword``."""
+        return self.equal(self.line_start[:-1], keyword)
+
+
+def plain_text(data: bytes) -> bytes:
+    """The text with every line ended by a newline byte, without a byte order mark and bytes that only fill up its end.
+
+    No offset changes.
+
+    Raises
+    ------
+    InvalidMesh
+        Where there are control characters in it: it is damaged or no text.
+    """
+    data = data.rstrip(_FILLING)
+    if has_controls(np.frombuffer(data, np.uint8)):
+        first = data.index(data.translate(None, _NO_CONTROLS)[:1])
+        raise InvalidMesh(f"Byte {first}: the file has a control character in its text: it is damaged.")
+    if b"\r" in data and b"\n" not in data:
+        data = data.replace(b"\r", b"\n")
+    return b"   " + data[3:] if data.startswith(b"\xef\xbb\xbf") else data
+
+
+def without_comments(text: bytes) -> bytes:
+    """The text with everything from a ``#`` to the end of its line turned into spaces."""
+    pieces: list[bytes | memoryview] = []
+    at = 0
+    while (begin := text.find(b"#", at)) >= 0:
+        newline = text.find(b"\n", begin)
+        end = newline if newline >= 0 else len(text)
+        pieces += [memoryview(text)[at:begin], b" " * (end - begin)]
+        at = end
+    return b"".join([*pieces, memoryview(text)[at:]]) if pieces else text
+
+
+def find_words(text: bytes, begin: int = 0) -> Words:
+    """Find all words of a text from byte ``begin`` on."""
+    letters = np.frombuffer(text, np.uint8)
+    words, newlines = count_words(letters[begin:])
+    offset = np.int32 if len(text) < 2**31 else np.int64
+    start, line_start = np.empty(words, offset), np.empty(min(words, newlines + 1) + 1, offset)
+    lines = find_word_starts(letters, begin, start, line_start)
+    return Words(text, start, line_start[: lines + 1])
+
+
+def whole_numbers(values: NDArray[Any]) -> LongArray | None:
+    """Values that are all whole as int64, or None where one is not."""
+    if values.dtype.kind == "i":
+        return values.astype(np.int64, copy=False)
+    if not ((np.abs(values) < _EXACT) & (values == np.floor(values))).all():
+        return None
+    return values.astype(np.int64)

@@ -1,0 +1,118 @@
+"""The 3MF writer: an object for every segment."""
+
+import zipfile
+from collections.abc import Iterator
+from typing import BinaryIO
+from xml.sax.saxutils import escape, quoteattr  # nosec B406  # it writes XML, and reads none
+
+from segcore.appearance import Appearance
+from segcore.hierarchy import Hierarchy
+from segcore.io.archive import FAST, member
+from segcore.io.names import SegmentNames, one_line, segment_names
+from segcore.io.palette import color_bytes
+from segcore.io.parts.pieces import Part, closed_parts, segment_parts
+from segcore.io.slices import Slices, segment_slices
+from segcore.io.text.rows import format_rows
+from segcore.mesh import Mesh
+
+_CORE = "http://schemas.microsoft.com/3dmanufacturing/core/2015/02"
+_MODEL = "3D/3dmodel.model"
+_MODEL_TYPE = "application/vnd.ms-package.3dmanufacturing-3dmodel+xml"
+_RELATIONSHIPS = "http://schemas.openxmlformats.org/package/2006/relationships"
+_HEAD = '<?xml version="1.0" encoding="UTF-8"?>\n'
+_PACKAGE = {
+    "[Content_Types].xml": (
+        f'{_HEAD}<Types xmlns="http://schemas.openxmlformats.org/package/2006/content-types">'
+        '<Default Extension="rels" ContentType="application/vnd.openxmlformats-package.relationships+xml"/>'
+        f'<Default Extension="model" ContentType="{_MODEL_TYPE}"/></Types>'
+    ),
+    "_rels/.rels": (
+        f'{_HEAD}<Relationships xmlns="{_RELATIONSHIPS}"><Relationship Id="rel0" Target="/{_MODEL}" '
+        'Type="http://schemas.microsoft.com/3dmanufacturing/2013/01/3dmodel"/></Relationships>'
+    ),
+}
+_MATERIALS = 1  # the id of the colours; segment k is object k + 2
+
+
+def write_3mf(
+    target: BinaryIO,
+    mesh: Mesh,
+    hierarchy: Hierarchy,
+    segments: int | None = None,
+    *,
+    capped: bool = False,
+    names: SegmentNames | None = None,
+) -> None:
+    """Write a 3MF file: one object of objects, ``segment k`` each with its colour, in place.
+
+    An object holds the faces of its segment in input order; faces that name a vertex twice are left out, as the format
+    does not allow them; its description says which groups of the input reach into it. The unit is the millimetre,
+    whatever the input meant, as most formats do not say.
+
+    Parameters
+    ----------
+    target : a binary file; needs ``write`` only.
+    capped : close each object with caps, for printing; see :func:`segcore.io.parts.pieces.closed_parts`.
+    names : what segments are called in place of ``segment k``.
+
+    Raises
+    ------
+    InvalidParameters
+        Where ``segments`` is not in 1..max_segments.
+    """
+    count = len(hierarchy.segment_nodes(segments))
+    parts = (closed_parts if capped else segment_parts)(mesh, hierarchy, segments)
+    called = [quoteattr(name) for name in segment_names(names, count)]
+    described = _descriptions(mesh.appearance or Appearance(), segment_slices(hierarchy, segments))
+    with zipfile.ZipFile(target, "w", compresslevel=FAST) as archive:
+        for name, text in _PACKAGE.items():
+            archive.writestr(member(name, compressed=True), text, compresslevel=FAST)
+        with archive.open(member(_MODEL, compressed=True), "w", force_zip64=True) as model:
+            model.writelines(_model(parts, called, described))
+
+
+def _descriptions(look: Appearance, slices: Slices) -> list[str]:
+    """The XML of what is known about every segment beside its shape."""
+    result = []
+    for label in range(len(slices)):
+        groups = ", ".join(map(one_line, look.groups_of(slices[label])))
+        text = f'<metadata name="Description">groups of the input: {escape(groups)}</metadata>'
+        result.append(f"<metadatagroup>{text}</metadatagroup>\n" if groups else "")
+    return result
+
+
+def _model(parts: Iterator[Part], names: list[str], descriptions: list[str]) -> Iterator[bytes]:
+    materials = [
+        f'<base name={name} displaycolor="#{bytes(color).hex().upper()}"/>\n'
+        for name, color in zip(names, color_bytes(len(names)), strict=True)
+    ]
+    yield (
+        f'{_HEAD}<model unit="millimeter" xml:lang="en-US" xmlns="{_CORE}">\n<resources>\n'
+        f'<basematerials id="{_MATERIALS}">\n{"".join(materials)}</basematerials>\n'
+    ).encode()
+    objects = []
+    for part in parts:
+        distinct = _distinct_corners(part)
+        if len(distinct.faces):
+            objects.append(_MATERIALS + 1 + part.label)
+            yield from _object(distinct, objects[-1], names[part.label], descriptions[part.label])
+    assembly = _MATERIALS + 1 + len(names)
+    components = "".join(f'<component objectid="{part}"/>\n' for part in objects)
+    yield (
+        f'<object id="{assembly}" type="model" name="segments">\n<components>\n{components}</components>\n</object>\n'
+        f'</resources>\n<build>\n<item objectid="{assembly}"/>\n</build>\n</model>\n'
+    ).encode("ascii")
+
+
+def _distinct_corners(part: Part) -> Part:
+    a, b, c = part.faces.T
+    return Part(part.label, part.vertices, part.faces[(a != b) & (b != c) & (c != a)])
+
+
+def _object(part: Part, number: int, name: str, description: str) -> Iterator[bytes]:
+    attributes = f'id="{number}" type="model" name={name} pid="{_MATERIALS}" pindex="{part.label}"'
+    yield f"<object {attributes}>\n{description}<mesh>\n<vertices>\n".encode()
+    yield from format_rows('<vertex x="%r" y="%r" z="%r"/>\n', part.vertices)
+    yield b"</vertices>\n<triangles>\n"
+    yield from format_rows('<triangle v1="%d" v2="%d" v3="%d"/>\n', part.faces)
+    yield b"</triangles>\n</mesh>\n</object>\n"

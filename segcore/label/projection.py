@@ -1,0 +1,88 @@
+"""From a tree of cuts of the nodes of a mesh graph to a tree of cuts of the faces of the mesh."""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from segcore.arrays import BoolArray, IntArray
+from segcore.graphs.cheeger import cut_of
+from segcore.graphs.connected_sides import with_connected_sides
+from segcore.graphs.surface_graph import SurfaceGraph
+from segcore.graphs.tree import Tree, intervals
+
+
+def project(tree: Tree, corners: IntArray, faces: SurfaceGraph) -> Tree:
+    """Carry a tree of cuts over to the faces, so that every segment is a connected set of faces.
+
+    Split by split, the faces of a node take the side of most of their corners. Then both sides are made connected. A
+    split that no face follows is left out.
+
+    Parameters
+    ----------
+    tree : a tree over the nodes of a graph.
+    corners : (F, C) the nodes of every face.
+    faces : the face dual graph.
+
+    Returns
+    -------
+    The tree over the faces.
+    """
+    place, first, end = intervals(tree)
+    corner_place = place[tree.leaf][corners]
+    parts = {0: _Part(np.arange(len(corners), dtype=np.int32), faces, 0)}
+    split_node: list[int] = []
+    cut_value: list[float] = []
+    automatic = 1
+    for split, node in enumerate(tree.split_node.tolist()):
+        if node not in parts:
+            continue
+        part = parts.pop(node)
+        one, other = 2 * split + 1, 2 * split + 2
+        side = _votes(corner_place[part.faces], (first[one], end[one]), (first[other], end[other]))
+        if side.all() or not side.any():
+            parts[one if side.all() else other] = part
+            continue
+        if tree.cut_value[split] > 0:
+            side = _connected(part.graph, side)
+        split_node.append(part.node)
+        cut_value.append(float(tree.cut_value[split]))
+        larger, smaller = 2 * len(split_node) - 1, 2 * len(split_node)
+        one_is_larger = part.graph.volume[side].sum() >= part.graph.volume[~side].sum()
+        parts[one] = part.half(side, larger if one_is_larger else smaller)
+        parts[other] = part.half(~side, smaller if one_is_larger else larger)
+        if split + 1 < tree.automatic_segments:
+            automatic = len(split_node) + 1
+    leaf = np.zeros(len(corners), dtype=np.int32)
+    for part in parts.values():
+        leaf[part.faces] = part.node
+    return Tree(np.array(split_node, dtype=np.int32), np.array(cut_value), leaf, automatic)
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class _Part:
+    """The faces that follow a node, the face dual graph among them, and their node in the tree over the faces."""
+
+    faces: IntArray
+    graph: SurfaceGraph
+    node: int
+
+    def half(self, side: BoolArray, node: int) -> "_Part":
+        local = np.flatnonzero(side).astype(np.int32)
+        return _Part(self.faces[local], self.graph.subgraph(local), node)
+
+
+def _connected(graph: SurfaceGraph, side: BoolArray) -> BoolArray:
+    """Both sides made connected; True stays the side that has most in common with it."""
+    connected = with_connected_sides(graph, cut_of(graph, side)).side
+    kept = graph.volume[connected == side].sum()
+    return connected if 2 * kept >= graph.total_volume else ~connected
+
+
+def _votes(place: IntArray, one: tuple[int, int], other: tuple[int, int]) -> BoolArray:
+    """True where more corners lie in one interval than in the other; the first corner with a vote decides a tie."""
+    for_one = (one[0] <= place) & (place < one[1])
+    for_other = (other[0] <= place) & (place < other[1])
+    lead = for_one.sum(axis=1) - for_other.sum(axis=1)
+    voting = np.argmax(for_one | for_other, axis=1)
+    decided: BoolArray = (lead > 0) | ((lead == 0) & for_one[np.arange(len(place)), voting])
+    return decided

@@ -1,0 +1,1 @@
+"""The models that were learned from people's segmentations."""

@@ -1,0 +1,94 @@
+"""The whole method on one screen."""
+
+from dataclasses import replace
+from functools import partial
+
+import numpy as np
+
+from segcore.affinity.mesh_graphs import mesh_graph
+from segcore.arrays import group_sums
+from segcore.clean.surface import Surface, build_surface
+from segcore.coarsen.assembly import assemble
+from segcore.coarsen.clusters import Clusters, cluster_nodes
+from segcore.coarsen.contacts import Links
+from segcore.cut.bisection import bisect
+from segcore.cut.rules import split_rule
+from segcore.graphs.mesh_graph import MeshGraph
+from segcore.graphs.tree import Tree
+from segcore.hierarchy import Hierarchy
+from segcore.label.boundary import draw_boundaries
+from segcore.label.projection import project
+from segcore.mesh import Mesh
+from segcore.parameters import SegmentationParameters
+from segcore.progress import OnProgress, Progress
+
+
+def segment(
+    mesh: Mesh,
+    parameters: SegmentationParameters | None = None,
+    on_progress: OnProgress = lambda *_: None,
+    surface: Surface | None = None,
+) -> Hierarchy:
+    """Cut a mesh into a hierarchy of parts.
+
+    Parameters
+    ----------
+    mesh : any triangle mesh; open borders, non-manifold edges, duplicate and degenerate faces and several components
+        are segmented too.
+    parameters : choices of the method, by default ``SegmentationParameters()``.
+    on_progress : called with the name of a stage and the fraction of the whole work that is done, 0 to 1; what it
+        raises ends the work and is passed on.
+    surface : ``build_surface(mesh)``, where the caller has it already.
+
+    Returns
+    -------
+    The hierarchy of cuts, with a label for every face of the mesh, in its order. The same mesh and parameters give the
+    same hierarchy.
+    """
+    chosen = parameters or SegmentationParameters()
+    rng = np.random.default_rng(chosen.seed)
+    progress = Progress(on_progress, len(mesh.faces))
+    progress("clean")
+    surface = surface or build_surface(mesh)
+    progress("affinity")
+    nodes = mesh_graph(surface, chosen)
+    progress("coarsen")
+    clusters = cluster_nodes(nodes, chosen.clusters, rng)
+    clusters, links = assemble(surface, nodes, clusters, chosen.max_segments)
+    progress("cut")
+    rule = split_rule(clusters, chosen, rng)
+    after_splits = partial(progress.after_splits, chosen.max_segments)
+    tree = bisect(clusters.graph, clusters.points, rule, chosen.max_segments, after_splits)
+    progress("label")
+    tree = _over_faces(tree, clusters, nodes, links, surface)
+    hierarchy = _of_input(surface, tree)
+    progress("label", 1.0)
+    return hierarchy
+
+
+def _over_faces(tree: Tree, clusters: Clusters, nodes: MeshGraph, links: Links, surface: Surface) -> Tree:
+    """Carry a tree over the clusters over to the faces; where faces are the nodes, draw the boundaries anew."""
+    if nodes.corners.shape[1] > 1:
+        linked = surface.face_graph().with_edges(links.faces, links.length, links.length)
+        return project(tree, clusters.of_node[nodes.corners], linked)
+    return draw_boundaries(replace(tree, leaf=tree.leaf[clusters.of_node]), nodes, links, surface)
+
+
+def _of_input(surface: Surface, tree: Tree) -> Hierarchy:
+    """Carry a tree over the faces of a surface to those of the input, and sum up areas and faces from the leaves."""
+    leaf_of_input = tree.leaf[surface.face_of_input]
+    nodes = 2 * len(tree.split_node) + 1
+    area = group_sums(tree.leaf, surface.areas * surface.unit**2, nodes)
+    face_count = np.bincount(leaf_of_input, minlength=nodes)
+    for split in reversed(range(len(tree.split_node))):
+        node = tree.split_node[split]
+        area[node] = area[2 * split + 1] + area[2 * split + 2]
+        face_count[node] = face_count[2 * split + 1] + face_count[2 * split + 2]
+    return Hierarchy(
+        split_node=tree.split_node,
+        cut_value=tree.cut_value,
+        area=area,
+        face_count=face_count.astype(np.int32),
+        face_leaf=leaf_of_input,
+        automatic_segments=tree.automatic_segments,
+    )

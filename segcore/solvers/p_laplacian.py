@@ -1,0 +1,208 @@
+"""The second eigenvector of the graph p-Laplacian, 1 < p < 2: between the Fiedler vector and the best cut."""
+
+from collections import deque
+from collections.abc import Iterator
+
+import numpy as np
+from numba import njit
+
+from segcore.arrays import FloatArray
+from segcore.errors import InvalidParameters
+from segcore.graphs.cheeger import Cut, sweep
+from segcore.graphs.laplacian import LaplacianFactor, factorise
+from segcore.graphs.surface_graph import SurfaceGraph
+from segcore.solvers.starts import start_functions
+
+CONTINUATION = 0.7  # p - 1 of a stage, relative to that of the stage before
+MEMORY = 10  # pairs of L-BFGS
+SUFFICIENT_DECREASE = 1e-4  # of a step, relative to the first order (Armijo)
+SHORTEST_STEP = 1e-6
+LEAST_DECREASE = 1e-6  # relative: a stage ends where a step gains less
+BALANCED = 1e-10  # relative imbalance of the pulls on the center c
+SMALLEST_JUMP = 1e-5  # along an edge, relative to the largest, for the first Hessian
+
+
+def p_laplacian_cut(
+    graph: SurfaceGraph, *, p: float = 1.2, starts: int = 1, iterations: int = 100, rng: np.random.Generator
+) -> Cut:
+    """The best threshold of the second eigenvector of the p-Laplacian.
+
+    It minimises F(f) = R(f) / B(f),
+
+        R(f) = sum of w[i, j] |f[i] - f[j]|^p, B(f) = min over c of sum vol[i] |f[i] - c|^p,
+
+    at smaller and smaller exponents from 2 down to p, every time from the last minimum. The smaller the exponent, the
+    closer the best threshold is to the best normalized Cheeger cut, and the more local minima there are.
+
+    Parameters
+    ----------
+    graph : connected, at least two nodes.
+    p : above 1 and below 2.
+    starts : at least 1. The first one is the Fiedler vector, so that the result is never worse than its sweep; the
+        others are random smooth functions.
+    iterations : the most of L-BFGS at one exponent.
+
+    Returns
+    -------
+    The cut, node 0 in S.
+
+    Raises
+    ------
+    InvalidParameters
+        Where p is not between 1 and 2.
+    ValueError
+        Where the graph is not connected.
+
+    References
+    ----------
+    Buehler and Hein, Spectral clustering based on the graph p-Laplacian, ICML 2009.
+    """
+    if not 1 < p < 2:
+        raise InvalidParameters(f"The exponent p must be above 1 and below 2, not {p}.")
+    functions = start_functions(graph, factorise(graph), starts, rng)
+    cuts = (cut for values in functions for cut in _continuation(graph, values, p, iterations))
+    return min(cuts, key=lambda cut: cut.ncc).canonical
+
+
+def rayleigh_quotient(graph: SurfaceGraph, values: FloatArray, p: float) -> tuple[float, FloatArray]:
+    """F(f) and its gradient (N,), for f that is not constant."""
+    gradient = np.empty(graph.node_count)
+    center = _center(values, graph.volume, p, BALANCED)
+    return _quotient(graph.edges.view(np.uint32), graph.weight, graph.volume, values, center, p, gradient), gradient
+
+
+def _continuation(graph: SurfaceGraph, values: FloatArray, p: float, iterations: int) -> Iterator[Cut]:
+    yield sweep(graph, values)
+    exponent = 2.0
+    while exponent > p:
+        exponent = max(p, 1 + CONTINUATION * (exponent - 1))
+        values = minimise(graph, values, exponent, iterations)
+        yield sweep(graph, values)
+
+
+def minimise(graph: SurfaceGraph, values: FloatArray, p: float, iterations: int) -> FloatArray:
+    """(N,): a local minimum of F by L-BFGS, from a function that is not constant.
+
+    The first Hessian is the Laplacian whose weights make R quadratic at the start, w |f[i] - f[j]|^(p - 2).
+
+    References
+    ----------
+    Liu and Nocedal, On the limited memory BFGS method for large scale optimization, Mathematical Programming 45, 1989.
+    """
+    f = values / np.abs(values).max()
+    factor = factorise(_reweighted(graph, f, p))
+    value, gradient = rayleigh_quotient(graph, f, p)
+    pairs: deque[tuple[FloatArray, FloatArray]] = deque(maxlen=MEMORY)
+    for _ in range(iterations):
+        direction = _newton_direction(factor, gradient, pairs)
+        slope = gradient @ direction
+        step = 1.0
+        trial, trial_gradient = rayleigh_quotient(graph, f + direction, p)
+        while trial > value + SUFFICIENT_DECREASE * step * slope and step > SHORTEST_STEP:
+            step *= 0.5
+            trial, trial_gradient = rayleigh_quotient(graph, f + step * direction, p)
+        if not trial < value * (1 - LEAST_DECREASE):
+            break
+        if direction @ (trial_gradient - gradient) > 0:
+            pairs.append((step * direction, trial_gradient - gradient))
+        f = f + step * direction
+        value, gradient = trial, trial_gradient
+    return f
+
+
+def _newton_direction(
+    factor: LaplacianFactor, gradient: FloatArray, pairs: deque[tuple[FloatArray, FloatArray]]
+) -> FloatArray:
+    """Minus the gradient times the inverse Hessian that the pairs of steps and changes of the gradient make of L^+."""
+    rest = gradient.copy()
+    shares = []
+    for step, change in reversed(pairs):
+        shares.append((step @ rest) / (step @ change))
+        rest -= shares[-1] * change
+    direction = factor.solve(rest)
+    if pairs:
+        step, change = pairs[-1]
+        direction *= (step @ change) / (change @ factor.solve(change))
+    for (step, change), share in zip(pairs, reversed(shares), strict=True):
+        direction += step * (share - (change @ direction) / (step @ change))
+    return -direction
+
+
+def _reweighted(graph: SurfaceGraph, f: FloatArray, p: float) -> SurfaceGraph:
+    jump = np.abs(f[graph.edges[:, 0]] - f[graph.edges[:, 1]])
+    stiffness = np.maximum(jump / jump.max(), SMALLEST_JUMP) ** (p - 2)
+    return SurfaceGraph(graph.edges, graph.weight * stiffness, graph.volume)
+
+
+@njit(cache=True)
+def _center(f, volume, p, balanced):  # type: ignore[no-untyped-def]
+    """The c that minimises sum vol[i] |f[i] - c|^p: there the pulls of the values above and below c are equal.
+
+    Newton's method, and bisection wherever it leaves the bracket or does not halve the imbalance: beside a value it
+    hardly moves. It ends where the imbalance is at most ``balanced`` times all pulls, or with the bracket used up.
+    """
+    low = f.min()
+    high = f.max()
+    c = 0.5 * (low + high)
+    last_imbalance = np.inf
+    while low < c < high:
+        above = 0.0
+        below = 0.0
+        stiffness = 0.0
+        for i in range(len(f)):
+            distance = f[i] - c
+            if distance != 0:
+                pull = volume[i] * abs(distance) ** (p - 1)
+                stiffness += pull / abs(distance)
+                if distance > 0:
+                    above += pull
+                else:
+                    below += pull
+        imbalance = above - below
+        if abs(imbalance) <= balanced * (above + below):
+            break
+        if imbalance > 0:
+            low = c
+        else:
+            high = c
+        newton = c + imbalance / ((p - 1) * stiffness)
+        trusted = low < newton < high and abs(imbalance) <= 0.5 * last_imbalance
+        c = newton if trusted else 0.5 * (low + high)
+        last_imbalance = abs(imbalance)
+    return c
+
+
+@njit(cache=True)
+def _quotient(edges, weight, volume, f, center, p, gradient):  # type: ignore[no-untyped-def]
+    """R / B; the gradient of B is that at a fixed c, for c is optimal.
+
+    The pulls on c are in balance, but as p falls towards 1 a node next to c may have any pull within the rounding of c:
+    that node's is taken to be what the others leave.
+    """
+    balance = 0.0
+    nearest = 0
+    rest = 0.0
+    for i in range(len(f)):
+        distance = f[i] - center
+        power = volume[i] * abs(distance) ** (p - 1)
+        balance += power * abs(distance)
+        gradient[i] = -power if distance > 0 else power
+        rest += gradient[i]
+        if abs(distance) < abs(f[nearest] - center):
+            nearest = i
+    gradient[nearest] -= rest
+    variation = 0.0
+    for e in range(len(edges)):
+        jump = f[edges[e, 0]] - f[edges[e, 1]]
+        variation += weight[e] * abs(jump) ** p
+    quotient = variation / balance
+    for i in range(len(f)):
+        gradient[i] *= p * quotient / balance
+    for e in range(len(edges)):
+        jump = f[edges[e, 0]] - f[edges[e, 1]]
+        force = p / balance * weight[e] * abs(jump) ** (p - 1)
+        if jump < 0:
+            force = -force
+        gradient[edges[e, 0]] += force
+        gradient[edges[e, 1]] -= force
+    return quotient

@@ -1,0 +1,37 @@
+"""Functions on a graph from which the solvers for p < 2 descend."""
+
+from collections.abc import Iterator
+
+import numpy as np
+
+from segcore.arrays import FloatArray
+from segcore.graphs.laplacian import LaplacianFactor
+from segcore.graphs.surface_graph import SurfaceGraph
+from segcore.solvers.fiedler import eigenvectors
+
+SMOOTHING_STEPS = 2  # of noise, by the linear inverse power method: what is left are its large features
+
+
+def start_functions(
+    graph: SurfaceGraph, factor: LaplacianFactor, starts: int, rng: np.random.Generator
+) -> Iterator[FloatArray]:
+    """The Fiedler vector, then random smooth functions. (N,) each.
+
+    Parameters
+    ----------
+    graph : connected, at least two nodes.
+    factor : of the graph's Laplacian.
+    starts : how many, at least 1.
+
+    Raises
+    ------
+    ValueError
+        Where the graph is not connected.
+    """
+    yield eigenvectors(graph, factor, 1)[:, 0]
+    for _ in range(starts - 1):
+        values = rng.standard_normal(graph.node_count)
+        for _ in range(SMOOTHING_STEPS):
+            mean = graph.volume @ values / graph.total_volume
+            values = factor.solve(graph.volume * (values - mean))
+        yield values

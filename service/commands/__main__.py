@@ -1,0 +1,7 @@
+"""Run the command `cleave`: ``python -m service.commands``."""
+
+import sys
+
+from service.commands.main import main
+
+sys.exit(main())

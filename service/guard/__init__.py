@@ -1,0 +1,1 @@
+"""Who may send requests, and the headers that protect the answers."""

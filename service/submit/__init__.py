@@ -1,0 +1,1 @@
+"""Submitting: a request becomes meshes in the store and jobs in the queue."""

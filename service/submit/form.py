@@ -1,0 +1,129 @@
+"""A multipart/form-data body, read as it comes: the meshes go to their uploads, the parameters are kept."""
+
+from collections.abc import Callable
+from dataclasses import dataclass, field
+from typing import Any, NoReturn
+
+from python_multipart.exceptions import FormParserError
+from python_multipart.multipart import MultipartParser, parse_options_header
+
+from service.problems import Problem
+from worker.jobs.store.upload import MeshUpload
+
+MAX_PARAMETERS_BYTES = 16 * 1024
+MAX_ENVELOPE_BYTES = 64 * 1024  # boundaries and headers of a form with one mesh
+
+
+@dataclass(frozen=True, slots=True)
+class ReceivedMesh:
+    """A mesh that was sent, not yet accepted."""
+
+    upload: MeshUpload
+    file_name: str | None  # as the client says
+
+
+@dataclass(slots=True)
+class Form:
+    meshes: list[ReceivedMesh] = field(default_factory=list)
+    parameters: bytearray = field(default_factory=bytearray)  # JSON text
+
+
+class FormReader:
+    """The state of one form between the pieces of its body."""
+
+    def __init__(
+        self, boundary: bytes, begin_upload: Callable[[], MeshUpload], max_mesh_bytes: int, max_meshes: int = 1
+    ) -> None:
+        self._begin_upload = begin_upload
+        self._max_mesh_bytes = max_mesh_bytes
+        self._max_meshes = max_meshes
+        self._form = Form()
+        self._field = ""
+        self._seen: set[str] = set()
+        self._header = (bytearray(), bytearray())
+        self._disposition = b""
+        self._is_complete = False
+        self._parser = MultipartParser(boundary, self._callbacks())
+
+    def feed(self, data: bytes) -> None:
+        try:
+            self._parser.write(data)
+        except FormParserError as error:
+            raise Problem("malformed_request", "The body is not well-formed multipart/form-data.") from error
+
+    def finish(self) -> Form:
+        if not self._is_complete:
+            raise Problem("malformed_request", "The form is cut short: its last boundary is missing.")
+        if not self._form.meshes:
+            raise Problem("malformed_request", "The form has no field mesh: send the mesh file in it.")
+        return self._form
+
+    def _callbacks(self) -> Any:
+        return {
+            "on_part_begin": self._begin_part,
+            "on_header_field": lambda data, start, end: self._header[0].extend(data[start:end]),
+            "on_header_value": lambda data, start, end: self._header[1].extend(data[start:end]),
+            "on_header_end": self._end_header,
+            "on_headers_finished": self._begin_field,
+            "on_part_data": self._take_data,
+            "on_part_end": self._end_part,
+            "on_end": self._end,
+        }
+
+    def _begin_part(self) -> None:
+        self._disposition = b""
+
+    def _end_header(self) -> None:
+        name, value = self._header
+        if bytes(name).lower() == b"content-disposition":
+            self._disposition = bytes(value)
+        self._header = (bytearray(), bytearray())
+
+    def _begin_field(self) -> None:
+        _, options = parse_options_header(self._disposition)
+        self._field = options.get(b"name", b"").decode("utf-8", "replace")
+        if self._field == "mesh":
+            self._begin_mesh(options.get(b"filename"))
+        elif self._field != "parameters":
+            _refuse(f"There is no field {self._field[:80]!r}: the fields are mesh and parameters.")
+        elif "parameters" in self._seen:
+            _refuse("The field parameters is there twice.")
+        self._seen.add(self._field)
+
+    def _begin_mesh(self, file_name: bytes | None) -> None:
+        if len(self._form.meshes) == self._max_meshes:
+            if self._max_meshes == 1:
+                _refuse("The field mesh is there twice: send one job per request, or many to /v1/batches.")
+            raise Problem("too_large", f"A batch has at most {self._max_meshes} jobs: send the rest in another.")
+        name = None if file_name is None else file_name.decode("utf-8", "replace")
+        self._form.meshes.append(ReceivedMesh(self._begin_upload(), name))
+
+    def _take_data(self, data: bytes, start: int, end: int) -> None:
+        if self._field == "mesh":
+            write_capped(self._form.meshes[-1].upload, data[start:end], self._max_mesh_bytes)
+            return
+        self._form.parameters += data[start:end]
+        if len(self._form.parameters) > MAX_PARAMETERS_BYTES:
+            raise Problem("too_large", f"The field parameters is longer than {MAX_PARAMETERS_BYTES} bytes.")
+
+    def _end_part(self) -> None:
+        if self._field == "mesh":
+            self._form.meshes[-1].upload.close()
+
+    def _end(self) -> None:
+        self._is_complete = True
+
+
+def write_capped(upload: MeshUpload, data: bytes, max_mesh_bytes: int) -> None:
+    """Write on, unless the mesh would become larger than it may be."""
+    if upload.size_bytes + len(data) > max_mesh_bytes:
+        refuse_size(max_mesh_bytes)
+    upload.write(data)
+
+
+def refuse_size(max_mesh_bytes: int) -> NoReturn:
+    raise Problem("too_large", f"The mesh is larger than the {max_mesh_bytes} bytes that this server takes.")
+
+
+def _refuse(sentence: str) -> NoReturn:
+    raise Problem("malformed_request", sentence)

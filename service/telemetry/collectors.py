@@ -1,0 +1,150 @@
+"""Where the metrics come from that are not of this process: the store, the queue and the tallies of the workers.
+
+They are asked at every scrape, and say the same whichever service of an installation is asked: take one of them, or the
+maximum, never the sum. The counters begin at 0 again where Redis has lost its data.
+"""
+
+import time
+from collections import Counter
+from collections.abc import Callable, Iterator, Mapping
+
+from prometheus_client.core import CounterMetricFamily, GaugeMetricFamily, HistogramMetricFamily, Metric
+from prometheus_client.registry import Collector
+from redis import Redis
+
+from worker.jobs.job import now
+from worker.jobs.queue.counters import BOUNDS_S, Durations, Tallies, durations
+from worker.jobs.queue.queue import JobQueue, QueueError
+from worker.jobs.size_class import SizeClass
+from worker.jobs.store.store import JobStore
+
+_STARTING = "starting"  # the stage of a job that has not told one yet
+
+Counts = Mapping[tuple[str, ...], float]
+
+
+class StoreCollector(Collector):
+    """What is unfinished."""
+
+    def __init__(self, store: JobStore, on_error: Callable[[], None]) -> None:
+        self._store = store
+        self._on_error = on_error
+
+    def collect(self) -> Iterator[Metric]:
+        try:
+            count, oldest_s = self._store.count_unfinished(None)[0], self._store.oldest_s(time.time())
+        except OSError:
+            self._on_error()
+            yield _gauge("cleave_store_up", "Whether the store answers.", 0)
+            return
+        yield _gauge("cleave_store_up", "Whether the store answers.", 1)
+        yield _gauge("cleave_unfinished_jobs", "Jobs without an outcome.", count)
+        yield _gauge("cleave_oldest_unfinished_seconds", "Age of the oldest of them.", oldest_s)
+
+
+class QueueCollector(Collector):
+    """What waits, what runs, and who works."""
+
+    def __init__(self, queue: JobQueue) -> None:
+        self._queue = queue
+
+    def collect(self) -> Iterator[Metric]:
+        try:
+            waiting, ages, workers = self._queue.lengths(), self._queue.ages_s(now()), self._queue.worker_counts()
+            running = self._queue.activities(self._queue.running())
+        except QueueError:
+            yield _gauge("cleave_queue_up", "Whether the queue server answers.", 0)
+            return
+        stages = Counter(one.progress.stage if one.progress else _STARTING for one in running.values())
+        yield _gauge("cleave_queue_up", "Whether the queue server answers.", 1)
+        yield _by_queue("cleave_waiting_jobs", "Jobs in a queue.", waiting)
+        yield _by_queue("cleave_queue_age_seconds", "For how long the next job of a queue has been waiting.", ages)
+        yield _by_queue("cleave_workers", "Workers of a queue that are alive.", workers)
+        yield _family(GaugeMetricFamily, "cleave_running_jobs", "Jobs that run, by what they do.", "stage", stages)
+
+
+class TallyCollector(Collector):
+    """What the workers and the janitor have counted."""
+
+    def __init__(self, connection: Redis, own_store_errors: Callable[[], int]) -> None:
+        self._tallies = Tallies(connection)
+        self._own_store_errors = own_store_errors
+
+    def collect(self) -> Iterator[Metric]:
+        own = {"service": float(self._own_store_errors())}
+        try:
+            counts = self._tallies.counts()
+        except QueueError:  # a counter that says 0 meanwhile would seem to have jumped afterwards
+            yield _store_errors(own)
+            return
+        yield _store_errors(own | _labelled(counts, "store_errors"))
+        yield _finished(counts)
+        yield _family(
+            CounterMetricFamily,
+            "cleave_lost_attempts",
+            "Runs of jobs that ended without an outcome; up to CLEAVE_MAX_ATTEMPTS of a job are tried.",
+            "cause",
+            _labelled(counts, "lost"),
+        )
+        yield CounterMetricFamily("cleave_faces", "Faces that were segmented.", counts.get(("faces",), 0.0))
+        yield CounterMetricFamily(
+            "cleave_recovered_jobs",
+            "Jobs that the queue had lost and the janitor put back.",
+            counts.get(("recovered",), 0.0),
+        )
+        yield _histogram(
+            "cleave_job_seconds", "Time from a job's acceptance to its end.", [], {(): durations(counts, ("job",))}
+        )
+        stages: dict[tuple[str, ...], Durations] = {
+            (name[1],): durations(counts, name[:2]) for name in counts if name[0] == "stage"
+        }
+        yield _histogram("cleave_stage_seconds", "Time that a stage of a job takes.", ["stage"], stages)
+
+
+def _store_errors(values: Mapping[str, float]) -> Metric:
+    text = "Reads and writes of the store that failed."
+    return _family(CounterMetricFamily, "cleave_store_errors", text, "process", values)
+
+
+def _finished(counts: Counts) -> Metric:
+    metric = CounterMetricFamily("cleave_jobs_finished", "Jobs by their outcome.", labels=["status", "code"])
+    for name, value in counts.items():
+        if name[0] == "finished":
+            metric.add_metric(name[1:], value)
+    return metric
+
+
+def _labelled(counts: Counts, kind: str) -> dict[str, float]:
+    return {name[1]: value for name, value in counts.items() if name[0] == kind}
+
+
+def _histogram(name: str, text: str, labels: list[str], values: Mapping[tuple[str, ...], Durations]) -> Metric:
+    metric = HistogramMetricFamily(name, text, labels=labels)
+    for given, one in values.items():
+        total, buckets = 0.0, []
+        for bound, count in zip((*BOUNDS_S, "+Inf"), one.counts, strict=True):
+            total += count
+            buckets.append((str(bound), total))
+        metric.add_metric(given, buckets, one.sum_s)
+    return metric
+
+
+def _by_queue(name: str, text: str, values: Mapping[SizeClass, float]) -> Metric:
+    return _family(GaugeMetricFamily, name, text, "queue", {str(size): value for size, value in values.items()})
+
+
+def _family(
+    kind: type[GaugeMetricFamily] | type[CounterMetricFamily],
+    name: str,
+    text: str,
+    label: str,
+    values: Mapping[str, float],
+) -> Metric:
+    metric = kind(name, text, labels=[label])
+    for given, value in values.items():
+        metric.add_metric([given], value)
+    return metric
+
+
+def _gauge(name: str, text: str, value: float) -> Metric:
+    return GaugeMetricFamily(name, text, value=value)

@@ -1,0 +1,1 @@
+"""The process that puts back lost jobs and deletes what is not kept."""

@@ -1,0 +1,5 @@
+"""Run the janitor: ``python -m worker.janitor``."""
+
+from worker.janitor.janitor import main
+
+main()

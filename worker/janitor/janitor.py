@@ -1,0 +1,110 @@
+"""The process that compares the store with the queue and puts back what the queue has lost."""
+
+import logging
+import os
+import socket
+import time
+
+from cleave.logs import about, configure_logging
+from cleave.settings import Settings, load_settings
+from worker.janitor.retention import Housekeeping
+from worker.jobs.admission import may_wait_outside
+from worker.jobs.job import Job, exhausted
+from worker.jobs.queue.counters import Tallies
+from worker.jobs.queue.queue import JobQueue, QueueError, connect_impatiently
+from worker.jobs.size_class import size_class
+from worker.jobs.store.opening import open_store
+from worker.jobs.store.store import JobStore, UnknownJob
+
+log = logging.getLogger("cleave.janitor")
+
+# A job between the queue and its lease, or between the store and the queue, is in neither for a moment, and a running
+# one has no lease for a second or two after Redis was wiped. Only what stays away for longer is lost.
+MISSING_S = 5.0
+_LEADER_INTERVALS = 3  # that a leader may be late before another takes over
+
+
+class Janitor:
+    """One look at everything per sweep; between sweeps it only remembers since when a job has been missing."""
+
+    def __init__(self, store: JobStore, queue: JobQueue, settings: Settings) -> None:
+        self._store = store
+        self._queue = queue
+        self._tallies = Tallies(queue.connection)
+        self._settings = settings
+        self._housekeeping = Housekeeping(store, settings)
+        # That of its supervisor: a janitor that was started again after its death leads on at once.
+        self._name = f"{socket.gethostname()}.{os.getppid()}"
+        self._missing_since: dict[str, float] = {}
+
+    def sweep(self, at_s: float) -> None:
+        """Put back every unfinished job that neither waits nor runs, and end those that have had all their attempts.
+
+        ``at_s`` is the time in seconds on any clock that only goes forward.
+        """
+        self._housekeeping.sweep_machine()
+        if not self._queue.lead(self._name, _LEADER_INTERVALS * self._settings.janitor_interval_s):
+            self._missing_since.clear()
+            return
+        for job_id in reversed(self._lost(at_s)):  # each goes to the front, the oldest last
+            job = self._store.job(job_id)
+            if job is not None:
+                with about(job_id, job.traceparent):
+                    self._recover(job)
+        self._queue.forget_dead_workers()
+        self._housekeeping.sweep(at_s)
+
+    def note_trouble(self, error: Exception) -> None:
+        """After a time without knowledge of the queue nothing is known to be missing."""
+        if isinstance(error, OSError):
+            self._tallies.store_failed("janitor")
+        self._missing_since.clear()
+
+    def _lost(self, at_s: float) -> list[str]:
+        unfinished = self._store.unfinished()
+        held = self._queue.held(unfinished)
+        outside = may_wait_outside(unfinished, held, self._settings.key_max_running_jobs)
+        missing = [job_id for job_id in unfinished if job_id not in held and job_id not in outside]
+        self._missing_since = {job_id: self._missing_since.get(job_id, at_s) for job_id in missing}
+        return [job_id for job_id in missing if at_s - self._missing_since[job_id] >= MISSING_S]
+
+    def _recover(self, job: Job) -> None:
+        failed = exhausted(self._store.attempts(job.id), self._settings.max_attempts)
+        if failed is None:
+            log.warning("job %s was lost by the queue and waits again", job.id)
+            self._tallies.job_recovered()
+            self._queue.requeue(job.id, size_class(job, self._settings.large_job_bytes), at_front=True)
+            return
+        log.error("job %s failed: %s", job.id, failed.code)
+        try:
+            self._store.finish(job.id, failed)
+        except UnknownJob:
+            return
+        self._tallies.job_given_up(failed.code)
+        self._queue.forget(job.id)
+
+
+def main() -> None:
+    settings = load_settings()
+    configure_logging(settings.log_level, settings.log_format, "janitor")
+    assert settings.redis_url, "the parent process sets CLEAVE_REDIS_URL"
+    queue = JobQueue(connect_impatiently(settings.redis_url))
+    janitor = Janitor(open_store(settings), queue, settings)
+    trouble = ""
+    while True:
+        trouble = sweep_or_tell(janitor, trouble)
+        time.sleep(settings.janitor_interval_s)
+
+
+def sweep_or_tell(janitor: Janitor, trouble: str) -> str:
+    """Sweep once; what keeps it from that is told when it changes, not at every sweep, and returned."""
+    try:
+        janitor.sweep(time.monotonic())
+    except (QueueError, OSError) as error:
+        janitor.note_trouble(error)
+        if str(error) != trouble:
+            log.warning("lost jobs are not looked for at the moment: %s", error)
+        return str(error)
+    if trouble:
+        log.warning("lost jobs are looked for again")
+    return ""

@@ -1,0 +1,1 @@
+"""The queue of jobs in Redis, and what else is kept there."""

@@ -1,0 +1,1 @@
+"""The job store: records, uploads, results and the indexes over them."""

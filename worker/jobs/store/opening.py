@@ -1,0 +1,43 @@
+"""How the store of an installation is opened: in the data folder, or in a bucket where CLEAVE_STORE_URL names one."""
+
+from pathlib import Path
+
+from cleave.settings import InvalidSettings, Settings
+from worker.jobs.objects.file_cache import FileCache
+from worker.jobs.objects.local import LocalObjects
+from worker.jobs.store.migration import migrate
+from worker.jobs.store.spool import Spool
+from worker.jobs.store.store import JobStore
+
+_SPOOL, _CACHE = "incoming", "cache"
+
+
+def open_store(settings: Settings) -> JobStore:
+    """The store that the settings name.
+
+    Raises
+    ------
+    InvalidSettings
+        Where the URL is none of a store, or what speaks to buckets is not installed.
+    """
+    if settings.store_url is None:
+        return open_folder(settings.data_dir)
+    return open_url(settings.store_url, settings.data_dir, settings.store_cache_bytes)
+
+
+def open_folder(data_dir: Path) -> JobStore:
+    """The store in a folder, which machines may share."""
+    spool = Spool(data_dir / _SPOOL)
+    migrate(data_dir)
+    return JobStore(LocalObjects(data_dir), spool)
+
+
+def open_url(url: str, data_dir: Path, cache_bytes: int) -> JobStore:
+    """The store in a bucket; ``data_dir`` is for what is on its way to it or was fetched from it."""
+    try:
+        from worker.jobs.objects.buckets import open_bucket
+        from worker.jobs.objects.remote import RemoteObjects
+    except ModuleNotFoundError as error:
+        raise InvalidSettings("CLEAVE_STORE_URL needs a package more: pip install 'cleave[cloud]'.") from error
+    spool = Spool(data_dir / _SPOOL)
+    return JobStore(RemoteObjects(open_bucket(url), spool.folder), spool, FileCache(data_dir / _CACHE, cache_bytes))

@@ -1,0 +1,63 @@
+"""The result files of jobs."""
+
+from collections.abc import Callable
+from pathlib import Path
+from typing import BinaryIO
+
+from worker.jobs.objects.file_cache import FileCache
+from worker.jobs.objects.seam import ObjectStorage
+from worker.jobs.store.layout import RESULT, job_key
+from worker.jobs.store.records import Records, UnknownJob
+from worker.jobs.store.spool import Spool
+
+
+class ResultFiles:
+    """The files; writing one raises UnknownJob where the job was deleted, before or meanwhile."""
+
+    def __init__(self, objects: ObjectStorage, records: Records, spool: Spool, cache: FileCache | None) -> None:
+        """``cache`` keeps on this machine what was fetched from another; results never change."""
+        self._objects = objects
+        self._records = records
+        self._spool = spool
+        self._cache = cache
+
+    def write(self, job_id: str, write: Callable[[BinaryIO], object]) -> None:
+        """Store the result of a job, whole; a second writer of the same job writes the same bytes."""
+        self._records.require(job_id)
+        path = self._spool.result_file(job_id)
+        try:
+            with path.open("xb") as file:
+                write(file)
+            self.put(job_id, path)
+        finally:
+            path.unlink(missing_ok=True)
+
+    def put(self, job_id: str, path: Path) -> None:
+        """Store the result of a job from a file, which may be gone afterwards."""
+        key = job_key(job_id, RESULT)
+        self._records.require(job_id)
+        self._objects.put_file(key, path)
+        self._records.require(job_id, lambda: self._objects.delete(key))
+
+    def open(self, job_id: str) -> BinaryIO:
+        """The result of a job.
+
+        Raises
+        ------
+        UnknownJob
+            Where there is none.
+        """
+        key = job_key(job_id, RESULT)
+        try:
+            if self._cache is None:
+                return self._objects.open(key)
+            return self._cache.open(job_id, lambda: self._objects.open(key))
+        except FileNotFoundError as error:
+            raise UnknownJob(job_id) from error
+
+    def drop(self, job_id: str) -> None:
+        if self._cache is not None:
+            self._cache.drop(job_id)
+
+    def presigned_url(self, job_id: str, valid_s: float) -> str | None:
+        return self._objects.presigned_url(job_key(job_id, RESULT), valid_s)

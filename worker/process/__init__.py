@@ -1,0 +1,1 @@
+"""The worker process and the child process that runs one job."""

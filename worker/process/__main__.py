@@ -1,0 +1,5 @@
+"""Run the worker process: ``python -m worker.process small|large``."""
+
+from worker.process.process import main
+
+main()

@@ -1,0 +1,81 @@
+"""The work itself: a mesh from the store becomes a result file in the store, and the job gets its outcome."""
+
+import logging
+from dataclasses import asdict, dataclass
+
+import segcore
+from cleave.settings import Settings
+from segcore.clean.surface import build_surface
+from segcore.io import ReadLimits
+from segcore.io.result import write_result
+from segcore.report import mesh_report
+from worker.jobs.job import Failed, Job, Outcome, Succeeded, now
+from worker.jobs.store.store import JobStore, UnknownJob
+from worker.process.stage_clock import OnProgress, StageClock
+
+log = logging.getLogger("cleave.work_horse")
+
+
+@dataclass(frozen=True, slots=True)
+class Work:
+    """What was done for a job that had no outcome before."""
+
+    job: Job
+    outcome: Outcome
+    stage_seconds: dict[str, float]
+
+
+def perform(store: JobStore, settings: Settings, job_id: str, on_progress: OnProgress) -> Work | None:
+    """Bring a job to its outcome; None where it has another one or was deleted."""
+    job = store.job(job_id)
+    if job is None or store.outcome(job_id) is not None:
+        return None
+    clock = StageClock(on_progress)
+    try:
+        outcome = segment_stored_mesh(store, job, read_limits(settings), clock)
+        if store.finish(job_id, outcome).finished_at != outcome.finished_at:
+            log.info("the job had ended meanwhile: the outcome of this run is dropped")
+            return None
+    except UnknownJob:
+        return None
+    work = Work(job, outcome, clock.stop())
+    log.info(
+        outcome.status, extra={"fields": {"stage_seconds": {k: round(s, 4) for k, s in work.stage_seconds.items()}}}
+    )
+    return work
+
+
+def segment_stored_mesh(store: JobStore, job: Job, limits: ReadLimits, clock: StageClock) -> Outcome:
+    """Read, segment, write the result file: what was expected to go wrong is a value, the rest is raised."""
+    try:
+        clock("reading", 0.0)
+        with store.open_mesh(job.id) as source:
+            mesh = segcore.read_mesh(source, job.mesh_format, limits=limits, appearance=True)
+        surface = build_surface(mesh)
+        parameters = segcore.SegmentationParameters.from_mapping(job.parameters)
+        hierarchy = segcore.segment(mesh, parameters, clock, surface)
+    except segcore.CleaveError as error:
+        return Failed(finished_at=now(), code=error.code, message=str(error))
+    except FileNotFoundError:
+        return Failed(
+            finished_at=now(), code="input_lost", message="The mesh is no longer in the store: send it again."
+        )
+    clock.begin("storing")
+    store.write_result(job.id, lambda target: write_result(target, mesh, hierarchy))
+    return Succeeded(
+        finished_at=now(),
+        faces=len(mesh.faces),
+        vertices=len(mesh.vertices),
+        max_segments=hierarchy.max_segments,
+        automatic_segments=hierarchy.automatic_segments,
+        report=asdict(mesh_report(mesh, surface)),
+    )
+
+
+def read_limits(settings: Settings) -> ReadLimits:
+    return ReadLimits(
+        max_bytes=settings.max_upload_bytes,
+        max_uncompressed_bytes=settings.max_uncompressed_bytes,
+        max_faces=settings.max_faces,
+        max_vertices=settings.max_vertices,
+    )

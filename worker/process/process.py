@@ -1,0 +1,201 @@
+"""The process that takes jobs from the queue and runs each in a child process, the work-horse."""
+
+import logging
+import os
+import secrets
+import signal
+import socket
+import sys
+from contextlib import AbstractContextManager, ExitStack, nullcontext
+from functools import partial
+from types import FrameType
+from typing import Any
+
+from rq import Worker
+from rq.job import Job as Entry
+from rq.serializers import JSONSerializer
+from rq.worker import WorkerStatus
+from rq.worker_registration import register
+
+import segcore
+from cleave.logs import about, configure_logging, rename_process
+from cleave.parent_death import die_with_parent
+from cleave.settings import Settings, load_settings
+from cleave.trace import Trace, parse_traceparent
+from worker.jobs.job import Attempt
+from worker.jobs.queue.counters import Tallies
+from worker.jobs.queue.entries import is_allowed
+from worker.jobs.queue.queue import JobQueue, connect_impatiently, connect_patiently
+from worker.jobs.size_class import SizeClass
+from worker.jobs.store.opening import open_store
+from worker.jobs.store.store import JobStore, UnknownJob
+from worker.process.desk import Desk, desk_for
+from worker.process.lease import LeaseKeeper
+from worker.process.ledger import Ledger
+from worker.process.perform import perform
+from worker.process.progress import ProgressReporter
+from worker.process.watch import Watch
+from worker.process.work_horse import Ending, ending_of, exit_status, limit_resources, out_of_memory_kills
+
+log = logging.getLogger("cleave.worker")
+
+_REGISTERED_S = 30  # how long a worker counts as alive after its last sign of life
+_STORE_PAUSE_S = 2.0  # after the store was full or did not answer
+_DEQUEUE_TTL_S = 20  # rq blocks for 15 s less, and gives a sign of life in between
+
+
+class JobWorker(Worker):  # type: ignore[misc]  # rq is not analysed
+    """An rq worker for which the store, not Redis, says what has become of a job.
+
+    rq's part is the registration, the dequeue with its intermediate list, the fork and the warm shutdown. The
+    work-horse writes its outcome to the store and needs no Redis; this process renews the lease meanwhile, and stops a
+    work-horse that overruns, or whose job got an outcome elsewhere, or that would hold up a shutdown. It takes no
+    commands from Redis, and the one function that it runs is not looked up by the name in the entry.
+    """
+
+    max_connection_wait_time = 2.0
+
+    def __init__(self, store: JobStore, queue: JobQueue, leases: JobQueue, settings: Settings, size: SizeClass) -> None:
+        """``queue`` may wait for Redis as long as it takes, ``leases`` must not."""
+        super().__init__(
+            [queue.entries[size]],
+            name=f"{socket.gethostname()}.{os.getpid()}.{secrets.token_hex(4)}",
+            connection=queue.connection,
+            serializer=JSONSerializer,
+            worker_ttl=_DEQUEUE_TTL_S,
+            log_job_description=False,
+        )
+        self._store = store
+        self._queue = queue
+        self._leases = leases
+        self._tallies = Tallies(leases.connection)
+        self._settings = settings
+        self._desk: Desk | None = None  # of the job that runs
+        self._lease = LeaseKeeper(leases, self.name, settings.lease_s, partial(self.heartbeat, None))
+        self._ledger = Ledger(store, queue, self._tallies, settings, size, self.name)
+        self._watch = Watch(settings)
+        self._horse_is_gone = -1  # a descriptor that becomes readable
+
+    # What rq calls.
+
+    def execute_job(self, job: Entry, queue: Any) -> None:
+        self.set_state(WorkerStatus.BUSY)
+        if not is_allowed(job):
+            log.warning("an entry of the queue that is not a job of this installation was dropped: %r", job.id)
+            self._queue.forget(job.id)
+        elif self._queue.take(job.id, self.name, self._settings.lease_s):
+            self._run_or_hand_back(job, queue)
+        self.set_state(WorkerStatus.IDLE)
+
+    def fork_work_horse(self, job: Entry, queue: Any) -> None:
+        self._horse_is_gone, held_by_the_horse = os.pipe()
+        super().fork_work_horse(job, queue)
+        os.close(held_by_the_horse)
+
+    def main_work_horse(self, job: Entry, queue: Any) -> None:  # noqa: ARG002
+        self.setup_work_horse_signals()
+        rename_process("work_horse")
+        limit_resources(self._settings)
+        os._exit(exit_status(lambda: self._perform(job.id)))
+
+    def setup_work_horse_signals(self) -> None:
+        """A signal to the whole group is for the worker to decide about; its death is the end of the work-horse."""
+        signal.signal(signal.SIGINT, signal.SIG_IGN)
+        signal.signal(signal.SIGTERM, signal.SIG_IGN)
+        die_with_parent(self.pid)
+
+    def handle_warm_shutdown_request(self) -> None:
+        self._watch.stop_within(self._settings.shutdown_grace_s)
+
+    def request_force_stop(self, signum: int, frame: FrameType | None) -> None:  # noqa: ARG002
+        self._watch.stop_within(0.0)
+
+    def set_shutdown_requested_date(self) -> None:
+        """Nothing: a signal handler does not wait for Redis."""
+
+    def heartbeat(self, timeout: int | None = None, pipeline: Any = None) -> None:  # noqa: ARG002
+        super().heartbeat(_REGISTERED_S, pipeline)
+        register(self, pipeline)  # Redis may have been wiped since the last time
+
+    @property
+    def should_run_maintenance_tasks(self) -> bool:
+        return False  # the janitor's
+
+    def subscribe(self) -> None:
+        """No commands from Redis."""
+
+    # One job.
+
+    def _run_or_hand_back(self, entry: Entry, queue: Any) -> None:
+        """Do a job, or, where the store does not let it be done, leave it to another worker or for later."""
+        with about(entry.id) as subject:
+            try:
+                subject.trace = self._trace(entry.id)
+                attempt = self._ledger.begin(entry.id)
+                if attempt is not None:
+                    self._attempt(entry, queue, attempt)
+                self._ledger.settle(entry.id)
+            except OSError as error:
+                log.warning("job %s waits again: %s", entry.id, error)
+                self._tallies.store_failed("worker")
+                self._watch.pause(_STORE_PAUSE_S)
+                self._ledger.hand_back(entry.id)
+
+    def _trace(self, job_id: str) -> Trace | None:
+        job = self._store.job(job_id)
+        return parse_traceparent(job.traceparent) if job else None
+
+    def _attempt(self, entry: Entry, queue: Any, attempt: Attempt) -> None:
+        log.info("job %s: attempt %d", entry.id, attempt.number)
+        try:
+            with ExitStack() as stack:
+                with self._while_the_store_answers(entry.id):
+                    self._desk = stack.enter_context(desk_for(self._store, entry.id))
+                ending = self._run_work_horse(entry, queue)
+                with self._while_the_store_answers(entry.id):
+                    self._desk.publish()
+            self._ledger.end(entry.id, attempt, ending)
+        except UnknownJob:
+            log.info("job %s was deleted", entry.id)
+        except OSError:  # through no fault of the job
+            self._ledger.uncount(entry.id, attempt)
+            raise
+
+    def _while_the_store_answers(self, job_id: str) -> AbstractContextManager[None]:
+        """A bucket may take its time; a folder of this machine does not."""
+        return nullcontext() if self._store.is_local else self._lease.kept(job_id)
+
+    def _run_work_horse(self, entry: Entry, queue: Any) -> Ending:
+        kills_before = out_of_memory_kills()
+        self.fork_work_horse(entry, queue)
+        stopped_for = self._watch.wait(
+            self.horse_pid,
+            self._horse_is_gone,
+            has_ended=partial(self._store.has_ended, entry.id),
+            on_tick=partial(self._lease.renew, entry.id),
+        )
+        _, status, usage = self.wait_for_horse()
+        self._horse_pid = 0
+        log.info("job %s: the work-horse ended with %d, %d KiB", entry.id, status, usage.ru_maxrss)
+        return stopped_for or ending_of(status, kills_before)
+
+    def _perform(self, job_id: str) -> None:
+        """The work, in the work-horse."""
+        assert self._desk, "it was laid out before the fork"
+        work = perform(self._desk.store, self._settings, job_id, ProgressReporter(self._leases, job_id))
+        if work is not None:
+            self._tallies.job_ended(work.job, work.outcome, work.stage_seconds)
+
+
+def main() -> None:
+    """Work for the queue whose size class is the first argument."""
+    size = SizeClass(sys.argv[1])
+    settings = load_settings()
+    configure_logging(settings.log_level, settings.log_format, "worker")
+    assert settings.redis_url, "the parent process sets CLEAVE_REDIS_URL"
+    log.info("loading the kernels; the first time they are compiled, which takes up to a minute")
+    segcore.warm_up()
+    log.info("ready for %s jobs", size)
+    queue = JobQueue(connect_patiently(settings.redis_url))
+    leases = JobQueue(connect_impatiently(settings.redis_url))
+    JobWorker(open_store(settings), queue, leases, settings, size).work(logging_level="WARNING")

@@ -1,0 +1,1 @@
+"""Webhook messages and the process that delivers them."""
