@@ -11,9 +11,9 @@ from hypothesis import settings
 from hypothesis.configuration import set_hypothesis_home_dir
 from redis import Redis
 
-from buckets import CREDENTIALS, s3_server
+from helpers.buckets import CREDENTIALS, s3_server
+from helpers.waiting import wait_until
 from service.host.queue_server import embedded_queue_server
-from support import wait_until
 from worker.jobs.queue.queue import JobQueue, connect_impatiently
 from worker.jobs.store.opening import open_folder
 from worker.jobs.store.store import JobStore

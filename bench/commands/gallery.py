@@ -51,7 +51,7 @@ def _chosen(arguments: argparse.Namespace) -> list[Model]:
 
 
 def _tile(model: Model, given: bool, size: int) -> NDArray[np.uint8]:
-    from segcore import method as segment
+    from segcore import segment
     from segcore.io.picture import draw
 
     mesh = model.read_mesh()

@@ -29,8 +29,8 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         "--leave-out",
         choices=get_args(Grouping),
         default="category",
-        help="the models that are left out together: a category (default; segcore/learned/models.json is made so), or every "
-        "fifth model",
+        help="the models that are left out together: a category (default; segcore/learned/models.json is made so), or "
+        "every fifth model",
     )
     parser.add_argument("--folds", type=Path, metavar="FOLDER", help="write what was learned without each group here")
     parser.add_argument("--jobs", type=int, default=1, metavar="N", help="processes (default 1)")

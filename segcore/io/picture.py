@@ -6,6 +6,7 @@ from typing import BinaryIO
 
 import numpy as np
 from numba import njit
+from numpy.typing import NDArray
 
 from segcore.arrays import FloatArray, IntArray
 from segcore.io.palette import segment_colors

@@ -9,9 +9,9 @@ from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass
 from pathlib import Path
 
+from cleave.client import Client
 from cleave.client.documents import Job
 from cleave.client.errors import ClientError, JobEnded, RequestRefused
-from cleave.client.sync_client import Client
 from service.commands.progress_board import ProgressBoard
 from service.commands.saved_results import RESULTS
 

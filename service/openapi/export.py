@@ -1,4 +1,4 @@
-"""The OpenAPI document, as it is served and as it is committed: `python -m service.openapi.export` writes the files again."""
+"""Writes docs/openapi.json and docs/api.md: ``python -m service.openapi.export``."""
 
 import json
 import tempfile

@@ -4,11 +4,11 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from strips import EvenSegmenter, cut_at, strip
 
 from bench.commands.boundaries import CutLengths, length_of_cuts, measure, render
 from bench.princeton.dataset import Model
 from bench.princeton.surface import Surface
+from helpers.strips import EvenSegmenter, cut_at, strip
 from segcore.mesh import Mesh
 
 COLUMNS = 12

@@ -2,9 +2,9 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from paper_models import write_benchmark
 
 from bench.__main__ import main
+from helpers.paper_models import write_benchmark
 
 HEADER = "graph\tncc_best_known\truns5_mean20\tseconds_runs5\n"
 

@@ -2,11 +2,11 @@
 
 import numpy as np
 import pytest
-from strips import cut_at, strip
 
 from bench.commands.irregular import render
 from bench.princeton.dataset import Model
 from bench.remeshing import VERSIONS, Remeshed, agreement, areas, refined
+from helpers.strips import cut_at, strip
 from segcore import shapes
 from segcore.mesh import Mesh
 

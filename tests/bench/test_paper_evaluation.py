@@ -6,7 +6,6 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from paper_models import SHAPES, Slices, write_benchmark
 
 from bench.charts import PANELS, Bar, metric_chart
 from bench.errors import BenchmarkError
@@ -21,6 +20,7 @@ from bench.princeton.dataset import read_models
 from bench.princeton.evaluation import evaluate_model
 from bench.princeton.results import load_results, save_results
 from bench.princeton.summary import overall
+from helpers.paper_models import SHAPES, Slices, write_benchmark
 from segcore.mesh import Mesh
 from segcore.shapes import box
 

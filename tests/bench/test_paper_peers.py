@@ -5,7 +5,6 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from strips import cut_at, strip
 
 from bench.errors import BenchmarkError
 from bench.peers import PEERS
@@ -15,7 +14,8 @@ from bench.peers.method import MethodFailed
 from bench.peers.pieces import keep_largest_pieces
 from bench.peers.vhacd import VHacd, distance_to_hull
 from bench.princeton.surface import Surface
-from meshes import pieces_of_labels
+from helpers.meshes import pieces_of_labels
+from helpers.strips import cut_at, strip
 from segcore.shapes import box, burr, dumbbell
 
 

@@ -6,7 +6,6 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from strips import EvenSegmenter, cut_at, strip
 
 from bench.__main__ import main
 from bench.commands.compare import paired_difference
@@ -17,6 +16,7 @@ from bench.princeton.evaluation import ModelResult, Segmenter, evaluate_model
 from bench.princeton.metrics import METRICS
 from bench.princeton.report import render
 from bench.princeton.results import load_results, save_results
+from helpers.strips import EvenSegmenter, cut_at, strip
 
 COLUMNS = 12
 # Two categories of different size, so that the mean over models and that over categories differ.

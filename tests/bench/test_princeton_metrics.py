@@ -8,10 +8,10 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 from numpy.typing import NDArray
-from strips import cut_at, strip, strip_surface
 
 from bench.princeton.metrics import METRICS, Scores, evaluate, mean_scores
 from bench.princeton.surface import Segmentation, Surface
+from helpers.strips import cut_at, strip, strip_surface
 
 COLUMNS, ROWS = 4, 2
 FACES = 2 * COLUMNS * ROWS

@@ -1,9 +1,7 @@
 """A real service with a worker, and headless Chromium that looks at it; every page must stay without a fault."""
 
 import os
-import shutil
-import subprocess
-from collections.abc import Callable, Iterator
+from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
 
@@ -11,16 +9,14 @@ import httpx
 import pytest
 from playwright.sync_api import Browser, sync_playwright
 
-from browser.meshes import small_burr
-from browser.visit import Visit
-from end_to_end.installation import Installation
-from support import wait_until
+from helpers.browser_meshes import small_burr
+from helpers.installation import Installation
+from helpers.node import programs
+from helpers.visit import MOST_BYTES, NewVisit, Visit
+from helpers.waiting import wait_until
 
 _CHROMIUM = Path("/usr/bin/chromium")
 _ARGUMENTS = ["--no-sandbox", "--use-angle=swiftshader", "--enable-unsafe-swiftshader", "--ignore-gpu-blocklist"]
-_AXE = Path(__file__).parent / "axe"
-MOST_BYTES = 2_000_000  # that the installation takes
-NewVisit = Callable[..., Visit]
 
 
 class _Limited(Installation):
@@ -81,14 +77,5 @@ def job(installation: Installation) -> str:
 @pytest.fixture(scope="session")
 def axe(tmp_path_factory: pytest.TempPathFactory) -> str:
     """The script of axe-core."""
-    npm = shutil.which("npm")
-    if npm is None and "CI" not in os.environ:
-        pytest.skip("axe-core is installed with npm, and there is none")
-    folder = tmp_path_factory.mktemp("axe")
-    for name in ("package.json", "package-lock.json"):
-        shutil.copy(_AXE / name, folder)
-    command = [npm or "npm", "ci", "--no-audit", "--no-fund", "--ignore-scripts", "--loglevel=error"]
-    installed = subprocess.run(command, cwd=folder, capture_output=True, text=True, timeout=120, check=False)
-    if installed.returncode and "CI" not in os.environ:
-        pytest.skip(f"axe-core could not be installed: {installed.stderr.strip()[-200:]}")
+    folder = programs.install("axe", tmp_path_factory.mktemp("axe"))
     return (folder / "node_modules/axe-core/axe.min.js").read_text(encoding="utf-8")

@@ -1,6 +1,6 @@
 """<cleave-viewer> in another page, as docs/viewer.md describes it."""
 
-from browser.visit import Visit
+from helpers.visit import Visit
 
 PAGE = """<!doctype html><html lang="en"><title>Another page</title>
 <script type="module" src="viewer/cleave-viewer.js"></script>

@@ -6,11 +6,10 @@ import signal
 import pytest
 from playwright.sync_api import Route
 
-from browser.conftest import MOST_BYTES
-from browser.meshes import small_burr
-from browser.visit import Visit
-from end_to_end.installation import Installation
-from support import wait_until
+from helpers.browser_meshes import small_burr
+from helpers.installation import Installation
+from helpers.visit import MOST_BYTES, Visit
+from helpers.waiting import wait_until
 
 
 def problem(visit: Visit) -> tuple[str, str, str]:

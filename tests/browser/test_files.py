@@ -7,7 +7,7 @@ from importlib.resources import files
 import httpx
 import pytest
 
-from end_to_end.installation import Installation
+from helpers.installation import Installation
 
 SCRIPTS = ("cleave-viewer.js", "page.js", "viewer.js")
 

@@ -5,10 +5,9 @@ from collections.abc import Iterator
 import httpx
 import pytest
 
-from browser.conftest import NewVisit
 from browser.test_access import violations
-from browser.visit import Visit
-from end_to_end.installation import Installation
+from helpers.installation import Installation
+from helpers.visit import NewVisit, Visit
 from service.keys import key_digest
 
 ANNA, BERTA = "cleave_anna", "cleave_berta"

@@ -1,6 +1,6 @@
 """Parts are picked, hidden, split, merged and named; nothing is lost by undo, by a reload or in a link."""
 
-from browser.visit import Visit
+from helpers.visit import Visit
 
 
 def test_the_picture_and_the_tree_are_linked_both_ways(visit: Visit, job: str) -> None:

@@ -1,6 +1,6 @@
 """What is drawn: colours that say which part is which at every level, in one buffer, freed when it goes."""
 
-from browser.visit import Visit
+from helpers.visit import Visit
 
 
 def test_moving_the_slider_recolours_only_what_splits_and_asks_for_nothing(visit: Visit, job: str) -> None:

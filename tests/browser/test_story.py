@@ -4,11 +4,11 @@ from pathlib import Path
 
 import httpx
 
-from browser.meshes import small_burr
-from browser.visit import Visit
 from cleave.settings import Settings
-from end_to_end.installation import Installation
-from support import accepted
+from helpers.browser_meshes import small_burr
+from helpers.installation import Installation
+from helpers.jobs import accepted
+from helpers.visit import Visit
 from worker.jobs.store.opening import open_store
 from worker.process.perform import perform
 

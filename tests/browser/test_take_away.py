@@ -10,9 +10,9 @@ from pathlib import Path
 import pytest
 import trimesh
 
-from browser.meshes import small_burr
-from browser.visit import Visit
-from end_to_end.installation import Installation
+from helpers.browser_meshes import small_burr
+from helpers.installation import Installation
+from helpers.visit import Visit
 
 
 def take(visit: Visit, form: str) -> tuple[str, bytes]:

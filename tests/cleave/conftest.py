@@ -5,9 +5,9 @@ from pathlib import Path
 
 import pytest
 from redis import Redis
-from servers import serving, working
 
 from cleave.settings import Settings
+from helpers.servers import serving, working
 from worker.jobs.store.store import JobStore
 
 

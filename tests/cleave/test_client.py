@@ -8,9 +8,9 @@ import httpx
 import numpy as np
 import pytest
 
+from cleave.client import AsyncClient, Client
 from cleave.client.errors import JobEnded, RequestRefused, ServerUnreachable
-from cleave.client.sync_client import AsyncClient, Client
-from support import sphere
+from helpers.jobs import sphere
 
 
 @pytest.fixture

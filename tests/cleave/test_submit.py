@@ -5,9 +5,9 @@ from pathlib import Path
 
 import pytest
 
-from cleave.client.sync_client import Client
+from cleave.client import Client
+from helpers.jobs import sphere
 from service.commands.main import main
-from support import sphere
 
 
 @pytest.fixture

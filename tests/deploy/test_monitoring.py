@@ -8,8 +8,8 @@ import pytest
 import yaml
 from redis import Redis
 
+from helpers.jobs import accepted
 from service.telemetry.metrics import Metrics
-from support import accepted
 from worker.jobs.job import Failed, Succeeded, now
 from worker.jobs.queue.counters import Tallies
 from worker.jobs.queue.queue import JobQueue

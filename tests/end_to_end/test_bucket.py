@@ -7,9 +7,10 @@ from pathlib import Path
 
 import httpx
 
-from buckets import below
-from end_to_end.installation import Installation
-from support import sphere, wait_until
+from helpers.buckets import below
+from helpers.installation import Installation
+from helpers.jobs import sphere
+from helpers.waiting import wait_until
 from worker.jobs.job import new_job_id
 from worker.jobs.store.opening import open_url
 

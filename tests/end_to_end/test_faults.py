@@ -9,8 +9,10 @@ from pathlib import Path
 
 import pytest
 
-from end_to_end.installation import Installation
-from support import LONG, children_of, sphere, wait_until
+from helpers.installation import Installation
+from helpers.jobs import LONG, sphere
+from helpers.processes import children_of
+from helpers.waiting import wait_until
 from worker.jobs.job import now
 
 

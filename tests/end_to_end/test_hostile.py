@@ -9,9 +9,10 @@ from pathlib import Path
 import httpx
 import pytest
 
-from end_to_end.hostile_files import hostile_files
-from end_to_end.installation import LoggingInstallation
-from support import sphere, wait_until
+from helpers.files.hostile import hostile_files
+from helpers.installation import LoggingInstallation
+from helpers.jobs import sphere
+from helpers.waiting import wait_until
 
 ROOT = Path(__file__).parents[2]
 MEMORY_BYTES = 2 * 2**30

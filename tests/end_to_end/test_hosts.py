@@ -10,10 +10,11 @@ import httpx
 import pytest
 from redis import Redis
 
-from buckets import CREDENTIALS
-from end_to_end.hosts import Host, Network, can_make_hosts
+from helpers.buckets import CREDENTIALS
+from helpers.hosts import Host, Network, can_make_hosts
+from helpers.jobs import LONG, sphere
+from helpers.waiting import wait_until
 from service.host.queue_server import find_server_binary
-from support import LONG, sphere, wait_until
 from worker.jobs.queue.workers import living_workers
 from worker.jobs.store.opening import open_url
 from worker.jobs.store.store import JobStore

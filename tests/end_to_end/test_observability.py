@@ -7,8 +7,9 @@ import signal
 
 import httpx
 
-from end_to_end.installation import Installation, LoggingInstallation
-from support import LONG, sphere, wait_until
+from helpers.installation import Installation, LoggingInstallation
+from helpers.jobs import LONG, sphere
+from helpers.waiting import wait_until
 
 TRACE_ID = "4bf92f3577b34da6a3ce929d0e0e4736"
 PARENT = f"00-{TRACE_ID}-00f067aa0ba902b7-01"

@@ -10,7 +10,7 @@ from pathlib import Path
 import pytest
 
 from cleave.settings import Settings
-from end_to_end.installation import Installation
+from helpers.installation import Installation
 
 ADDRESS = "http://127.0.0.1:8000"
 README = Path(__file__).parents[2] / "README.md"

@@ -13,8 +13,10 @@ from urllib.parse import urlsplit
 import httpx
 import pytest
 
-from end_to_end.installation import Installation
-from support import LONG, is_alive, sphere, wait_until
+from helpers.installation import Installation
+from helpers.jobs import LONG, sphere
+from helpers.processes import is_alive
+from helpers.waiting import wait_until
 
 
 @pytest.fixture(scope="module")

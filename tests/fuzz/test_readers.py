@@ -10,9 +10,9 @@ import time
 import numpy as np
 import pytest
 from hypothesis import HealthCheck, given, seed, settings
-from mutations import mutated
-from soups import read_or_none
 
+from helpers.files.mutations import mutated
+from helpers.files.polygon_soups import read_or_none
 from segcore.io import FORMATS
 
 SECONDS = float(os.environ.get("CLEAVE_FUZZ_SECONDS", "0"))

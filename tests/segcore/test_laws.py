@@ -6,7 +6,7 @@ import fast_simplification
 import numpy as np
 import pytest
 
-from meshes import agreement, areas, refined, rotation
+from helpers.meshes import agreement, areas, refined, rotation
 from segcore import shapes
 from segcore.mesh import Mesh
 from segcore.method import segment

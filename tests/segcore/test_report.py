@@ -7,7 +7,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from meshes import exploded
+from helpers.meshes import exploded
 from segcore import shapes
 from segcore.clean.welding import WELD_TOLERANCE, weld
 from segcore.mesh import Mesh

@@ -5,12 +5,12 @@ from pathlib import Path
 
 import httpx
 import pytest
-from asking import AGAIN
 from redis import Redis
-from servers import serving
 
 from cleave.settings import Settings
-from support import sphere
+from helpers.api import AGAIN
+from helpers.jobs import sphere
+from helpers.servers import serving
 from worker.jobs.store.store import JobStore
 from worker.process.perform import perform
 

@@ -5,10 +5,10 @@ from pathlib import Path
 
 import httpx
 import pytest
-from asking import UNKNOWN, problem, submit
-from servers import serving
 
 from cleave.settings import InvalidSettings, Settings
+from helpers.api import UNKNOWN, problem, submit
+from helpers.servers import serving
 from service.commands.serve import check_guarded
 from service.keys import key_digest, key_ring, new_key, parse_keys
 

@@ -5,11 +5,11 @@ from collections.abc import Callable
 
 import httpx
 import pytest
-from asking import FACES, UNKNOWN, problem, submit, traces
 
 from cleave.settings import Settings
+from helpers.api import FACES, UNKNOWN, problem, submit, traces
+from helpers.jobs import SMALL, sphere
 from segcore.io.result import read_result
-from support import SMALL, sphere
 from worker.jobs.queue.queue import JobQueue, Progress
 from worker.jobs.store.store import JobStore
 

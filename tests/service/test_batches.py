@@ -8,11 +8,11 @@ from pathlib import Path
 
 import httpx
 import pytest
-from asking import problem, submit, traces
-from servers import serving
 
 from cleave.settings import Settings
-from support import sphere
+from helpers.api import problem, submit, traces
+from helpers.jobs import sphere
+from helpers.servers import serving
 from worker.jobs.store.store import JobStore
 from worker.process.perform import perform
 

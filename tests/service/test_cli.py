@@ -11,10 +11,10 @@ from pathlib import Path
 import pytest
 
 import segcore
+from helpers.jobs import sphere
 from segcore.io.result import read_result
 from service.commands.main import main
 from service.commands.progress_bar import ProgressBar
-from support import sphere
 
 
 @pytest.fixture

@@ -12,9 +12,9 @@ from hypothesis import HealthCheck, given, seed, settings
 from hypothesis.errors import Flaky
 from redis import Redis
 from schemathesis.config import SchemathesisConfig
-from servers import serving, working
 
 from cleave.settings import Settings
+from helpers.servers import serving, working
 from service.keys import key_digest, new_key
 from service.openapi.export import DOCS
 from worker.jobs.queue.queue import QUEUE_NAMES

@@ -14,13 +14,13 @@ from redis import Redis
 from redis.exceptions import RedisError
 
 from cleave.settings import Settings
+from helpers.waiting import wait_until
 from service.commands.main import main
 from service.doctor.findings import Finding
 from service.doctor.machine_checks import check_machine
 from service.doctor.queue_checks import check_queue
 from service.doctor.store_checks import check_store
 from service.host.queue_server import find_server_binary
-from support import wait_until
 from worker.jobs.objects.seam import ObjectInfo
 from worker.jobs.queue.queue import QUEUE_NAMES
 

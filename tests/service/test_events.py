@@ -5,8 +5,8 @@ import threading
 from collections.abc import Callable
 
 import httpx
-from asking import UNKNOWN, problem, submit
 
+from helpers.api import UNKNOWN, problem, submit
 from worker.jobs.queue.queue import JobQueue, Progress
 
 

@@ -10,12 +10,12 @@ import pytest
 import trimesh
 
 import segcore
+from helpers.jobs import sphere
 from segcore.io.result import read_result
 from segcore.io.writing import WRITERS
 from segcore.report import mesh_report
 from service.commands.file_arguments import OUTPUTS
 from service.commands.main import main
-from support import sphere
 
 
 @pytest.fixture(scope="module")

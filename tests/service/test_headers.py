@@ -6,9 +6,9 @@ from collections.abc import Callable
 
 import httpx
 import pytest
-from servers import serving
 
 from cleave.settings import Settings
+from helpers.servers import serving
 from worker.jobs.store.store import JobStore
 
 POLICY = ("form-action 'self'", "base-uri 'none'", "frame-ancestors 'none'")

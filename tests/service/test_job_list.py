@@ -4,10 +4,10 @@ import time
 from collections.abc import Callable
 
 import httpx
-from asking import problem, submit
 
+from helpers.api import problem, submit
+from helpers.jobs import SMALL, sphere
 from service.documents import Status
-from support import SMALL, sphere
 from worker.jobs.queue.queue import JobQueue
 
 

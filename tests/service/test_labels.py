@@ -6,8 +6,8 @@ from collections.abc import Callable
 import httpx
 import numpy as np
 import pytest
-from asking import problem
 
+from helpers.api import problem
 from service.answer.label_formats import LABELS, LabelsFormat, negotiate
 from service.problems import Problem
 

@@ -4,11 +4,10 @@ from datetime import timedelta
 
 import httpx
 import pytest
-from asking import submit
-from test_server import samples
 
 from cleave.settings import Settings
-from support import SMALL
+from helpers.api import samples, submit
+from helpers.jobs import SMALL
 from worker.jobs.job import now
 from worker.jobs.queue.counters import Tallies
 from worker.jobs.queue.queue import JobQueue, Progress

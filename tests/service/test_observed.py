@@ -7,11 +7,12 @@ from typing import Any
 
 import httpx
 import pytest
-from asking import UNKNOWN, submit
 
 from cleave.logs import JsonFormatter
 from cleave.trace import parse_traceparent
-from support import sphere, wait_until
+from helpers.api import UNKNOWN, submit
+from helpers.jobs import sphere
+from helpers.waiting import wait_until
 from worker.jobs.queue.queue import JobQueue
 from worker.jobs.store.store import JobStore
 

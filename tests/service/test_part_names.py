@@ -6,7 +6,8 @@ from collections.abc import Callable
 
 import httpx
 import pytest
-from asking import problem
+
+from helpers.api import problem
 
 NAMES = [("segments", "2"), ("name", "1:left arm"), ("name", "7:nobody")]
 

@@ -3,9 +3,9 @@
 import pytest
 
 from cleave.settings import Settings
+from helpers.jobs import LARGE, SMALL
 from service.commands.serve import worker_counts
 from service.host.programs import worker_programs
-from support import LARGE, SMALL
 from worker.jobs.size_class import SizeClass
 
 

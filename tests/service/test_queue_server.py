@@ -7,9 +7,9 @@ from pathlib import Path
 
 import pytest
 
+from helpers.waiting import wait_until
 from service.host import queue_server
 from service.host.queue_server import NoQueueServer, embedded_queue_server, find_server_binary, socket_path, stop_orphan
-from support import wait_until
 
 
 def test_without_a_binary_the_error_says_what_to_set(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:

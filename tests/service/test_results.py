@@ -9,7 +9,8 @@ from collections.abc import Callable
 import httpx
 import matplotlib.image
 import pytest
-from asking import FACES, problem
+
+from helpers.api import FACES, problem
 
 PATHS = [
     "labels",

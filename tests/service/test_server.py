@@ -5,20 +5,13 @@ from urllib.parse import urlsplit
 
 import httpx
 import pytest
-from asking import submit
-from servers import serving
 
 from cleave.settings import Settings
+from helpers.api import samples, submit
+from helpers.jobs import SMALL
+from helpers.servers import serving
 from service.host.http_protocol import ImpatientProtocol
-from support import SMALL
 from worker.jobs.queue.queue import JobQueue
-
-
-def samples(client: httpx.Client) -> dict[str, float]:
-    answer = client.get("/metrics")
-    assert answer.headers["Content-Type"].startswith("text/plain")
-    lines = [line for line in answer.text.splitlines() if not line.startswith("#")]
-    return {name: float(value) for name, _, value in (line.rpartition(" ") for line in lines)}
 
 
 def test_metrics_count_requests_by_route_and_tell_how_the_queue_is(client: httpx.Client, queue: JobQueue) -> None:

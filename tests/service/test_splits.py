@@ -5,8 +5,8 @@ from collections.abc import Callable
 import httpx
 import numpy as np
 import pytest
-from asking import problem
 
+from helpers.api import problem
 from segcore.io.result import read_result
 from worker.jobs.store.store import JobStore
 

@@ -9,13 +9,13 @@ from pathlib import Path
 
 import httpx
 import pytest
-from asking import problem, submit, traces
-from servers import serving
 
-from buckets import below, s3_server
 from cleave.settings import Settings
+from helpers.api import problem, submit, traces
+from helpers.buckets import below, s3_server
+from helpers.jobs import sphere
+from helpers.servers import serving
 from segcore.io.result import read_result
-from support import sphere
 from worker.jobs.job import new_job_id
 from worker.jobs.store.opening import open_store
 from worker.jobs.store.store import JobStore

@@ -5,12 +5,13 @@ from collections.abc import Callable
 
 import httpx
 import pytest
-from asking import AGAIN, problem, submit
-from servers import working
 
 from cleave.settings import Settings
+from helpers.api import AGAIN, problem, submit
+from helpers.jobs import SMALL, sphere
+from helpers.servers import working
+from helpers.waiting import wait_until
 from service.submit.preference import Preference, read_preference
-from support import SMALL, sphere, wait_until
 from worker.jobs.queue.queue import JobQueue
 from worker.jobs.store.store import JobStore
 

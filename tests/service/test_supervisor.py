@@ -9,8 +9,9 @@ from pathlib import Path
 
 import pytest
 
+from helpers.processes import children_of, is_alive
+from helpers.waiting import wait_until
 from service.host.supervisor import DataInUse, lock_data
-from support import children_of, is_alive, wait_until
 
 
 def supervise(tmp_path: Path, *programs: str) -> "subprocess.Popen[bytes]":

@@ -9,11 +9,11 @@ from pathlib import Path
 import httpx
 import hypothesis
 import pytest
-from asking import problem, traces
 from hypothesis import strategies as st
 from starlette.requests import ClientDisconnect, Request
 
 from cleave.settings import Settings
+from helpers.api import problem, traces
 from segcore.errors import InvalidParameters
 from service.problems import Problem
 from service.submit.form import FormReader

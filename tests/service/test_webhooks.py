@@ -10,12 +10,12 @@ from typing import Any
 
 import httpx
 import pytest
-from asking import problem
-from servers import serving
 from standardwebhooks import Webhook, WebhookVerificationError
 
 from cleave.settings import Settings
-from support import sphere
+from helpers.api import problem
+from helpers.jobs import sphere
+from helpers.servers import serving
 from worker.jobs.job import now
 from worker.jobs.queue.queue import JobQueue
 from worker.jobs.store.opening import open_folder

@@ -9,8 +9,9 @@ from pathlib import Path
 import pytest
 from redis import Redis
 
-from buckets import below
-from support import SMALL, StartWorker
+from helpers.buckets import below
+from helpers.jobs import SMALL
+from helpers.processes import StartWorker
 from worker.jobs.job import new_job_id
 from worker.jobs.size_class import SizeClass
 from worker.jobs.store.opening import open_folder, open_url

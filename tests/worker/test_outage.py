@@ -7,8 +7,10 @@ from pathlib import Path
 
 import pytest
 
+from helpers.jobs import LONG, SMALL, accepted, sphere
+from helpers.processes import StartWorker, children_of
+from helpers.waiting import wait_until
 from service.host.queue_server import QueueServer, embedded_queue_server
-from support import LONG, SMALL, StartWorker, accepted, children_of, sphere, wait_until
 from worker.jobs.job import Job, Succeeded
 from worker.jobs.queue.queue import JobQueue, QueueError, connect_impatiently
 from worker.jobs.store.store import JobStore

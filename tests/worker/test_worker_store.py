@@ -5,8 +5,10 @@ import signal
 import time
 from pathlib import Path
 
-from buckets import s3_server
-from support import LONG, StartWorker, accepted, children_of, sphere, wait_until
+from helpers.buckets import s3_server
+from helpers.jobs import LONG, accepted, sphere
+from helpers.processes import StartWorker, children_of
+from helpers.waiting import wait_until
 from worker.jobs.job import Succeeded
 from worker.jobs.queue.queue import JobQueue
 from worker.jobs.size_class import SizeClass

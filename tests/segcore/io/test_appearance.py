@@ -5,15 +5,15 @@ import io
 import numpy as np
 import pygltflib
 import pytest
-from gltf_files import FLOAT
 from hypothesis import given
 from hypothesis import strategies as st
-from ply_files import ENCODINGS, ply
-from samples import DRESSED, INDICES, OBJ, OFF, SAMPLES, SQUARE, XYZ, gltf_square, gltf_with_attributes
-from threemf_files import Model3MF
-from trees import looks, two_strips
-from written import written
 
+from helpers.files.gltf import FLOAT
+from helpers.files.hierarchies import looks, two_strips
+from helpers.files.ply import ENCODINGS, ply
+from helpers.files.samples import DRESSED, INDICES, OBJ, OFF, SAMPLES, SQUARE, XYZ, gltf_square, gltf_with_attributes
+from helpers.files.threemf import Model3MF
+from helpers.files.written import written
 from segcore.appearance import Appearance
 from segcore.errors import InvalidMesh, UnsupportedFormat
 from segcore.hierarchy import Hierarchy

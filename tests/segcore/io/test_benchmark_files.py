@@ -6,8 +6,8 @@ from pathlib import Path
 import meshio
 import numpy as np
 import pytest
-from slow_readers import slow_off
 
+from helpers.files.plain_readers import slow_off
 from segcore.io import read_mesh
 
 FOLDER = os.environ.get("CLEAVE_PSB_DIR", "")

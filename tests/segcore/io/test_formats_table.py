@@ -10,11 +10,11 @@ from pathlib import Path
 import numpy as np
 import pytest
 import trimesh
-from samples import BINARY_STL, DRESSED, SAMPLES
-from soups import read, read_or_none
-from trees import two_strips
-from written import labels_of_runs, members, written
 
+from helpers.files.hierarchies import two_strips
+from helpers.files.polygon_soups import read, read_or_none
+from helpers.files.samples import BINARY_STL, DRESSED, SAMPLES
+from helpers.files.written import labels_of_runs, members, written
 from segcore.appearance import Appearance
 from segcore.errors import UnsupportedFormat
 from segcore.io import FORMATS, read_mesh

@@ -6,8 +6,8 @@ import json
 import numpy as np
 import pytest
 from hypothesis import given
-from trees import segmentations, two_strips
 
+from helpers.files.hierarchies import segmentations, two_strips
 from segcore.errors import InvalidParameters
 from segcore.hierarchy import Hierarchy
 from segcore.io.labels import hierarchy_document, labels_document, write_seg

@@ -6,8 +6,8 @@ from pathlib import Path
 import numpy as np
 import pytest
 import trimesh
-from written import written
 
+from helpers.files.written import written
 from segcore.hierarchy import Hierarchy
 from segcore.io import read_mesh
 from segcore.mesh import Mesh

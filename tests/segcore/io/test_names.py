@@ -9,10 +9,10 @@ import pytest
 import trimesh
 from hypothesis import given
 from hypothesis import strategies as st
-from soups import read
-from trees import two_strips
-from written import members, written
 
+from helpers.files.hierarchies import two_strips
+from helpers.files.polygon_soups import read
+from helpers.files.written import members, written
 from segcore.io import read_mesh
 from segcore.io.names import file_stems, group_names, segment_names
 from segcore.mesh import Mesh

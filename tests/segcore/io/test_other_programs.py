@@ -7,8 +7,8 @@ import meshio
 import numpy as np
 import pytest
 import trimesh
-from soups import read
 
+from helpers.files.polygon_soups import read
 from segcore.io import read_mesh
 from segcore.mesh import Mesh
 

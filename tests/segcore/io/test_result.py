@@ -9,8 +9,8 @@ import numpy as np
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
-from trees import segmentations, two_strips
 
+from helpers.files.hierarchies import segmentations, two_strips
 from segcore.errors import CleaveError, InvalidMesh, InvalidParameters
 from segcore.hierarchy import Hierarchy
 from segcore.io.result import Segmentation, read_result, write_result

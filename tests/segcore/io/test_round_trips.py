@@ -16,9 +16,9 @@ import numpy as np
 import pygltflib
 import pytest
 import trimesh
-from node_programs import install, run
-from written import json_of, labels_of_runs, members, written
 
+from helpers.files.written import json_of, labels_of_runs, members, written
+from helpers.node.programs import install, run
 from segcore.hierarchy import Hierarchy
 from segcore.io import FORMATS, read_mesh
 from segcore.io.palette import color_bytes
@@ -34,7 +34,7 @@ OUTPUTS = {
     "stl.zip": ("zip", {"part_format": "stl"}),
     "obj.zip": ("zip", {"part_format": "obj"}),
 }
-BLENDER = Path(__file__).parent / "blender.py"
+BLENDER = Path(__file__).parents[2] / "helpers" / "files" / "blender.py"
 Parts = dict[int, np.ndarray]  # (F, 3, 3) the corners of the faces of every label
 
 

@@ -1,0 +1,55 @@
+"""Jobs in a store, as the service leaves them there."""
+
+import io
+
+import numpy as np
+
+from worker.jobs.job import Job, new_job_id, now
+from worker.jobs.size_class import SizeClass
+from worker.jobs.store.store import JobStore
+
+SMALL, LARGE = SizeClass
+LONG = {"clusters": 20_000, "max_segments": 400}  # with sphere(100), seconds of work
+
+
+def sphere(rows: int, bumps: float = 0.25) -> bytes:
+    """An OFF file of a closed bumpy surface with 4 rows (rows - 1) faces."""
+    columns = 2 * rows
+    polar, azimuth = np.meshgrid(
+        np.pi * np.arange(1, rows) / rows, 2 * np.pi * np.arange(columns) / columns, indexing="ij"
+    )
+    radius = 1 + bumps * np.sin(4 * polar) * np.cos(3 * azimuth)
+    ring = np.stack([np.sin(polar) * np.cos(azimuth), np.sin(polar) * np.sin(azimuth), np.cos(polar)], axis=-1)
+    vertices = np.vstack([(radius[..., None] * ring).reshape(-1, 3), [[0, 0, 1], [0, 0, -1]]])
+    index = np.arange((rows - 1) * columns).reshape(rows - 1, columns)
+    upper, lower, following = index[:-1], index[1:], np.roll(index, -1, axis=1)
+    north, south = len(vertices) - 2, len(vertices) - 1
+    faces = np.vstack(
+        [
+            np.stack([upper, lower, following[1:]], axis=-1).reshape(-1, 3),
+            np.stack([upper, following[1:], following[:-1]], axis=-1).reshape(-1, 3),
+            np.stack([np.full(columns, north), index[0], following[0]], axis=-1),
+            np.stack([np.full(columns, south), following[-1], index[-1]], axis=-1),
+        ]
+    )
+    text = io.StringIO()
+    text.write(f"OFF\n{len(vertices)} {len(faces)} 0\n")
+    np.savetxt(text, vertices, fmt="%.6f")
+    np.savetxt(text, np.insert(faces, 0, 3, axis=1), fmt="%d")
+    return text.getvalue().encode()
+
+
+def accepted(store: JobStore, mesh: bytes, **parameters: object) -> Job:
+    """A job in the store, as the service leaves it there."""
+    with store.begin_upload() as upload:
+        upload.write(mesh)
+        job = Job(
+            id=new_job_id(),
+            sha256=upload.sha256,
+            size_bytes=upload.size_bytes,
+            mesh_format=None,
+            parameters=dict(parameters),
+            created_at=now(),
+        )
+        store.accept(job, upload)
+    return job

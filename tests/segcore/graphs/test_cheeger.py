@@ -1,0 +1,49 @@
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from helpers.graphs import graphs, laplacian
+from segcore.graphs.cheeger import Criterion, cut_of, cut_weight, ncc, ncut, sweep
+from segcore.graphs.surface_graph import SurfaceGraph
+
+
+@given(graphs(connected=False), st.data())
+def test_the_values_of_a_cut_are_those_of_the_formulas(graph: SurfaceGraph, data: st.DataObject) -> None:
+    side = np.array(data.draw(st.lists(st.booleans(), min_size=graph.node_count, max_size=graph.node_count)))
+    S = side.astype(float)
+    weight, inside, outside = S @ laplacian(graph) @ S, graph.volume @ S, graph.volume @ (1 - S)
+    assert cut_weight(graph, side) == pytest.approx(weight, rel=1e-12, abs=1e-12)
+    if 0 < S.sum() < graph.node_count:
+        assert ncc(graph, side) == pytest.approx(weight / min(inside, outside), rel=1e-9, abs=1e-9)
+        assert ncut(graph, side) == pytest.approx(weight / inside + weight / outside, rel=1e-9, abs=1e-9)
+    else:
+        assert ncc(graph, side) == ncut(graph, side) == np.inf
+
+
+@given(graphs(connected=False), st.data(), st.sampled_from(["ncc", "ncut"]))
+def test_the_sweep_is_the_best_of_all_thresholds(
+    graph: SurfaceGraph, data: st.DataObject, criterion: Criterion
+) -> None:
+    few = st.integers(0, 3).map(float)  # few values: ties
+    values = np.array(data.draw(st.lists(few, min_size=graph.node_count, max_size=graph.node_count)))
+    cut = sweep(graph, values, criterion)
+    thresholds = np.unique(values)[:-1]
+    expected = min((cut_of(graph, values > t).value(criterion) for t in thresholds), default=np.inf)
+    assert cut.value(criterion) == pytest.approx(expected, rel=1e-9, abs=1e-12)
+
+
+@given(graphs(connected=False), st.data())
+def test_the_sweep_never_parts_equal_values(graph: SurfaceGraph, data: st.DataObject) -> None:
+    few = st.integers(0, 3).map(float)
+    values = np.array(data.draw(st.lists(few, min_size=graph.node_count, max_size=graph.node_count)))
+    side = sweep(graph, values).side
+    assert values[side].min(initial=np.inf) > values[~side].max(initial=-np.inf)
+
+
+def test_the_criteria_differ() -> None:
+    """Volumes 1, 1, 2 on a path: cutting the first node off costs 1 / 1 or 1 + 1/3, the last one 1.9 / 2 or 1.9."""
+    graph = SurfaceGraph(np.array([[0, 1], [1, 2]], dtype=np.int32), np.array([1.0, 1.9]), np.array([1.0, 1.0, 2.0]))
+    values = np.array([0.0, 1.0, 2.0])
+    assert sweep(graph, values, "ncc").side.tolist() == [False, False, True]
+    assert sweep(graph, values, "ncut").side.tolist() == [False, True, True]

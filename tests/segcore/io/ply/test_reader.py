@@ -1,0 +1,152 @@
+"""PLY files, in text and in both byte orders: every face in its place; nothing half-read."""
+
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from helpers.files.damage import assert_agrees, assert_never_half_read, damaged
+from helpers.files.plain_readers import slow_ply
+from helpers.files.ply import ENCODINGS, TYPES, Properties, Rows, ply
+from helpers.files.polygon_soups import Soup, assert_is_soup, assert_same_mesh, read, soups
+from helpers.files.samples import PLY as SQUARES
+from helpers.files.samples import PLY_CORNERS as CORNERS
+from helpers.files.samples import SQUARE as SOUP
+from helpers.files.samples import XYZ
+from segcore.errors import InvalidMesh, LimitExceeded, UnsupportedFormat
+from segcore.io import ReadLimits
+
+MIXED_ELEMENTS: list[tuple[str, Properties, Rows]] = [
+    ("camera", [("list", "uint16", "double", "matrix"), ("char", "on")], [[[1.5, 2.5], 1], [[], 0]]),
+    (
+        "vertex",
+        [("uint8", "red"), *XYZ[::-1], ("list", "uint8", "short", "tags")],
+        [[7, z, y, x, [1]] for x, y, z in SOUP.vertices],
+    ),
+    (
+        "face",
+        [("short", "flags"), ("list", "uint8", "uint32", "vertex_index"), ("list", "uint8", "float", "uv")],
+        [[-1, [0, 1, 2], []], [2, [0, 1, 2, 3], [0.5, 0.5]], [3, [3, 2, 1], [0.25]]],
+    ),
+    ("edge", [("int", "vertex1"), ("int", "vertex2")], [[0, 1]]),
+]
+MIXED = [ply(name, MIXED_ELEMENTS) for name in ENCODINGS]
+
+
+@st.composite
+def ply_files(draw: st.DrawFn, soup: Soup) -> bytes:
+    """The soup in any encoding, with other properties and elements around it."""
+    count, index = (
+        draw(st.sampled_from(["char", "uint8", "uint16", "int"])),
+        draw(st.sampled_from(["uint8", "int", "float"])),
+    )
+    extra = draw(st.lists(st.sampled_from(list(TYPES)), max_size=2))
+    at = draw(st.integers(0, len(extra)))
+    vertex_properties = [(kind, f"extra{i}") for i, kind in enumerate(extra)]
+    vertex_properties[at:at] = [(draw(st.sampled_from(["float", "double"])), axis) for axis in "xyz"]
+    vertices = [[*([1] * at), *vertex, *([1] * (len(extra) - at))] for vertex in soup.vertices]
+    face_properties: Properties = [("list", count, index, draw(st.sampled_from(["vertex_index", "vertex_indices"])))]
+    faces: Rows = [[polygon] for polygon in soup.polygons]
+    if draw(st.booleans()):
+        face_properties.insert(draw(st.integers(0, 1)), ("list", "uint8", "float", "texcoord"))
+        where = 0 if face_properties[0][3] == "texcoord" else 1
+        for row in faces:
+            row.insert(where, [0.5] * draw(st.integers(0, 2)))
+    elements = [("vertex", vertex_properties, vertices), ("face", face_properties, faces)]
+    for _ in range(draw(st.integers(0, 2))):
+        name = draw(st.sampled_from(["edge", "range_grid", "m"]))
+        if name not in [element[0] for element in elements]:
+            rows = [[[1] * draw(st.integers(0, 2)), 2.5] for _ in range(draw(st.integers(0, 2)))]
+            elements.insert(draw(st.integers(0, 2)), (name, [("list", "uint8", "int", "l"), ("float", "w")], rows))
+    return ply(draw(st.sampled_from(list(ENCODINGS))), elements, draw(st.sampled_from(["\n", "\r\n", "\r"])), "a b")
+
+
+@given(data=st.data(), soup=soups())
+def test_every_vertex_and_face_keeps_its_place_in_any_layout(data: st.DataObject, soup: Soup) -> None:
+    file = data.draw(ply_files(soup))
+    assert_is_soup(read(file), soup)
+    assert slow_ply(file) == (soup.vertices, soup.triangles)
+
+
+@given(damaged([SQUARES["ascii"], MIXED[0]], b" \n\r\t0123456789.-+exyzlist\0\xff"))
+def test_a_damaged_text_is_read_as_it_stands_or_refused(data: bytes) -> None:
+    assert_agrees(data, "ply", slow_ply)
+
+
+@given(damaged([SQUARES["binary_little_endian"], *MIXED[1:]], b" \n\r0123456789\0\1\2\3\x7f\x80\xff"))
+def test_a_damaged_binary_is_read_as_it_stands_or_refused(data: bytes) -> None:
+    assert_agrees(data, "ply", slow_ply)
+
+
+@pytest.mark.parametrize("data", SQUARES.values(), ids=SQUARES)
+def test_a_cut_file_is_never_half_read(data: bytes) -> None:
+    assert_never_half_read(data, SOUP, "ply")
+
+
+@pytest.mark.parametrize("data", MIXED, ids=ENCODINGS)
+def test_polygons_of_all_sizes_and_other_elements_keep_the_order_of_the_file(data: bytes) -> None:
+    mesh = read(data)
+    assert_same_mesh(mesh, SOUP.vertices, [(0, 1, 2), (0, 1, 2), (0, 2, 3), (3, 2, 1)])
+    assert mesh.source_polygon is not None
+    assert mesh.source_polygon.tolist() == [0, 1, 1, 2]
+
+
+@pytest.mark.parametrize("encoding", ENCODINGS)
+def test_strips_give_their_triangles_in_order_and_all_facing_the_same_way(encoding: str) -> None:
+    strips: Rows = [[[0, 1, 2, 3, 3, -1, 2, 1, 0, -1, 0, -1]], [[3, 2, 1, 0]]]
+    elements = [("vertex", XYZ, CORNERS), ("tristrips", [("list", "int", "int", "vertex_indices")], strips)]
+    mesh = read(ply(encoding, elements))
+    assert mesh.faces.tolist() == [[0, 1, 2], [1, 3, 2], [2, 3, 3], [2, 1, 0], [3, 2, 1], [2, 0, 1]]
+
+
+def test_bytes_after_the_last_element_of_a_binary_are_passed_over() -> None:
+    assert_is_soup(read(SQUARES["binary_big_endian"] + b"\n\n"), SOUP)
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "message"),
+    [
+        (b"3 0 2 3\n", b"3 0 2 4\n", "outside 0..3"),
+        (b"3 0 2 3\n", b"3 0 2 -1\n", "outside 0..3"),
+        (b"3 0 2 3\n", b"3 0 2 0.5\n", "not a whole number"),
+        (b"3 0 2 3\n", b"3 0 2\n", "row 1 of the 2 rows of its element 'face'"),
+        (b"3 0 2 3\n", b"-3 0 2 3\n", "row 1 of the 2 rows of its element 'face'"),
+        (b"3 0 2 3\n", b"3 0 2 x\n", "Line 17: 'x' is not a number"),
+        (b"3 0 2 3\n", b"3 0 2 3\n7", "Line 18: the PLY file goes on"),
+        (b"0.5\n", b"nan\n", "Vertex 3"),
+        (b"element face 2", b"element face 4000000000", "face"),
+        (b"element face 2", b"element face -2", "Line 9"),
+        (b"element face 2", b"element vertex 2", "Line 9"),
+        (b"property float x", b"property float w", "no property 'x'"),
+        (b"property float x", b"property quad x", "Line 6"),
+        (b"vertex_indices", b"corners", "no list 'vertex_indices'"),
+        (b"list uint8", b"list float", "Line 10: the length"),
+        (b"format ascii 1.0\n", b"", "no 'format' line"),
+        (b"end_header", b"end_heade", "end_header"),
+    ],
+)
+def test_a_wrong_file_is_refused_with_the_place(old: bytes, new: bytes, message: str) -> None:
+    with pytest.raises((InvalidMesh, LimitExceeded), match=message):
+        read(SQUARES["ascii"].replace(old, new))
+
+
+def test_whole_numbers_that_no_integer_holds_are_still_coordinates() -> None:
+    mesh = read(SQUARES["ascii"].replace(b"0.0 1.0 0.5", b"0 100000000000000000000 -9223372036854775808"))
+    assert mesh.vertices[3].tolist() == [0.0, 1e20, -(2.0**63)]
+
+
+def test_points_alone_are_refused() -> None:
+    for encoding in ENCODINGS:
+        with pytest.raises(InvalidMesh, match="no faces"):
+            read(ply(encoding, [("vertex", XYZ, CORNERS)]))
+
+
+def test_an_unknown_encoding_is_refused_by_name() -> None:
+    with pytest.raises(UnsupportedFormat, match="binary_middle_endian"):
+        read(SQUARES["ascii"].replace(b"ascii", b"binary_middle_endian"))
+
+
+@pytest.mark.parametrize("data", SQUARES.values(), ids=SQUARES)
+def test_counts_beyond_the_limits_are_refused_by_name(data: bytes) -> None:
+    for limits, name in ((ReadLimits(max_faces=1), "max_faces = 1"), (ReadLimits(max_vertices=3), "max_vertices = 3")):
+        with pytest.raises(LimitExceeded, match=name):
+            read(data, limits=limits)

@@ -1,0 +1,151 @@
+"""OFF files: every face in its place, in whatever way they are written; nothing half-read."""
+
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from helpers.files.damage import assert_agrees, assert_never_half_read, damaged
+from helpers.files.plain_readers import slow_off
+from helpers.files.polygon_soups import Soup, assert_is_soup, read, soups
+from helpers.files.samples import OFF as SQUARE
+from helpers.files.samples import SQUARE as SOUP
+from segcore.errors import InvalidMesh, LimitExceeded, UnsupportedFormat
+from segcore.io import ReadLimits
+
+MIXED = (
+    b"COFF # made by hand\n5 3 9\n0 0 0 1 0 0 1\n1 0 0 1 0 0 1\n1 1 0 1 0 0 1\n0 1 0 1 0 0 1\n.5 .5 1 0 1 0 1\n"
+    b"4 0 1 2 3 255 0 0\n3 0 1 4 0.5 0.5 0.5 1\n5 0 1 2 3 4\n"
+)
+line_ends = st.sampled_from(["\n", "\r\n", "\n\n", " \t\n", "\n# a comment 1 2 3\n", " # 7\n"])
+gaps = st.sampled_from([" ", "  ", "\t", " \t "])
+colors = st.sampled_from(["", " 7", " 255 0 0", " 0.5 0.25 1", " 1 0 0 0.5"])
+
+
+@st.composite
+def off_files(draw: st.DrawFn, soup: Soup) -> bytes:
+    """The soup with any prefix, gaps, line ends, comments and face colours."""
+    texture, color, normal = (draw(st.sampled_from(["", letters])) for letters in ("ST", "C", "N"))
+    extra = (3 if normal else 0) + (4 if color else 0) + (2 if texture else 0)
+    counts = f"{len(soup.vertices)} {len(soup.polygons)} 0"
+    lines = [f"{texture}{color}{normal}OFF{draw(st.sampled_from([' ', chr(10)]))}{counts}"]
+    lines += [" ".join(map(repr, vertex)) + " 0.5" * extra for vertex in soup.vertices]
+    lines += [draw(gaps).join(map(str, [len(p), *p])) + draw(colors) for p in soup.polygons]
+    return "".join(line + draw(line_ends) for line in lines).encode()
+
+
+@st.composite
+def streams(draw: st.DrawFn, soup: Soup) -> bytes:
+    """The soup without colours, its records broken into lines anywhere within them."""
+    words = ["OFF\n", f"{len(soup.vertices)} {len(soup.polygons)} 0\n"]
+    for vertex in soup.vertices:
+        words += [repr(value) + draw(st.sampled_from([" ", "\n"])) for value in vertex]
+    words[-1] = words[-1].strip() + "\n"
+    for polygon in soup.polygons:
+        words += [f"{word}{draw(st.sampled_from([' ', chr(10)]))}" for word in [len(polygon), *polygon]]
+        words[-1] = words[-1].strip() + "\n"
+    return "".join(words).encode()
+
+
+@given(data=st.data(), soup=soups())
+def test_every_vertex_and_face_keeps_its_place_in_any_layout(data: st.DataObject, soup: Soup) -> None:
+    file = data.draw(off_files(soup))
+    assert_is_soup(read(file), soup)
+    assert slow_off(file) == (soup.vertices, soup.triangles)
+
+
+@given(data=st.data(), soup=soups())
+def test_records_may_be_broken_over_lines(data: st.DataObject, soup: Soup) -> None:
+    file = data.draw(streams(soup))
+    assert_is_soup(read(file), soup)
+    assert slow_off(file) == (soup.vertices, soup.triangles)
+
+
+@given(damaged([SQUARE, MIXED, SQUARE.replace(b"\n", b"\r\n")], b" \n\r\t#0123456789.-+eEOFCNST\0\xff"))
+def test_a_damaged_file_is_read_as_it_stands_or_refused(data: bytes) -> None:
+    assert_agrees(data, "off", slow_off)
+
+
+def test_a_cut_file_is_never_half_read() -> None:
+    assert_never_half_read(SQUARE, SOUP, "off")
+
+
+@pytest.mark.parametrize(
+    "data",
+    [
+        SQUARE.removesuffix(b"\n"),
+        SQUARE.replace(b"OFF\n", b"OFF "),
+        SQUARE.replace(b"OFF\n", b"OFF"),
+        SQUARE.replace(b"\n", b"\r"),
+        b"\xef\xbb\xbf" + SQUARE,
+        SQUARE + b"\0" * 500,
+        SQUARE + b"\x1a",
+        b"# a comment before the keyword\n\n" + SQUARE,
+        b"COFF\n4 2 0\n0 0 0 9 9 9\n1 0 0 9 9 9\n1 1 0 9 9 9\n0 1 .5 9 9 9\n3 0 1 2\n3 0 2 3\n",
+        SQUARE.replace(b"1 0 0", b"1 0 0 0.5 0.5 0.5"),
+    ],
+    ids=[
+        "no end of line",
+        "counts on the first line",
+        "counts glued on",
+        "CR",
+        "BOM",
+        "NUL",
+        "DOS",
+        "comment",
+        "RGB",
+        "undeclared",
+    ],
+)
+def test_usual_variants_are_read(data: bytes) -> None:
+    assert_is_soup(read(data), SOUP)
+
+
+def test_polygons_of_all_sizes_keep_the_order_of_the_file() -> None:
+    mesh = read(MIXED)
+    assert mesh.faces.tolist() == [[0, 1, 2], [0, 2, 3], [0, 1, 4], [0, 1, 2], [0, 2, 3], [0, 3, 4]]
+    assert mesh.source_polygon is not None
+    assert mesh.source_polygon.tolist() == [0, 0, 1, 2, 2, 2]
+
+
+def test_a_polygon_without_area_has_no_faces_but_keeps_its_number() -> None:
+    mesh = read(SQUARE.replace(b"4 2 0", b"4 3 0").replace(b"3 0 1 2", b"2 0 1\n3 0 1 2"))
+    assert mesh.faces.tolist() == [[0, 1, 2], [0, 2, 3]]
+    assert mesh.source_polygon is not None
+    assert mesh.source_polygon.tolist() == [1, 2]
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "message"),
+    [
+        (b"1 1 0", b"1 x 0", "Line 5: 'x' is not a number"),
+        (b"1 1 0", b"1 1\x000", "Byte 25: .* control character"),
+        (b"1 1 0", b"1 nan 0", "not finite"),
+        (b"1 1 0", b"1 1e999 0", "not finite"),
+        (b"3 0 2 3", b"3 0 2 4", "outside 0..3"),
+        (b"3 0 2 3", b"3 0 2 -1", "outside 0..3"),
+        (b"3 0 2 3", b"3 0 2 1.5", "not whole"),
+        (b"3 0 2 3", b"3 0 2", "cut short"),
+        (b"3 0 2 3", b"-3 0 2 3", "Line 8"),
+        (b"3 0 2 3", b"nan 0 2 3", "Line 8"),
+        (b"3 0 2 3\n", b"", "cut short"),
+        (b"3 0 2 3\n", b"3 0 2 3\n3 0 1 3\n", "Line 9.*goes on"),
+        (b"4 2 0", b"4 -2 0", "must be whole"),
+        (b"4 2 0", b"4 0 0", "goes on"),
+        (b"4 2 0", b"4 4000 0", "cut short"),
+    ],
+)
+def test_a_wrong_file_is_refused_with_the_place(old: bytes, new: bytes, message: str) -> None:
+    with pytest.raises(InvalidMesh, match=message):
+        read(SQUARE.replace(old, new))
+
+
+def test_counts_beyond_the_limits_are_refused_by_name() -> None:
+    for limits, name in ((ReadLimits(max_faces=1), "max_faces = 1"), (ReadLimits(max_vertices=3), "max_vertices = 3")):
+        with pytest.raises(LimitExceeded, match=name):
+            read(SQUARE, limits=limits)
+
+
+@pytest.mark.parametrize("keyword", [b"4OFF", b"nOFF", b"OFF BINARY"])
+def test_other_kinds_of_off_are_refused_as_such(keyword: bytes) -> None:
+    with pytest.raises(UnsupportedFormat, match="plain OFF"):
+        read(SQUARE.replace(b"OFF", keyword))

@@ -1,0 +1,181 @@
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+from hypothesis.extra import numpy as npst
+
+from helpers.meshes import agreement, areas, exploded, pieces_of_labels, rotation
+from segcore import shapes
+from segcore.mesh import Mesh
+from segcore.method import segment
+from segcore.parameters import SegmentationParameters
+
+BURR = shapes.burr(4)
+DUMBBELL = shapes.dumbbell(rings=60, around=32)
+
+
+@pytest.mark.parametrize("shape", [shapes.burr(5), shapes.burr(5, arms=3), shapes.dumbbell()])
+def test_the_parts_of_a_shape_are_found(shape):
+    hierarchy = segment(shape.mesh)
+    labels = hierarchy.labels(int(shape.parts.max()) + 1)
+    assert agreement(labels, shape.parts, areas(shape.mesh)) > 0.95
+
+
+@pytest.mark.parametrize("shape", [shapes.burr(5), shapes.burr(5, arms=3), shapes.dumbbell()])
+def test_the_automatic_number_is_that_of_the_parts(shape):
+    assert segment(shape.mesh).automatic_segments == shape.parts.max() + 1
+
+
+@pytest.mark.parametrize("mesh", [BURR.mesh, DUMBBELL.mesh, shapes.icosphere(3), shapes.box()])
+def test_every_segment_at_every_level_is_connected(mesh):
+    hierarchy = segment(mesh)
+    for k in range(1, min(hierarchy.max_segments, 30) + 1):
+        assert pieces_of_labels(mesh, hierarchy.labels(k)) == k
+
+
+def test_the_same_mesh_gives_the_same_bytes():
+    first, second = segment(BURR.mesh), segment(BURR.mesh)
+    for name in ("split_node", "cut_value", "area", "face_count", "face_leaf"):
+        assert getattr(first, name).tobytes() == getattr(second, name).tobytes()
+
+
+def test_areas_and_faces_of_the_parts_add_up():
+    hierarchy = segment(BURR.mesh)
+    np.testing.assert_allclose(hierarchy.area[0], areas(BURR.mesh).sum())
+    assert hierarchy.face_count[0] == len(BURR.mesh.faces)
+    labels = hierarchy.labels(7)
+    nodes = hierarchy.segment_nodes(7)
+    np.testing.assert_allclose(hierarchy.area[nodes], np.bincount(labels, areas(BURR.mesh)))
+    np.testing.assert_array_equal(hierarchy.face_count[nodes], np.bincount(labels))
+
+
+def test_the_larger_part_keeps_the_label():
+    hierarchy = segment(BURR.mesh)
+    assert (hierarchy.area[1::2] >= hierarchy.area[2::2] * (1 - 1e-6)).all()
+
+
+@pytest.mark.parametrize("seed", range(3))
+def test_labels_do_not_change_under_rigid_motion_and_scale(seed):
+    rng = np.random.default_rng(seed)
+    moved = Mesh(10 ** rng.uniform(-4, 4) * (BURR.mesh.vertices @ rotation(rng) + rng.normal(size=3)), BURR.mesh.faces)
+    assert agreement(segment(moved).labels(7), segment(BURR.mesh).labels(7), areas(BURR.mesh)) > 0.98
+
+
+@pytest.mark.parametrize("seed", range(3))
+def test_parts_do_not_depend_on_the_order_and_the_orientation_of_the_faces(seed):
+    rng = np.random.default_rng(seed)
+    order = rng.permutation(len(BURR.mesh.faces))
+    faces = np.where(rng.random(len(order))[:, None] < 0.5, BURR.mesh.faces[:, ::-1], BURR.mesh.faces)[order]
+    labels = segment(Mesh(BURR.mesh.vertices, faces)).labels(7)
+    assert agreement(labels, BURR.parts[order], areas(BURR.mesh)[order]) > 0.95
+
+
+def test_a_soup_of_triangles_gets_the_parts_of_the_welded_mesh():
+    labels = segment(exploded(BURR.mesh)).labels(7)
+    assert agreement(labels, segment(BURR.mesh).labels(7), areas(BURR.mesh)) > 0.98
+
+
+def test_repeated_and_degenerate_faces_get_the_labels_of_their_neighbours():
+    faces = BURR.mesh.faces
+    lines = np.stack([faces[:50, 0], faces[:50, 0], faces[:50, 1]], axis=1)
+    dirty = Mesh(BURR.mesh.vertices, np.concatenate([faces[:100, ::-1], faces, lines]))
+    labels = segment(dirty).labels(7)
+    np.testing.assert_array_equal(labels[:100], labels[100:200])
+    assert agreement(labels[100:-50], BURR.parts, areas(BURR.mesh)) > 0.95
+    assert pieces_of_labels(Mesh(dirty.vertices, dirty.faces[:-50]), labels[:-50]) == 7
+
+
+def test_an_open_mesh_gets_its_parts():
+    kept = BURR.mesh.corners[:, :, 2].mean(axis=1) > -0.3
+    mesh = Mesh(BURR.mesh.vertices, BURR.mesh.faces[kept])
+    labels = segment(mesh).labels(6)
+    assert agreement(labels, BURR.parts[kept], areas(mesh)) > 0.9
+
+
+def test_a_fin_on_a_non_manifold_edge_is_segmented_with_the_rest():
+    a, b = BURR.mesh.faces[0, :2]
+    mesh = Mesh(np.concatenate([BURR.mesh.vertices, [[0.0, 0, 9]]]),
+                np.concatenate([BURR.mesh.faces, [[a, b, len(BURR.mesh.vertices)]]]))  # fmt: skip
+    hierarchy = segment(mesh)
+    for k in range(1, 10):
+        assert pieces_of_labels(mesh, hierarchy.labels(k)) == k
+
+
+def test_components_that_lie_apart_are_parted_before_anything_is_cut():
+    shape = shapes.joined(DUMBBELL.mesh, shapes.box(centre=(5, 0, 0)), shapes.box(centre=(-3, 0, 0)))
+    hierarchy = segment(shape.mesh)
+    labels = hierarchy.labels(3)
+    assert agreement(labels, shape.parts, areas(shape.mesh)) == pytest.approx(1)
+    assert (hierarchy.cut_value[:2] == 0).all()
+    assert (hierarchy.cut_value[2:] > 0).all()
+
+
+def test_fewer_segments_than_components_group_the_near_ones():
+    boxes = [shapes.box(centre=(x, 0, 0)) for x in (0, 1.5, 10, 11.5, 30)]
+    hierarchy = segment(shapes.joined(*boxes).mesh)
+    groups = [hierarchy.labels(k).reshape(5, 12)[:, 0].tolist() for k in (2, 3)]
+    assert len(set(groups[0][:4])) == 1
+    assert groups[0][4] != groups[0][0]
+    assert groups[1][0] == groups[1][1] != groups[1][2] == groups[1][3] != groups[1][4]
+
+
+def test_a_thousand_components_end_in_a_hierarchy_of_the_size_asked_for():
+    rng = np.random.default_rng(0)
+    large = [shapes.icosphere(2, 5.0), shapes.box((5, 5, 5), (20, 0, 0))]
+    dust = [shapes.box((0.1, 0.1, 0.1), tuple(rng.uniform(-5, 25, 3))) for _ in range(998)]
+    shape = shapes.joined(*large, *dust)
+    hierarchy = segment(shape.mesh, SegmentationParameters(max_segments=20))
+    assert hierarchy.max_segments == 20
+    labels = hierarchy.labels(2)
+    assert labels[0] != labels[320]
+    assert len(set(labels[:320])) == len(set(labels[320:332])) == 1
+
+
+@pytest.mark.parametrize("most", [1, 2, 9])
+def test_the_hierarchy_ends_where_it_is_told_to(most):
+    hierarchy = segment(BURR.mesh, SegmentationParameters(max_segments=most))
+    assert hierarchy.max_segments == most
+    assert set(hierarchy.labels(most)) == set(range(most))
+
+
+def test_as_many_components_as_segments_are_all_parted():
+    boxes = shapes.joined(*[shapes.box(centre=(2.0 * (x % 8), 2.0 * (x // 8), 0)) for x in range(64)])
+    labels = segment(boxes.mesh).labels(64)
+    np.testing.assert_array_equal(labels.reshape(64, 12).min(axis=1), labels.reshape(64, 12).max(axis=1))
+
+
+def test_components_beyond_the_number_of_segments_share_them():
+    boxes = shapes.joined(*[shapes.box(centre=(2.0 * x, 0, 0)) for x in range(5)]).mesh
+    for most in (1, 2, 3):
+        assert segment(boxes, SegmentationParameters(max_segments=most)).max_segments == most
+
+
+@pytest.mark.parametrize(("mesh", "most"), [(shapes.box(), 12), (Mesh(np.eye(3), [[0, 1, 2]]), 1),
+                                            (Mesh(np.ones((3, 3)), [[0, 1, 2], [0, 0, 0]]), 1)])  # fmt: skip
+def test_small_meshes_have_as_many_segments_as_faces_with_an_area(mesh, most):
+    hierarchy = segment(mesh)
+    assert hierarchy.max_segments == most
+    assert len(np.unique(hierarchy.labels(most))) == most
+
+
+def test_progress_runs_from_0_to_1():
+    told = []
+    segment(BURR.mesh, on_progress=lambda stage, fraction: told.append((stage, fraction)))
+    fractions = [fraction for _, fraction in told]
+    assert fractions[0] == 0
+    assert fractions[-1] == 1
+    assert fractions == sorted(fractions)
+    assert [stage for i, (stage, _) in enumerate(told) if i == 0 or told[i - 1][0] != stage] == [
+        "clean", "affinity", "coarsen", "cut", "label"]  # fmt: skip
+
+
+@settings(max_examples=60, deadline=None)
+@given(npst.arrays(np.int32, st.tuples(st.integers(1, 20), st.just(3)), elements=st.integers(0, 7)), st.data())
+def test_whatever_the_faces_every_one_gets_a_label(faces, data):
+    coordinate = st.sampled_from([0.0, 1.0, -1.0, 0.5, 1e-20, 1e20])
+    mesh = Mesh(data.draw(npst.arrays(np.float64, (8, 3), elements=coordinate)), faces)
+    hierarchy = segment(mesh)
+    for k in {1, hierarchy.automatic_segments, hierarchy.max_segments}:
+        labels = hierarchy.labels(k)
+        assert labels.shape == (len(faces),)
+        np.testing.assert_array_equal(np.unique(labels), np.arange(k))
