@@ -28,7 +28,7 @@ security:  ## patterns in the code that let attackers in
 	bandit --quiet --configfile pyproject.toml --recursive cleave segcore worker service
 
 audit: security  ## known vulnerabilities of the installed packages, too (asks a service on the internet; extra `audit`)
-	pip freeze --exclude-editable --exclude cleave | pip-audit --strict --disable-pip --no-deps --requirement /dev/stdin
+	pip freeze --exclude-editable --exclude cleave-mesh | pip-audit --strict --disable-pip --no-deps --requirement /dev/stdin
 
 containers:  ## Dockerfile and compose file, without a container engine
 	hadolint Dockerfile

@@ -1,11 +1,10 @@
 """The application: routes, errors and the OpenAPI document around one context."""
 
-from importlib.metadata import PackageNotFoundError, version
-
 from fastapi import FastAPI
 from starlette.middleware.cors import CORSMiddleware
 
 from cleave.settings import Settings
+from cleave.version import installed_version
 from service.context import Context, QueueView
 from service.guard.callers import ForeignSites, LocalNames
 from service.guard.headers import HeadRequests, SecurityHeaders
@@ -101,10 +100,3 @@ def _add_middleware(app: FastAPI, settings: Settings) -> None:
             expose_headers=list(_EXPOSED_HEADERS),
             max_age=600,
         )
-
-
-def installed_version() -> str:
-    try:
-        return version("cleave")
-    except PackageNotFoundError:
-        return "0+checkout"

@@ -172,7 +172,7 @@ def _sentence(error: Exception) -> str:
 
 class _Version(argparse.Action):
     def __call__(self, parser: argparse.ArgumentParser, *_: object) -> None:
-        from service.app import installed_version
+        from cleave.version import installed_version
 
         _say(f"cleave {installed_version()}")
         parser.exit()

@@ -9,7 +9,7 @@ from importlib.metadata import version
 from pathlib import Path
 
 from cleave.settings import InvalidSettings, Settings
-from service.app import installed_version
+from cleave.version import installed_version
 from service.commands.serve import check_guarded
 from service.doctor.findings import Finding, error, ok, warning
 

@@ -3,6 +3,7 @@
 from pathlib import Path
 
 from cleave.settings import InvalidSettings, Settings
+from cleave.version import extra_command
 from worker.jobs.objects.file_cache import FileCache
 from worker.jobs.objects.local import LocalObjects
 from worker.jobs.store.migration import migrate
@@ -38,6 +39,6 @@ def open_url(url: str, data_dir: Path, cache_bytes: int) -> JobStore:
         from worker.jobs.objects.buckets import open_bucket
         from worker.jobs.objects.remote import RemoteObjects
     except ModuleNotFoundError as error:
-        raise InvalidSettings("CLEAVE_STORE_URL needs a package more: pip install 'cleave[cloud]'.") from error
+        raise InvalidSettings(f"CLEAVE_STORE_URL needs an optional dependency: {extra_command('cloud')}.") from error
     spool = Spool(data_dir / _SPOOL)
     return JobStore(RemoteObjects(open_bucket(url), spool.folder), spool, FileCache(data_dir / _CACHE, cache_bytes))

@@ -34,7 +34,7 @@ def decode_draco(document: Document, extension: Item, where: str) -> DracoPrimit
         import DracoPy
     except ImportError:
         raise UnsupportedFormat(
-            f"{where} of the glTF file is compressed with {DRACO}: install cleave[draco], "
+            f"{where} of the glTF file is compressed with {DRACO}: run pip install 'cleave-mesh[draco]', "
             "or save the file without compression."
         ) from None
     data = bytes(view_bytes(document, integer(extension, "bufferView", where)))
