@@ -9,23 +9,33 @@ Usage::
     hierarchy.labels(7)
 """
 
+from segcore.clean.surface import Surface, build_surface
 from segcore.errors import CleaveError, InvalidMesh, InvalidParameters, LimitExceeded, UnsupportedFormat
 from segcore.hierarchy import Hierarchy
 from segcore.io import read_mesh
+from segcore.levels import Fineness, keep_splits
 from segcore.mesh import Mesh
 from segcore.method import segment
-from segcore.parameters import SegmentationParameters
+from segcore.parameters import SegmentationParameters, parameters_schema
+from segcore.report import MeshReport, mesh_report
 from segcore.warm_up import warm_up
 
 __all__ = [
     "CleaveError",
+    "Fineness",
     "Hierarchy",
     "InvalidMesh",
     "InvalidParameters",
     "LimitExceeded",
     "Mesh",
+    "MeshReport",
     "SegmentationParameters",
+    "Surface",
     "UnsupportedFormat",
+    "build_surface",
+    "keep_splits",
+    "mesh_report",
+    "parameters_schema",
     "read_mesh",
     "segment",
     "warm_up",

@@ -5,10 +5,8 @@ from dataclasses import asdict, dataclass
 
 import segcore
 from cleave.settings import Settings
-from segcore.clean.surface import build_surface
 from segcore.io import ReadLimits
 from segcore.io.result import write_result
-from segcore.report import mesh_report
 from worker.jobs.job import Failed, Job, Outcome, Succeeded, now
 from worker.jobs.store.store import JobStore, UnknownJob
 from worker.process.stage_clock import OnProgress, StageClock
@@ -51,7 +49,7 @@ def segment_stored_mesh(store: JobStore, job: Job, limits: ReadLimits, clock: St
         clock("reading", 0.0)
         with store.open_mesh(job.id) as source:
             mesh = segcore.read_mesh(source, job.mesh_format, limits=limits, appearance=True)
-        surface = build_surface(mesh)
+        surface = segcore.build_surface(mesh)
         parameters = segcore.SegmentationParameters.from_mapping(job.parameters)
         hierarchy = segcore.segment(mesh, parameters, clock, surface)
     except segcore.CleaveError as error:
@@ -68,7 +66,7 @@ def segment_stored_mesh(store: JobStore, job: Job, limits: ReadLimits, clock: St
         vertices=len(mesh.vertices),
         max_segments=hierarchy.max_segments,
         automatic_segments=hierarchy.automatic_segments,
-        report=asdict(mesh_report(mesh, surface)),
+        report=asdict(segcore.mesh_report(mesh, surface)),
     )
 
 
