@@ -24,7 +24,7 @@ def supervise(tmp_path: Path, *programs: str) -> "subprocess.Popen[bytes]":
     script = textwrap.dedent(
         f"""
         import sys
-        from service.processes.supervisor import Program, Supervisor
+        from service.host.supervisor import Program, Supervisor
         Supervisor(Program(path, [sys.executable, path], grace_s=1.0) for path in {sources!r}).run()
         """
     )
