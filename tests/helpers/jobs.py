@@ -41,7 +41,7 @@ def sphere(rows: int, bumps: float = 0.25) -> bytes:
 
 def accepted(store: JobStore, mesh: bytes, **parameters: object) -> Job:
     """A job in the store, as the service leaves it there."""
-    with store.begin_upload() as upload:
+    with store.spool.begin_upload() as upload:
         upload.write(mesh)
         job = Job(
             id=new_job_id(),

@@ -39,7 +39,7 @@ def working(store: JobStore, settings: Settings) -> Iterator[None]:
 
     def work() -> None:
         while not stop.wait(0.01):
-            for job_id in store.unfinished():
+            for job_id in store.pending.all():
                 perform(store, settings, job_id, lambda *_: None)
 
     thread = threading.Thread(target=work)

@@ -11,9 +11,9 @@ import pytest
 
 from worker.janitor.retention import stored_jobs
 from worker.jobs.job import Job, Succeeded, new_job_id, now
-from worker.jobs.objects.seam import ObjectStorage, StoreError
+from worker.jobs.objects.interface import ObjectStorage, StoreError
 from worker.jobs.store.acceptance import JobExists
-from worker.jobs.store.outbox import Letter
+from worker.jobs.store.outbox import Delivery
 from worker.jobs.store.spool import Spool
 from worker.jobs.store.store import JobStore, UnknownJob
 
@@ -81,7 +81,7 @@ def a_job() -> Job:
 
 
 def accept(store: JobStore, job: Job) -> Job:
-    with store.begin_upload() as upload:
+    with store.spool.begin_upload() as upload:
         upload.write(b"mesh")
         job = replace(job, sha256=upload.sha256)
         store.accept(job, upload)
@@ -128,19 +128,19 @@ def test_a_job_is_accepted_whole_or_not_at_all(
 
     for _ in killed_at_every_write(placed.objects, lambda failing: accept(reopen(failing), job), begin_anew):
         store = reopen()
-        is_there = store.job(job.id) is not None
+        is_there = store.records.job(job.id) is not None
         seen.add(is_there)
-        assert store.unfinished_of("me") == [job.id] * is_there
+        assert store.pending.of("me") == [job.id] * is_there
         assert [one.id for one in store.page("me", None, 10).jobs] == [job.id] * is_there
         if is_there:
             with store.open_mesh(job.id) as mesh:
                 assert mesh.read() == b"mesh"
-            assert store.outbox.letter(job.id) == Letter()
+            assert store.outbox.delivery(job.id) == Delivery()
             with pytest.raises(JobExists):
                 accept(store, job)
             store.delete(job.id)
         store.outbox.remove(job.id)  # as the courier does that finds no job
-        store.unfinished()
+        store.pending.all()
         assert everything(reopen()) == []
     assert seen == {True, False}
 
@@ -155,9 +155,9 @@ def test_what_a_killed_submission_left_does_not_keep_the_same_job_from_being_acc
         job = a_job()
 
     for _ in killed_at_every_write(placed.objects, lambda failing: accept(reopen(failing), job), begin_anew):
-        if placed.job(job.id) is None:
+        if placed.records.job(job.id) is None:
             accept(reopen(), job)
-        assert reopen().unfinished_of("me") == [job.id]
+        assert reopen().pending.of("me") == [job.id]
         with reopen().open_mesh(job.id) as mesh:
             assert mesh.read() == b"mesh"
         reopen().delete(job.id)
@@ -173,21 +173,21 @@ def test_a_job_is_finished_or_not_and_can_be_finished_then(placed: JobStore, reo
     def work(failing: Any) -> None:
         store = reopen(failing)
         store.begin_attempt(job.id, "worker")
-        store.write_result(job.id, lambda target: target.write(b"result"))
+        store.results.write(job.id, lambda target: target.write(b"result"))
         store.finish(job.id, first)
 
     for _ in killed_at_every_write(placed.objects, work, begin_anew):
         store = reopen()
-        outcome = store.outcome(job.id)
-        assert (job.id in store.unfinished()) == (outcome is None)
-        assert len(store.attempts(job.id)) <= 1
+        outcome = store.records.outcome(job.id)
+        assert (job.id in store.pending.all()) == (outcome is None)
+        assert len(store.records.attempts(job.id)) <= 1
         again = succeeded()
         store.begin_attempt(job.id, "another")
-        store.write_result(job.id, lambda target: target.write(b"result"))
+        store.results.write(job.id, lambda target: target.write(b"result"))
         assert store.finish(job.id, again) == (outcome or again)
-        with store.open_result(job.id) as result:
+        with store.results.open(job.id) as result:
             assert result.read() == b"result"
-        assert job.id not in store.unfinished()
+        assert job.id not in store.pending.all()
 
 
 def test_a_job_is_deleted_for_good_or_still_there(placed: JobStore, reopen: Callable[..., JobStore]) -> None:
@@ -196,13 +196,13 @@ def test_a_job_is_deleted_for_good_or_still_there(placed: JobStore, reopen: Call
     def begin_anew() -> None:
         nonlocal job
         job = accept(placed, replace(a_job(), webhook_url=None))
-        placed.write_result(job.id, lambda target: target.write(b"result"))
+        placed.results.write(job.id, lambda target: target.write(b"result"))
         placed.finish(job.id, succeeded())
 
     for write in killed_at_every_write(placed.objects, lambda failing: reopen(failing).delete(job.id), begin_anew):
         store = reopen()
-        if store.job(job.id) is None:
-            assert store.was_deleted(job.id, "me")
+        if store.records.job(job.id) is None:
+            assert store.deletions.was_deleted(job.id, "me")
             assert store.page("me", None, 10).jobs == []
             with pytest.raises(UnknownJob):
                 store.finish(job.id, succeeded())
@@ -210,7 +210,7 @@ def test_a_job_is_deleted_for_good_or_still_there(placed: JobStore, reopen: Call
             store.delete(job.id)  # nothing was begun
         store.finish_deletions(-10.0)
         assert everything(reopen()) == []
-        assert store.was_deleted(job.id, "me")
+        assert store.deletions.was_deleted(job.id, "me")
 
 
 def test_a_full_disk_leaves_nothing_of_what_was_not_accepted(
@@ -232,7 +232,7 @@ def test_a_full_disk_leaves_nothing_of_what_was_not_accepted(
             assert everything(reopen()) == []
             assert list((tmp_path / "data" / "incoming").iterdir()) == []
             continue
-        assert reopen().unfinished_of("me") == [job.id]
+        assert reopen().pending.of("me") == [job.id]
         assert write > 2
         return
     raise AssertionError("there is no end of writes")
@@ -247,10 +247,10 @@ def test_an_answer_of_the_store_that_is_lost_loses_no_job(placed: JobStore, reop
             accept(reopen(failing), job)
         except StoreError:
             store = reopen()
-            if store.job(job.id) is not None:
+            if store.records.job(job.id) is not None:
                 with store.open_mesh(job.id) as mesh:
                     assert mesh.read() == b"mesh"
-                assert job.id in store.unfinished()
+                assert job.id in store.pending.all()
             continue
         assert not failing.has_failed or write > 3
         assert {one.id for one in stored_jobs(placed) if one.is_accepted} >= {job.id}

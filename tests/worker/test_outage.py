@@ -12,7 +12,8 @@ from helpers.processes import StartWorker, children_of
 from helpers.waiting import wait_until
 from service.host.queue_server import QueueServer, embedded_queue_server
 from worker.jobs.job import Job, Succeeded
-from worker.jobs.queue.queue import JobQueue, QueueError, connect_impatiently
+from worker.jobs.queue.connection import QueueError, connect
+from worker.jobs.queue.queue import JobQueue
 from worker.jobs.store.store import JobStore
 
 
@@ -45,14 +46,14 @@ def server(tmp_path: Path) -> Iterator[Server]:
 
 
 def succeeded(store: JobStore, job_id: str) -> bool:
-    return isinstance(store.outcome(job_id), Succeeded)
+    return isinstance(store.records.outcome(job_id), Succeeded)
 
 
 def at_work(
     start_worker: StartWorker, store: JobStore, server: Server
 ) -> tuple[JobQueue, subprocess.Popen[bytes], Job]:
     """A queue, its worker, and the long job that it has begun."""
-    queue = JobQueue(connect_impatiently(server.url))
+    queue = JobQueue(connect(server.url))
     worker = start_worker(CLEAVE_REDIS_URL=server.url)
     running = accepted(store, sphere(100), **LONG)
     queue.enqueue(running.id, SMALL)
@@ -74,7 +75,7 @@ def test_a_worker_outlives_its_queue_server_and_works_for_the_next_one(
     queue.enqueue(following.id, SMALL)
     wait_until(lambda: succeeded(store, following.id))
     assert worker.poll() is None
-    assert len(store.attempts(running.id)) == 1
+    assert len(store.records.attempts(running.id)) == 1
     assert queue.lengths()[SMALL] == 0
 
 

@@ -6,14 +6,14 @@ from collections.abc import Iterable
 from dataclasses import dataclass
 
 from cleave.settings import Settings
-from worker.jobs.objects.seam import ObjectInfo
+from worker.jobs.objects.interface import ObjectInfo
 from worker.jobs.store.layout import JOBS, MANIFEST, RECORD
 from worker.jobs.store.store import JobStore, UnknownJob
 
 log = logging.getLogger("cleave.janitor")
 
-_PAUSE_S = 30.0  # between two looks at everything in a folder
-_REMOTE_PAUSE_S = 300.0  # in a bucket, where a look costs something
+_PAUSE_S = 30.0  # between two listings of all objects, in a folder
+_PAUSE_POLLS = 600  # poll intervals of the storage: 300 s in a bucket, in which a listing costs time and money
 _GRACE_S = 60.0  # in which a client that waits for a job sees its end, beside the longest wait
 _UPLOAD_UNTOUCHED_S = 3600.0
 _DELETION_S = 60.0  # no deletion takes so long
@@ -42,12 +42,12 @@ class Housekeeping:
     def __init__(self, store: JobStore, settings: Settings) -> None:
         self._store = store
         self._settings = settings
-        self._pause_s = _PAUSE_S if store.is_local else _REMOTE_PAUSE_S
+        self._pause_s = max(_PAUSE_S, _PAUSE_POLLS * store.objects.poll_interval_s)
         self._next_at = float("-inf")
 
     def sweep_machine(self) -> None:
         """Tidy up on this machine, which nobody else does."""
-        self._store.remove_abandoned_uploads(_UPLOAD_UNTOUCHED_S)
+        self._store.spool.remove_abandoned(_UPLOAD_UNTOUCHED_S)
 
     def sweep(self, at_s: float) -> None:
         """Tidy up in the store, unless that was done lately; ``at_s`` is the time on a clock that only goes forward."""
@@ -55,7 +55,7 @@ class Housekeeping:
             return
         self._next_at = at_s + self._pause_s
         self._store.finish_deletions(_DELETION_S)
-        self._store.forget_deleted(_DELETED_S)
+        self._store.deletions.forget(_DELETED_S)
         remove_surplus(self._store, self._settings, time.time())
 
 

@@ -22,10 +22,10 @@ def admit(store: JobStore, queue: JobQueue, settings: Settings, owner: str | Non
 
 def _next_of(store: JobStore, queue: JobQueue, owner: str | None, most: int) -> list[Job]:
     """The oldest of an owner's jobs that are outside, as many as there is room for."""
-    unfinished = store.unfinished_of(owner)
+    unfinished = store.pending.of(owner)
     held = queue.held(unfinished)
     outside = [job_id for job_id in unfinished if job_id not in held]
-    jobs = (store.job(job_id) for job_id in outside[: max(0, most - len(held))])
+    jobs = (store.records.job(job_id) for job_id in outside[: max(0, most - len(held))])
     return [job for job in jobs if job is not None]
 
 

@@ -8,8 +8,6 @@ from typing import Annotated, Any, Literal, TypeAlias
 
 from pydantic import Field
 
-Cause: TypeAlias = Literal["worker_lost", "out_of_memory", "timed_out", "file_too_large", "internal_error"]
-
 _JOB_ID = re.compile(r"[0-9a-f]{32}", re.ASCII)
 
 
@@ -28,17 +26,6 @@ class Job:
     version: str | None = None  # of the software that accepted it
     webhook_url: str | None = None  # who is told that it has ended
     traceparent: str | None = None  # of the request that brought it, as in W3C Trace Context
-
-
-@dataclass(frozen=True, slots=True, kw_only=True)
-class Attempt:
-    """One run of a job by a worker."""
-
-    number: int  # 1, 2, ...
-    worker: str
-    started_at: datetime  # UTC
-    ended_at: datetime | None = None  # None while it runs, and for ever where the worker died with it
-    cause: Cause | None = None  # why it ended without an outcome
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -74,16 +61,6 @@ class Canceled:
 
 Outcome: TypeAlias = Annotated[Succeeded | Failed | Canceled, Field(discriminator="status")]
 
-FAILURES: dict[Cause, str] = {
-    "worker_lost": "The worker died while it ran this job, {attempts} times in a row: simplify the mesh, or ask the "
-    "operator to look into the log of the workers.",
-    "out_of_memory": "The job needs more memory than this installation gives it: send a mesh of fewer faces.",
-    "timed_out": "The job runs longer than this installation allows: send a mesh of fewer faces.",
-    "file_too_large": "The job writes a larger file than this installation allows: send a mesh of fewer faces.",
-    "internal_error": "The job stopped at an internal error, {attempts} times in a row: ask the operator to look into "
-    "the log of the workers.",
-}
-
 
 def new_job_id() -> str:
     return secrets.token_hex(16)
@@ -95,11 +72,3 @@ def is_job_id(text: str) -> bool:
 
 def now() -> datetime:
     return datetime.now(UTC)
-
-
-def exhausted(attempts: list[Attempt], max_attempts: int) -> Failed | None:
-    """The end of a job that has had all its attempts, named after the last one; None where it may run again."""
-    if len(attempts) < max_attempts:
-        return None
-    code: Cause = attempts[-1].cause or "worker_lost"
-    return Failed(finished_at=now(), code=code, message=FAILURES[code].format(attempts=len(attempts)))

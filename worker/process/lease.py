@@ -7,7 +7,8 @@ from threading import Event, Thread
 
 from redis.client import Pipeline
 
-from worker.jobs.queue.queue import JobQueue, QueueError
+from worker.jobs.queue.connection import QueueError
+from worker.jobs.queue.queue import JobQueue
 
 log = logging.getLogger("cleave.worker")
 

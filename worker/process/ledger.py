@@ -5,8 +5,8 @@ from contextlib import suppress
 
 from cleave.settings import Settings
 from worker.jobs.admission import admit
-from worker.jobs.job import Attempt, exhausted
-from worker.jobs.queue.counters import Tallies
+from worker.jobs.attempts import Attempt, exhausted
+from worker.jobs.queue.counters import JobCounters
 from worker.jobs.queue.queue import JobQueue
 from worker.jobs.size_class import SizeClass
 from worker.jobs.store.store import JobStore, UnknownJob
@@ -19,11 +19,11 @@ class Ledger:
     """Begins and ends attempts, and leaves the queue as the store says."""
 
     def __init__(
-        self, store: JobStore, queue: JobQueue, tallies: Tallies, settings: Settings, size: SizeClass, worker: str
+        self, store: JobStore, queue: JobQueue, counters: JobCounters, settings: Settings, size: SizeClass, worker: str
     ) -> None:
         self._store = store
         self._queue = queue
-        self._tallies = tallies
+        self._counters = counters
         self._settings = settings
         self._size = size
         self._worker = worker
@@ -31,17 +31,17 @@ class Ledger:
 
     def begin(self, job_id: str) -> Attempt | None:
         """Count one more run of a job; None where it must not run: it was deleted, has ended, or now ends as failed."""
-        if self._store.job(job_id) is None:
+        if self._store.records.job(job_id) is None:
             log.warning("job %s is not in the store: it was deleted, or the store is another's", job_id)
         if not self._is_open(job_id):
             return None
         self._withdraw_uncounted()
-        failed = exhausted(self._store.attempts(job_id), self._settings.max_attempts)
+        failed = exhausted(self._store.records.attempts(job_id), self._settings.max_attempts)
         try:
             if failed is None:
                 return self._store.begin_attempt(job_id, self._worker)
             self._store.finish(job_id, failed)
-            self._tallies.job_given_up(failed.code)
+            self._counters.job_given_up(failed.code)
         except UnknownJob:
             log.info("job %s was deleted", job_id)
         return None
@@ -58,13 +58,13 @@ class Ledger:
             return
         match ending:
             case "shutdown" | "ended elsewhere":
-                self._store.withdraw_attempt(job_id, attempt)
+                self._store.records.withdraw_attempt(job_id, attempt)
             case "cannot store":
                 raise OSError("what the work-horse wrote could not be stored")
             case cause:
                 log.warning("job %s: attempt %d ended with %s", job_id, attempt.number, cause)
-                self._tallies.attempt_lost(cause)
-                self._store.end_attempt(job_id, attempt, cause)
+                self._counters.attempt_lost(cause)
+                self._store.records.end_attempt(job_id, attempt, cause)
 
     def uncount(self, job_id: str, attempt: Attempt) -> None:
         """Withdraw an attempt, now or, where the store cannot now, before the next one begins."""
@@ -79,7 +79,7 @@ class Ledger:
 
     def settle(self, job_id: str) -> None:
         """Leave the queue as the store says: nothing of a job that has ended, another entry for one that has not."""
-        outcome = self._store.outcome(job_id)
+        outcome = self._store.records.outcome(job_id)
         log.info("job %s: %s", job_id, outcome.status if outcome else "no outcome")
         self._queue.release(job_id, self._worker)
         if self._is_open(job_id):
@@ -90,14 +90,14 @@ class Ledger:
 
     def _withdraw_uncounted(self) -> None:
         while self._uncounted:
-            self._store.withdraw_attempt(*self._uncounted[-1])
+            self._store.records.withdraw_attempt(*self._uncounted[-1])
             self._uncounted.pop()
 
     def _admit_next(self, job_id: str) -> None:
         """The owner of a job that has ended may have another in the queue."""
-        job = self._store.job(job_id)
+        job = self._store.records.job(job_id)
         if job is not None:
             admit(self._store, self._queue, self._settings, job.owner)
 
     def _is_open(self, job_id: str) -> bool:
-        return not self._store.has_ended(job_id)
+        return not self._store.records.has_ended(job_id)

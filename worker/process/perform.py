@@ -9,7 +9,7 @@ from segcore.io import ReadLimits
 from segcore.io.result import write_result
 from worker.jobs.job import Failed, Job, Outcome, Succeeded, now
 from worker.jobs.store.store import JobStore, UnknownJob
-from worker.process.stage_clock import OnProgress, StageClock
+from worker.process.progress import OnProgress, StageClock
 
 log = logging.getLogger("cleave.work_horse")
 
@@ -25,8 +25,8 @@ class Work:
 
 def perform(store: JobStore, settings: Settings, job_id: str, on_progress: OnProgress) -> Work | None:
     """Bring a job to its outcome; None where it has another one or was deleted."""
-    job = store.job(job_id)
-    if job is None or store.outcome(job_id) is not None:
+    job = store.records.job(job_id)
+    if job is None or store.records.outcome(job_id) is not None:
         return None
     clock = StageClock(on_progress)
     try:
@@ -59,7 +59,7 @@ def segment_stored_mesh(store: JobStore, job: Job, limits: ReadLimits, clock: St
             finished_at=now(), code="input_lost", message="The mesh is no longer in the store: send it again."
         )
     clock.begin("storing")
-    store.write_result(job.id, lambda target: write_result(target, mesh, hierarchy))
+    store.results.write(job.id, lambda target: write_result(target, mesh, hierarchy))
     return Succeeded(
         finished_at=now(),
         faces=len(mesh.faces),

@@ -6,7 +6,6 @@ import secrets
 import signal
 import socket
 import sys
-from contextlib import AbstractContextManager, ExitStack, nullcontext
 from functools import partial
 from types import FrameType
 from typing import Any
@@ -22,24 +21,25 @@ from cleave.logs import about, configure_logging, rename_process
 from cleave.parent_death import die_with_parent
 from cleave.settings import Settings, load_settings
 from cleave.trace import Trace, parse_traceparent
-from worker.jobs.job import Attempt
-from worker.jobs.queue.counters import Tallies
-from worker.jobs.queue.entries import is_allowed
-from worker.jobs.queue.queue import JobQueue, connect_impatiently, connect_patiently
+from worker.jobs.attempts import Attempt
+from worker.jobs.queue.connection import connect, connect_with_retries
+from worker.jobs.queue.counters import JobCounters
+from worker.jobs.queue.entries import is_valid
+from worker.jobs.queue.queue import JobQueue
+from worker.jobs.queue.workers import HEARTBEAT_TTL_S
 from worker.jobs.size_class import SizeClass
 from worker.jobs.store.opening import open_store
 from worker.jobs.store.store import JobStore, UnknownJob
-from worker.process.desk import Desk, desk_for
 from worker.process.lease import LeaseKeeper
 from worker.process.ledger import Ledger
 from worker.process.perform import perform
 from worker.process.progress import ProgressReporter
+from worker.process.staging import StagedJob, stage
 from worker.process.watch import Watch
 from worker.process.work_horse import Ending, ending_of, exit_status, limit_resources, out_of_memory_kills
 
 log = logging.getLogger("cleave.worker")
 
-_REGISTERED_S = 30  # how long a worker counts as alive after its last sign of life
 _STORE_PAUSE_S = 2.0  # after the store was full or did not answer
 _DEQUEUE_TTL_S = 20  # rq blocks for 15 s less, and gives a sign of life in between
 
@@ -68,11 +68,11 @@ class JobWorker(Worker):  # type: ignore[misc]  # rq is not analysed
         self._store = store
         self._queue = queue
         self._leases = leases
-        self._tallies = Tallies(leases.connection)
+        self._counters = JobCounters(leases.connection)
         self._settings = settings
-        self._desk: Desk | None = None  # of the job that runs
+        self._staged: StagedJob | None = None  # the job that runs
         self._lease = LeaseKeeper(leases, self.name, settings.lease_s, partial(self.heartbeat, None))
-        self._ledger = Ledger(store, queue, self._tallies, settings, size, self.name)
+        self._ledger = Ledger(store, queue, self._counters, settings, size, self.name)
         self._watch = Watch(settings)
         self._horse_is_gone = -1  # a descriptor that becomes readable
 
@@ -80,7 +80,7 @@ class JobWorker(Worker):  # type: ignore[misc]  # rq is not analysed
 
     def execute_job(self, job: Entry, queue: Any) -> None:
         self.set_state(WorkerStatus.BUSY)
-        if not is_allowed(job):
+        if not is_valid(job):
             log.warning("an entry of the queue that is not a job of this installation was dropped: %r", job.id)
             self._queue.forget(job.id)
         elif self._queue.take(job.id, self.name, self._settings.lease_s):
@@ -114,7 +114,7 @@ class JobWorker(Worker):  # type: ignore[misc]  # rq is not analysed
         """Nothing: a signal handler does not wait for Redis."""
 
     def heartbeat(self, timeout: int | None = None, pipeline: Any = None) -> None:  # noqa: ARG002
-        super().heartbeat(_REGISTERED_S, pipeline)
+        super().heartbeat(HEARTBEAT_TTL_S, pipeline)
         register(self, pipeline)  # Redis may have been wiped since the last time
 
     @property
@@ -137,23 +137,20 @@ class JobWorker(Worker):  # type: ignore[misc]  # rq is not analysed
                 self._ledger.settle(entry.id)
             except OSError as error:
                 log.warning("job %s waits again: %s", entry.id, error)
-                self._tallies.store_failed("worker")
+                self._counters.store_failed("worker")
                 self._watch.pause(_STORE_PAUSE_S)
                 self._ledger.hand_back(entry.id)
 
     def _trace(self, job_id: str) -> Trace | None:
-        job = self._store.job(job_id)
+        job = self._store.records.job(job_id)
         return parse_traceparent(job.traceparent) if job else None
 
     def _attempt(self, entry: Entry, queue: Any, attempt: Attempt) -> None:
         log.info("job %s: attempt %d", entry.id, attempt.number)
         try:
-            with ExitStack() as stack:
-                with self._while_the_store_answers(entry.id):
-                    self._desk = stack.enter_context(desk_for(self._store, entry.id))
+            with stage(self._store, entry.id, partial(self._lease.kept, entry.id)) as self._staged:
                 ending = self._run_work_horse(entry, queue)
-                with self._while_the_store_answers(entry.id):
-                    self._desk.publish()
+                self._staged.publish()
             self._ledger.end(entry.id, attempt, ending)
         except UnknownJob:
             log.info("job %s was deleted", entry.id)
@@ -161,17 +158,13 @@ class JobWorker(Worker):  # type: ignore[misc]  # rq is not analysed
             self._ledger.uncount(entry.id, attempt)
             raise
 
-    def _while_the_store_answers(self, job_id: str) -> AbstractContextManager[None]:
-        """A bucket may take its time; a folder of this machine does not."""
-        return nullcontext() if self._store.is_local else self._lease.kept(job_id)
-
     def _run_work_horse(self, entry: Entry, queue: Any) -> Ending:
         kills_before = out_of_memory_kills()
         self.fork_work_horse(entry, queue)
         stopped_for = self._watch.wait(
             self.horse_pid,
             self._horse_is_gone,
-            has_ended=partial(self._store.has_ended, entry.id),
+            has_ended=partial(self._store.records.has_ended, entry.id),
             on_tick=partial(self._lease.renew, entry.id),
         )
         _, status, usage = self.wait_for_horse()
@@ -181,10 +174,10 @@ class JobWorker(Worker):  # type: ignore[misc]  # rq is not analysed
 
     def _perform(self, job_id: str) -> None:
         """The work, in the work-horse."""
-        assert self._desk, "it was laid out before the fork"
-        work = perform(self._desk.store, self._settings, job_id, ProgressReporter(self._leases, job_id))
+        assert self._staged, "the job is staged before the fork"
+        work = perform(self._staged.store, self._settings, job_id, ProgressReporter(self._leases, job_id))
         if work is not None:
-            self._tallies.job_ended(work.job, work.outcome, work.stage_seconds)
+            self._counters.job_ended(work.job, work.outcome, work.stage_seconds)
 
 
 def main() -> None:
@@ -196,6 +189,6 @@ def main() -> None:
     log.info("loading the kernels; the first time they are compiled, which takes up to a minute")
     segcore.warm_up()
     log.info("ready for %s jobs", size)
-    queue = JobQueue(connect_patiently(settings.redis_url))
-    leases = JobQueue(connect_impatiently(settings.redis_url))
+    queue = JobQueue(connect_with_retries(settings.redis_url))
+    leases = JobQueue(connect(settings.redis_url))
     JobWorker(open_store(settings), queue, leases, settings, size).work(logging_level="WARNING")

@@ -10,7 +10,7 @@ from pathlib import Path
 from typing import Literal, TypeAlias
 
 from cleave.settings import Settings
-from worker.jobs.job import Cause
+from worker.jobs.attempts import Cause
 from worker.jobs.objects.durable import is_disk_full
 
 log = logging.getLogger("cleave.work_horse")

@@ -12,7 +12,10 @@ from cleave.settings import Settings
 from helpers.jobs import LARGE, SMALL, accepted
 from worker.janitor.janitor import MISSING_S, Janitor
 from worker.jobs.job import Failed, new_job_id
-from worker.jobs.queue.queue import TASK, JobQueue, QueueError
+from worker.jobs.queue.connection import QueueError
+from worker.jobs.queue.entries import FUNCTION_NAME
+from worker.jobs.queue.locks import Locks
+from worker.jobs.queue.queue import JobQueue
 from worker.jobs.store.store import JobStore
 
 
@@ -70,7 +73,7 @@ def test_what_waits_in_the_one_queue_of_an_earlier_version_is_taken_over(
     janitor: Janitor, store: JobStore, queue: JobQueue, connection: Redis
 ) -> None:
     job = accepted(store, b"mesh")
-    Queue("cleave", connection=connection, serializer=JSONSerializer).enqueue(TASK, job.id, job_id=job.id)
+    Queue("cleave", connection=connection, serializer=JSONSerializer).enqueue(FUNCTION_NAME, job.id, job_id=job.id)
     janitor.sweep(0.0)
     janitor.sweep(MISSING_S)
     assert waiting(queue) == [job.id]
@@ -120,10 +123,10 @@ def test_a_job_that_took_all_its_workers_along_fails_with_the_last_cause(
 ) -> None:
     job = accepted(store, b"mesh")
     for cause in ("worker_lost", "worker_lost", "out_of_memory"):
-        store.end_attempt(job.id, store.begin_attempt(job.id, "worker"), cause)
+        store.records.end_attempt(job.id, store.begin_attempt(job.id, "worker"), cause)
     janitor.sweep(0.0)
     janitor.sweep(MISSING_S)
-    outcome = store.outcome(job.id)
+    outcome = store.records.outcome(job.id)
     assert isinstance(outcome, Failed)
     assert outcome.code == "out_of_memory"
     assert waiting(queue) == []
@@ -135,14 +138,14 @@ def test_attempts_that_ended_with_their_worker_count_too(janitor: Janitor, store
         store.begin_attempt(job.id, "worker")
     janitor.sweep(0.0)
     janitor.sweep(MISSING_S)
-    outcome = store.outcome(job.id)
+    outcome = store.records.outcome(job.id)
     assert isinstance(outcome, Failed)
     assert outcome.code == "worker_lost"
     assert "3 times" in outcome.message
 
 
 def test_of_several_janitors_one_acts(janitor: Janitor, store: JobStore, queue: JobQueue) -> None:
-    assert queue.lead("another", lease_s=60)
+    assert Locks(queue.connection).lead("another", ttl_s=60)
     accepted(store, b"mesh")
     janitor.sweep(0.0)
     janitor.sweep(MISSING_S)

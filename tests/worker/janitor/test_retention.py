@@ -52,7 +52,7 @@ def test_unfinished_jobs_count_but_stay() -> None:
 
 def ended_job(store: JobStore) -> Job:
     one = accepted(store, b"mesh bytes")
-    store.write_result(one.id, lambda target: target.write(b"result"))
+    store.results.write(one.id, lambda target: target.write(b"result"))
     store.finish(one.id, Succeeded(finished_at=now(), faces=4, vertices=4, max_segments=3, automatic_segments=2))
     return one
 
@@ -61,11 +61,11 @@ def test_a_sweep_deletes_what_ended_and_keeps_what_did_not(placed: JobStore) -> 
     ended, waiting = ended_job(placed), accepted(placed, b"mesh")
     for settings in (Settings(), Settings(retention_s=2 * DAY_S)):
         remove_surplus(placed, settings, time.time() + DAY_S)
-        assert placed.job(ended.id) == ended
+        assert placed.records.job(ended.id) == ended
     remove_surplus(placed, Settings(retention_s=DAY_S / 2), time.time() + DAY_S)
-    assert placed.job(ended.id) is None
-    assert placed.was_deleted(ended.id, None)
-    assert placed.job(waiting.id) == waiting
+    assert placed.records.job(ended.id) is None
+    assert placed.deletions.was_deleted(ended.id, None)
+    assert placed.records.job(waiting.id) == waiting
     assert [one.id for one in stored_jobs(placed)] == [waiting.id]
 
 
@@ -74,9 +74,9 @@ def test_a_sweep_counts_every_byte_of_a_job(placed: JobStore) -> None:
     (stored,) = stored_jobs(placed)
     assert stored.size_bytes > len(b"mesh bytes") + len(b"result")
     remove_surplus(placed, Settings(retention_bytes=stored.size_bytes), time.time() + DAY_S)
-    assert placed.job(ended.id) == ended
+    assert placed.records.job(ended.id) == ended
     remove_surplus(placed, Settings(retention_bytes=stored.size_bytes - 1), time.time() + DAY_S)
-    assert placed.job(ended.id) is None
+    assert placed.records.job(ended.id) is None
 
 
 def test_everything_is_looked_at_now_and_then_only(

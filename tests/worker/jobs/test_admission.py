@@ -19,7 +19,7 @@ def submitted(store: JobStore) -> Callable[[str], Job]:
     def submit(owner: str) -> Job:
         template = accepted(store, b"mesh")
         store.delete(template.id)
-        with store.begin_upload() as upload:
+        with store.spool.begin_upload() as upload:
             job = replace(template, id=new_job_id(), owner=owner, created_at=now())
             store.accept(job, upload)
         return job

@@ -15,12 +15,13 @@ from helpers.processes import StartWorker, children_of, is_alive
 from helpers.waiting import wait_until
 from worker.jobs.job import Canceled, Failed, Job, Outcome, Succeeded, now
 from worker.jobs.queue.queue import JobQueue
+from worker.jobs.queue.workers import worker_counts
 from worker.jobs.store.store import JobStore
 
 
 def outcome_of(store: JobStore, job: Job, within_s: float = 60.0) -> Outcome:
-    wait_until(lambda: store.outcome(job.id), within_s)
-    outcome = store.outcome(job.id)
+    wait_until(lambda: store.records.outcome(job.id), within_s)
+    outcome = store.records.outcome(job.id)
     assert outcome is not None
     return outcome
 
@@ -44,10 +45,10 @@ def test_a_queued_job_succeeds_and_leaves_nothing_in_redis(
     job = submitted(store, queue)
     assert isinstance(outcome_of(store, job), Succeeded)
     wait_until(lambda: not [key for key in connection.scan_iter() if job.id.encode() in key])
-    assert queue.worker_counts() == {SMALL: 1, LARGE: 0}
+    assert worker_counts(queue.connection) == {SMALL: 1, LARGE: 0}
     worker.send_signal(signal.SIGTERM)
     assert worker.wait(30) == 0
-    assert queue.worker_counts() == {SMALL: 0, LARGE: 0}
+    assert worker_counts(queue.connection) == {SMALL: 0, LARGE: 0}
 
 
 def test_a_running_job_shows_its_stage_and_progress(
@@ -77,7 +78,7 @@ def test_entries_that_name_another_callable_are_dropped_unrun(
     start_worker()
     assert isinstance(outcome_of(store, last), Succeeded)
     assert not touched.exists()
-    assert store.attempts(job.id) == []
+    assert store.records.attempts(job.id) == []
     assert queue.entries[SMALL].get_job_ids() == []
 
 
@@ -88,7 +89,7 @@ def test_a_killed_work_horse_costs_an_attempt_and_not_the_job(
     job = submitted(store, queue, **LONG)
     os.kill(horse_of(worker), signal.SIGKILL)
     assert isinstance(outcome_of(store, job), Succeeded)
-    assert [attempt.cause for attempt in store.attempts(job.id)] == ["worker_lost", None]
+    assert [attempt.cause for attempt in store.records.attempts(job.id)] == ["worker_lost", None]
 
 
 def poison(statement: str) -> tuple[str, str]:
@@ -128,7 +129,7 @@ def test_poison_ends_as_failed_after_three_attempts_and_the_worker_goes_on(
     outcome = outcome_of(store, job)
     assert isinstance(outcome, Failed)
     assert outcome.code == code
-    assert [attempt.cause for attempt in store.attempts(job.id)] == [code] * 3
+    assert [attempt.cause for attempt in store.records.attempts(job.id)] == [code] * 3
     assert isinstance(outcome_of(store, submitted(store, queue)), Canceled)
     assert worker.poll() is None
 
@@ -142,7 +143,7 @@ def test_what_is_wrong_with_the_input_costs_one_attempt(
         queue.enqueue(job.id, SMALL)
     codes = [getattr(outcome_of(store, job), "code", None) for job in jobs]
     assert codes == ["invalid_mesh", "unsupported_format", "invalid_mesh"]
-    assert [len(store.attempts(job.id)) for job in jobs] == [1, 1, 1]
+    assert [len(store.records.attempts(job.id)) for job in jobs] == [1, 1, 1]
 
 
 def test_a_job_that_needs_too_much_memory_is_stopped_with_a_reason(
@@ -166,7 +167,7 @@ def test_a_canceled_job_stops_within_seconds(start_worker: StartWorker, store: J
     horse = horse_of(worker)
     store.finish(job.id, Canceled(finished_at=now()))
     wait_until(lambda: not is_alive(horse), within_s=10)
-    assert isinstance(store.outcome(job.id), Canceled)
+    assert isinstance(store.records.outcome(job.id), Canceled)
     assert isinstance(outcome_of(store, submitted(store, queue)), Succeeded)
 
 
@@ -194,8 +195,8 @@ def test_a_worker_that_is_told_to_stop_hands_its_job_back(
     worker.send_signal(signal.SIGTERM)
     assert worker.wait(30) == 0
     assert not is_alive(horse)
-    assert store.outcome(job.id) is None
-    assert store.attempts(job.id) == []
+    assert store.records.outcome(job.id) is None
+    assert store.records.attempts(job.id) == []
     assert queue.entries[SMALL].get_job_ids() == [job.id]
 
 
@@ -207,7 +208,7 @@ def test_a_worker_that_is_told_to_stop_lets_a_job_end_within_the_grace(
     horse_of(worker)
     worker.send_signal(signal.SIGTERM)
     assert worker.wait(120) == 0
-    assert isinstance(store.outcome(job.id), Succeeded)
+    assert isinstance(store.records.outcome(job.id), Succeeded)
 
 
 def test_a_killed_worker_takes_its_work_horse_along(
@@ -218,7 +219,7 @@ def test_a_killed_worker_takes_its_work_horse_along(
     horse = horse_of(worker)
     worker.kill()
     wait_until(lambda: not is_alive(horse), within_s=10)
-    assert store.outcome(job.id) is None
+    assert store.records.outcome(job.id) is None
 
 
 def test_a_job_that_another_worker_holds_is_left_to_it(
@@ -230,7 +231,7 @@ def test_a_job_that_another_worker_holds_is_left_to_it(
     other = submitted(store, queue)
     start_worker()
     assert isinstance(outcome_of(store, other), Succeeded)
-    assert store.attempts(held.id) == []
+    assert store.records.attempts(held.id) == []
 
 
 def test_a_large_job_holds_up_no_small_one(start_worker: StartWorker, store: JobStore, queue: JobQueue) -> None:
@@ -242,7 +243,7 @@ def test_a_large_job_holds_up_no_small_one(start_worker: StartWorker, store: Job
     for _ in range(3):
         assert isinstance(outcome_of(store, submitted(store, queue)), Succeeded)
     assert queue.activity(large.id).running
-    assert store.outcome(large.id) is None
+    assert store.records.outcome(large.id) is None
 
 
 def test_what_passes_through_redis_is_small(
@@ -251,7 +252,7 @@ def test_what_passes_through_redis_is_small(
     start_worker()
     job = submitted(store, queue, **LONG)
     largest = 0
-    while store.outcome(job.id) is None:
+    while store.records.outcome(job.id) is None:
         largest = max([largest, *(connection.memory_usage(key) or 0 for key in connection.scan_iter())])
         time.sleep(0.1)
     assert 0 < largest < 10_000

@@ -11,7 +11,7 @@ from pathlib import Path
 from typing import BinaryIO
 
 from worker.jobs.objects.durable import TEMPORARY_SUFFIX, create_file, replace_file, sync_folder, sync_path
-from worker.jobs.objects.seam import Item, ObjectInfo, Value
+from worker.jobs.objects.interface import Item, ObjectInfo, Value
 
 _TRIES = 10  # to write into a folder that others remove because it is empty
 
@@ -19,8 +19,8 @@ _TRIES = 10  # to write into a folder that others remove because it is empty
 class LocalObjects:
     """The files below a folder; the file system must have hard links."""
 
-    is_local = True
-    look_s = 0.0
+    survives_fork = True
+    poll_interval_s = 0.0
 
     def __init__(self, folder: Path) -> None:
         self._folder = folder

@@ -12,7 +12,7 @@ from typing import BinaryIO, cast
 from obstore.exceptions import AlreadyExistsError, BaseError
 
 from worker.jobs.objects.buckets import Bucket
-from worker.jobs.objects.seam import Item, ObjectInfo, StoreError, Value
+from worker.jobs.objects.interface import Item, ObjectInfo, StoreError, Value
 
 _AT_A_TIME = 16
 _PIECE_BYTES = 4 * 2**20
@@ -25,8 +25,8 @@ class RemoteObjects:
     A process that has used it cannot go on using it after a fork: its connections live in threads.
     """
 
-    is_local = False
-    look_s = 0.5
+    survives_fork = False
+    poll_interval_s = 0.5
 
     def __init__(self, bucket: Bucket, spool: Path) -> None:
         """``spool`` is a folder of this machine for what is being downloaded."""

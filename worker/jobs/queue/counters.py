@@ -11,8 +11,9 @@ from dataclasses import dataclass
 
 from redis import Redis
 
-from worker.jobs.job import Cause, Job, Outcome, Succeeded
-from worker.jobs.queue.queue import QueueError, text_of
+from worker.jobs.attempts import Cause
+from worker.jobs.job import Job, Outcome, Succeeded
+from worker.jobs.queue.connection import QueueError, text_of
 
 log = logging.getLogger("cleave.tallies")
 
@@ -31,7 +32,7 @@ class Durations:
     sum_s: float
 
 
-class Tallies:
+class JobCounters:
     """Counters that the processes of an installation share: a name and the values of its labels."""
 
     def __init__(self, connection: Redis) -> None:

@@ -4,11 +4,11 @@ from contextlib import suppress
 from pathlib import Path
 
 from worker.jobs.job import Job
-from worker.jobs.objects.seam import ObjectStorage, StoreError
+from worker.jobs.objects.interface import ObjectStorage, StoreError
 from worker.jobs.store.computed import ComputedIndex
 from worker.jobs.store.index import JobIndex
 from worker.jobs.store.layout import entry_name, job_key, mesh_name
-from worker.jobs.store.outbox import Letter, Outbox
+from worker.jobs.store.outbox import Delivery, Outbox
 from worker.jobs.store.pending import PendingJobs
 from worker.jobs.store.records import Records
 
@@ -56,7 +56,7 @@ class Acceptance:
         self._objects.put_file(job_key(job.id, mesh_name(job)), mesh)
         self._index.add(job)
         if job.webhook_url is not None:
-            self._outbox.put(job.id, Letter())
+            self._outbox.put(job.id, Delivery())
 
     def _clear_away(self, job: Job) -> None:
         """Remove what was prepared for a job that is not accepted, but not what belongs to another of its id."""

@@ -6,7 +6,7 @@ from datetime import datetime
 from pydantic import TypeAdapter
 
 from worker.jobs.job import is_job_id
-from worker.jobs.objects.seam import ObjectStorage
+from worker.jobs.objects.interface import ObjectStorage
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

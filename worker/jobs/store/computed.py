@@ -4,7 +4,7 @@ import hashlib
 import json
 
 from worker.jobs.job import Job, is_job_id
-from worker.jobs.objects.seam import ObjectStorage
+from worker.jobs.objects.interface import ObjectStorage
 from worker.jobs.store.layout import NOBODY
 
 

@@ -4,7 +4,7 @@ import time
 
 from worker.jobs.job import Job, is_job_id
 from worker.jobs.objects.durable import is_disk_full
-from worker.jobs.objects.seam import ObjectStorage
+from worker.jobs.objects.interface import ObjectStorage
 from worker.jobs.store.layout import RECORD, job_folder, job_key
 from worker.jobs.store.pending import remove_remains
 from worker.jobs.store.records import JOB

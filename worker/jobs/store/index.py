@@ -7,7 +7,7 @@ time turned around, 0 for 9 and 9 for 0; what others see of them, as cursors, is
 import re
 
 from worker.jobs.job import Job
-from worker.jobs.objects.seam import ObjectStorage, name_of
+from worker.jobs.objects.interface import ObjectStorage, name_of
 from worker.jobs.store.layout import NOBODY, entry_name
 
 CURSOR = r"^[0-9]{8}T[0-9]{12}-[0-9a-f]{32}$"

@@ -3,7 +3,7 @@
 import hmac
 import secrets
 
-from worker.jobs.objects.seam import ObjectStorage, StoreError
+from worker.jobs.objects.interface import ObjectStorage, StoreError
 
 _KEY = "secret"
 _BYTES = 32

@@ -23,7 +23,8 @@ def read_page(index: JobIndex, records: Records, owner: str | None, cursor: str 
     """The jobs from a cursor on; entries that have lost their job are removed."""
     entries = index.page(owner, cursor, limit + 1)
     shown = [entry for entry in entries[:limit] if is_entry_name(entry)]
-    found = dict(zip(shown, records.jobs([job_id_of(entry) for entry in shown]), strict=True))
+    by_id = records.jobs([job_id_of(entry) for entry in shown])
+    found = {entry: by_id[job_id_of(entry)] for entry in shown}
     oldest = f"{datetime.now(UTC) - _ON_ITS_WAY:{TIME_FORMAT}}"
     for entry in (entry for entry, job in found.items() if job is None and entry < oldest):
         index.remove_entry(owner, entry)

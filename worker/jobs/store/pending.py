@@ -4,7 +4,7 @@ import time
 from datetime import UTC, datetime
 
 from worker.jobs.job import Job
-from worker.jobs.objects.seam import ObjectStorage, name_of
+from worker.jobs.objects.interface import ObjectStorage, name_of
 from worker.jobs.store.index import is_entry_name
 from worker.jobs.store.layout import MANIFEST, RECORD, TIME_FORMAT, entry_name, job_folder, job_key
 
@@ -59,7 +59,7 @@ class PendingJobs:
         """The keys, oldest first, as of now, or of a moment ago where looking costs something."""
         listed_at, markers = self._listed
         began_at = time.monotonic()
-        if began_at - listed_at >= 2 * self._objects.look_s:
+        if began_at - listed_at >= 2 * self._objects.poll_interval_s:
             markers = [key for key in self._objects.keys_below(_FOLDER) if is_entry_name(name_of(key)[:_ENTRY_LENGTH])]
             self._listed = (began_at, markers)
         return markers
@@ -67,7 +67,7 @@ class PendingJobs:
     def _true(self, markers: list[str]) -> list[str]:
         """Those of jobs without an outcome."""
         at_s, checked = time.monotonic(), self._checked
-        believed_s = _BELIEVED_LOOKS * self._objects.look_s
+        believed_s = _BELIEVED_LOOKS * self._objects.poll_interval_s
         doubtful = [marker for marker in markers if at_s - checked.get(marker, _NEVER) >= believed_s]
         verdicts = dict(zip(doubtful, self._objects.each(self._is_true, doubtful), strict=True))
         checked.update({marker: at_s for marker, is_true in verdicts.items() if is_true})

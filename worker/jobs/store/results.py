@@ -5,7 +5,7 @@ from pathlib import Path
 from typing import BinaryIO
 
 from worker.jobs.objects.file_cache import FileCache
-from worker.jobs.objects.seam import ObjectStorage
+from worker.jobs.objects.interface import ObjectStorage
 from worker.jobs.store.layout import RESULT, job_key
 from worker.jobs.store.records import Records, UnknownJob
 from worker.jobs.store.spool import Spool

@@ -6,7 +6,8 @@ from redis import Redis
 from helpers.jobs import LARGE, SMALL
 from helpers.waiting import wait_until
 from worker.jobs.job import new_job_id
-from worker.jobs.queue.queue import Activity, JobQueue, Progress, QueueError, connect_impatiently
+from worker.jobs.queue.connection import QueueError, connect
+from worker.jobs.queue.queue import Activity, JobQueue, Progress
 
 
 def waiting(queue: JobQueue) -> list[str]:
@@ -107,14 +108,6 @@ def test_a_forgotten_job_leaves_nothing_behind(queue: JobQueue, connection: Redi
     assert [key for key in connection.scan_iter() if job_id.encode() in key] == []
 
 
-def test_one_leads_until_its_lease_runs_out(queue: JobQueue) -> None:
-    assert queue.lead("janitor-1", lease_s=0.3)
-    assert not queue.lead("janitor-2", lease_s=10)
-    assert queue.lead("janitor-1", lease_s=0.3)
-    wait_until(lambda: queue.lead("janitor-2", lease_s=10), within_s=10)
-    assert not queue.lead("janitor-1", lease_s=10)
-
-
 def test_nothing_that_goes_through_redis_is_a_pickle(queue: JobQueue, connection: Redis) -> None:
     job_id = new_job_id()
     queue.enqueue(job_id, SMALL)
@@ -124,6 +117,6 @@ def test_nothing_that_goes_through_redis_is_a_pickle(queue: JobQueue, connection
 
 
 def test_an_impatient_connection_says_so_at_once() -> None:
-    queue = JobQueue(connect_impatiently("unix:///nowhere/queue.sock", timeout_s=0.1))
+    queue = JobQueue(connect("unix:///nowhere/queue.sock", timeout_s=0.1))
     with pytest.raises(QueueError):
         queue.enqueue(new_job_id(), SMALL)

@@ -12,8 +12,8 @@ from worker.jobs.store.opening import open_store
 
 
 def test_without_a_url_the_data_folder_is_the_store(tmp_path: Path) -> None:
-    assert open_store(Settings(data_dir=tmp_path)).is_local
-    assert open_store(Settings(data_dir=tmp_path)).result_url("0" * 32, 60) is None
+    assert open_store(Settings(data_dir=tmp_path)).objects.survives_fork
+    assert open_store(Settings(data_dir=tmp_path)).results.presigned_url("0" * 32, 60) is None
 
 
 @pytest.mark.parametrize(
@@ -33,7 +33,7 @@ def test_a_store_in_the_memory_of_a_process_is_none_for_an_installation(monkeypa
 def test_what_is_missing_for_buckets_is_named(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
     for name in ("obstore", "worker.jobs.objects.buckets", "worker.jobs.objects.remote"):
         monkeypatch.setitem(sys.modules, name, None)
-    with pytest.raises(InvalidSettings, match=r"cleave\[cloud\]"):
+    with pytest.raises(InvalidSettings, match=r"cleave-mesh\[cloud\]"):
         open_store(Settings(data_dir=tmp_path, store_url="s3://bucket"))
 
 

@@ -14,7 +14,7 @@ from worker.jobs.store.index import turned
 from worker.jobs.store.installation_secret import InstallationSecret
 from worker.jobs.store.layout import entry_name
 from worker.jobs.store.opening import open_folder
-from worker.jobs.store.outbox import Letter
+from worker.jobs.store.outbox import Delivery
 from worker.jobs.store.spool import Spool
 from worker.jobs.store.store import JobStore, UnknownJob
 
@@ -35,7 +35,7 @@ def succeeded() -> Succeeded:
 
 
 def owned(store: JobStore, owner: str | None) -> Job:
-    with store.begin_upload() as upload:
+    with store.spool.begin_upload() as upload:
         job = Job(
             id=new_job_id(),
             sha256=upload.sha256,
@@ -51,17 +51,17 @@ def owned(store: JobStore, owner: str | None) -> Job:
 
 def test_an_accepted_job_is_read_back_as_it_was_written(placed: JobStore) -> None:
     job = accepted(placed, b"mesh bytes", max_segments=7)
-    assert placed.job(job.id) == job
+    assert placed.records.job(job.id) == job
     with placed.open_mesh(job.id) as mesh:
         assert mesh.read() == b"mesh bytes"
         mesh.seek(5)
         assert mesh.read() == b"bytes"
-    assert list(placed.unfinished()) == [job.id]
+    assert list(placed.pending.all()) == [job.id]
     assert job.sha256 == hashlib.sha256(b"mesh bytes").hexdigest()
 
 
 def test_an_upload_that_breaks_off_leaves_nothing(placed: JobStore, tmp_path: Path) -> None:
-    with placed.begin_upload() as upload:
+    with placed.spool.begin_upload() as upload:
         upload.write(b"half of a mesh")
     assert list((tmp_path / "data" / "incoming").iterdir()) == []
     assert keys(placed) == []
@@ -70,12 +70,12 @@ def test_an_upload_that_breaks_off_leaves_nothing(placed: JobStore, tmp_path: Pa
 def test_the_first_outcome_stands(placed: JobStore) -> None:
     job = accepted(placed, b"mesh")
     first = Canceled(finished_at=now())
-    assert not placed.has_ended(job.id)
+    assert not placed.records.has_ended(job.id)
     assert placed.finish(job.id, first) == first
     assert placed.finish(job.id, succeeded()) == first
-    assert placed.outcome(job.id) == first
-    assert placed.has_ended(job.id)
-    assert placed.unfinished() == {}
+    assert placed.records.outcome(job.id) == first
+    assert placed.records.has_ended(job.id)
+    assert placed.pending.all() == {}
 
 
 def test_of_many_writers_at_once_one_gives_the_outcome(placed: JobStore) -> None:
@@ -91,14 +91,14 @@ def test_of_many_writers_at_once_one_gives_the_outcome(placed: JobStore) -> None
     for thread in threads:
         thread.join()
     assert len(standing) == 16
-    assert {repr(outcome) for outcome in standing} == {repr(placed.outcome(job.id))}
+    assert {repr(outcome) for outcome in standing} == {repr(placed.records.outcome(job.id))}
 
 
 def test_of_many_submissions_of_one_id_one_is_accepted_with_its_own_mesh(placed: JobStore) -> None:
     job_id, taken, refused = new_job_id(), [], []
 
     def submit(mesh: bytes) -> None:
-        with placed.begin_upload() as upload:
+        with placed.spool.begin_upload() as upload:
             upload.write(mesh)
             job = Job(
                 id=job_id,
@@ -120,11 +120,11 @@ def test_of_many_submissions_of_one_id_one_is_accepted_with_its_own_mesh(placed:
     for thread in threads:
         thread.join()
     assert (len(taken), len(refused)) == (1, 7)
-    assert placed.job(job_id) == taken[0]
+    assert placed.records.job(job_id) == taken[0]
     with placed.open_mesh(job_id) as mesh:
         assert hashlib.sha256(mesh.read()).hexdigest() == taken[0].sha256
     assert placed.page(None, None, 10).jobs == taken
-    assert list(placed.unfinished()) == [job_id]
+    assert list(placed.pending.all()) == [job_id]
     assert len([key for key in keys(placed) if "/mesh" in key]) == 1
 
 
@@ -132,27 +132,27 @@ def test_every_kind_of_outcome_is_read_back(placed: JobStore) -> None:
     for outcome in (succeeded(), Canceled(finished_at=now()), Failed(finished_at=now(), code="c", message="m")):
         job = accepted(placed, b"mesh")
         placed.finish(job.id, outcome)
-        assert placed.outcome(job.id) == outcome
+        assert placed.records.outcome(job.id) == outcome
 
 
 def test_attempts_are_counted_until_they_are_withdrawn(placed: JobStore) -> None:
     job = accepted(placed, b"mesh")
     first = placed.begin_attempt(job.id, "worker-1")
-    placed.end_attempt(job.id, first, "worker_lost")
+    placed.records.end_attempt(job.id, first, "worker_lost")
     second = placed.begin_attempt(job.id, "worker-2")
-    assert [attempt.number for attempt in placed.attempts(job.id)] == [1, 2]
-    assert [attempt.cause for attempt in placed.attempts(job.id)] == ["worker_lost", None]
-    assert placed.states([job])[job.id].attempts == placed.attempts(job.id)
-    placed.withdraw_attempt(job.id, second)
-    assert [attempt.worker for attempt in placed.attempts(job.id)] == ["worker-1"]
+    assert [attempt.number for attempt in placed.records.attempts(job.id)] == [1, 2]
+    assert [attempt.cause for attempt in placed.records.attempts(job.id)] == ["worker_lost", None]
+    assert placed.records.states([job.id])[job.id].attempts == placed.records.attempts(job.id)
+    placed.records.withdraw_attempt(job.id, second)
+    assert [attempt.worker for attempt in placed.records.attempts(job.id)] == ["worker-1"]
 
 
 def test_a_result_is_read_back_by_every_process(placed: JobStore, tmp_path: Path) -> None:
     job = accepted(placed, b"mesh")
     for _ in range(2):
-        placed.write_result(job.id, lambda target: target.write(b"result"))
+        placed.results.write(job.id, lambda target: target.write(b"result"))
     for store in (placed, placed, reopened(placed, tmp_path)):
-        with store.open_result(job.id) as result:
+        with store.results.open(job.id) as result:
             assert result.read() == b"result"
 
 
@@ -167,15 +167,15 @@ def test_a_new_attempt_clears_what_a_killed_one_was_writing(placed: JobStore, tm
 def test_a_deleted_job_is_gone_and_cannot_be_finished(placed: JobStore) -> None:
     job = accepted(placed, b"mesh")
     attempt = placed.begin_attempt(job.id, "worker")
-    placed.write_result(job.id, lambda target: target.write(b"result"))
+    placed.results.write(job.id, lambda target: target.write(b"result"))
     placed.delete(job.id)
-    assert placed.job(job.id) is None
+    assert placed.records.job(job.id) is None
     for forbidden in (
         lambda: placed.finish(job.id, succeeded()),
         lambda: placed.begin_attempt(job.id, "worker"),
-        lambda: placed.end_attempt(job.id, attempt, "worker_lost"),
-        lambda: placed.write_result(job.id, lambda target: target.write(b"result")),
-        lambda: placed.open_result(job.id),
+        lambda: placed.records.end_attempt(job.id, attempt, "worker_lost"),
+        lambda: placed.results.write(job.id, lambda target: target.write(b"result")),
+        lambda: placed.results.open(job.id),
         lambda: placed.delete(job.id),
     ):
         with pytest.raises(UnknownJob):
@@ -185,7 +185,7 @@ def test_a_deleted_job_is_gone_and_cannot_be_finished(placed: JobStore) -> None:
 
 @pytest.mark.parametrize("name", ["../../etc/passwd", "", ".", "A" * 32, "0" * 31, "0" * 32 + "\n", "é" * 32])
 def test_what_is_no_job_id_is_never_a_key(store: JobStore, name: str) -> None:
-    assert store.job(name) is None
+    assert store.records.job(name) is None
     with pytest.raises(ValueError, match="Not the id of a job"):
         store.open_mesh(name)
 
@@ -193,10 +193,10 @@ def test_what_is_no_job_id_is_never_a_key(store: JobStore, name: str) -> None:
 def test_a_marker_without_a_job_is_no_job(placed: JobStore, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     job = accepted(placed, b"mesh")
     placed.objects.delete(f"jobs/{job.id}/job.json")
-    assert reopened(placed, tmp_path).unfinished() == {}
+    assert reopened(placed, tmp_path).pending.all() == {}
     assert any(job.id in key for key in keys(placed))  # it may be on its way in
     monkeypatch.setattr("worker.jobs.store.pending._GRACE_S", -10.0)
-    assert reopened(placed, tmp_path).unfinished() == {}
+    assert reopened(placed, tmp_path).pending.all() == {}
     assert [key for key in keys(placed) if key.startswith(("pending", "jobs"))] == []
 
 
@@ -205,15 +205,15 @@ def test_a_crash_between_the_manifest_and_its_marker_heals(placed: JobStore, tmp
     (marker,) = placed.objects.list_below("pending")
     placed.finish(job.id, succeeded())
     placed.objects.put(marker.key, b"")
-    assert reopened(placed, tmp_path).unfinished() == {}
+    assert reopened(placed, tmp_path).pending.all() == {}
     assert placed.objects.list_below("pending") == []
 
 
 def test_unfinished_jobs_come_oldest_first(placed: JobStore) -> None:
     jobs = [owned(placed, owner) for owner in ("b", None, "a", "b")]
-    assert list(placed.unfinished()) == [job.id for job in jobs]
-    assert placed.unfinished_of("b") == [jobs[0].id, jobs[3].id]
-    assert placed.count_unfinished("b") == (4, 2)
+    assert list(placed.pending.all()) == [job.id for job in jobs]
+    assert placed.pending.of("b") == [jobs[0].id, jobs[3].id]
+    assert placed.pending.count("b") == (4, 2)
 
 
 def test_jobs_are_paged_newest_first_without_a_gap_or_a_repetition(placed: JobStore) -> None:
@@ -233,10 +233,10 @@ def test_owners_see_their_own_jobs_alone(placed: JobStore) -> None:
     mine, theirs, nobodys = (owned(placed, owner) for owner in ("me", "them", None))
     for job in (mine, theirs, nobodys):
         assert placed.page(job.owner, None, 10).jobs == [job]
-        assert placed.unfinished_of(job.owner) == [job.id]
-    assert placed.unfinished() == {mine.id: "me", theirs.id: "them", nobodys.id: None}
+        assert placed.pending.of(job.owner) == [job.id]
+    assert placed.pending.all() == {mine.id: "me", theirs.id: "them", nobodys.id: None}
     placed.finish(mine.id, Canceled(finished_at=now()))
-    assert placed.unfinished_of("me") == []
+    assert placed.pending.of("me") == []
     assert placed.page("me", None, 10).jobs == [mine]
 
 
@@ -251,11 +251,11 @@ def test_what_was_computed_is_found_by_its_owner_alone(placed: JobStore) -> None
 def test_a_second_job_of_the_same_id_leaves_the_first_as_it_is(placed: JobStore) -> None:
     first = accepted(placed, b"mesh")
     second = replace(first, created_at=now(), size_bytes=12, webhook_url="https://example.com/")
-    with placed.begin_upload() as upload, pytest.raises(JobExists):
+    with placed.spool.begin_upload() as upload, pytest.raises(JobExists):
         placed.accept(second, upload)
-    assert placed.job(first.id) == first
+    assert placed.records.job(first.id) == first
     assert placed.page(None, None, 10).jobs == [first]
-    assert placed.outbox.letters() == {}
+    assert placed.outbox.deliveries() == {}
     with placed.open_mesh(first.id) as mesh:
         assert mesh.read() == b"mesh"
 
@@ -263,20 +263,20 @@ def test_a_second_job_of_the_same_id_leaves_the_first_as_it_is(placed: JobStore)
 def test_a_deletion_is_known_to_its_owner_until_it_is_forgotten(placed: JobStore) -> None:
     job = owned(placed, "me")
     placed.delete(job.id)
-    assert placed.was_deleted(job.id, "me")
-    assert not placed.was_deleted(job.id, None)
-    placed.forget_deleted(3600.0)
-    assert placed.was_deleted(job.id, "me")
-    placed.forget_deleted(-10.0)
-    assert not placed.was_deleted(job.id, "me")
+    assert placed.deletions.was_deleted(job.id, "me")
+    assert not placed.deletions.was_deleted(job.id, None)
+    placed.deletions.forget(3600.0)
+    assert placed.deletions.was_deleted(job.id, "me")
+    placed.deletions.forget(-10.0)
+    assert not placed.deletions.was_deleted(job.id, "me")
 
 
 def test_letters_stay_until_they_are_delivered(placed: JobStore) -> None:
     job_id, other = new_job_id(), new_job_id()
-    placed.outbox.put(job_id, Letter())
-    placed.outbox.put(job_id, Letter(failures=2, due_at=5.0))
-    placed.outbox.put(other, Letter())
-    assert placed.outbox.letters(but_of={other}) == {job_id: Letter(failures=2, due_at=5.0)}
+    placed.outbox.put(job_id, Delivery())
+    placed.outbox.put(job_id, Delivery(failures=2, due_at=5.0))
+    placed.outbox.put(other, Delivery())
+    assert placed.outbox.deliveries(except_for={other}) == {job_id: Delivery(failures=2, due_at=5.0)}
     placed.outbox.remove(job_id)
     assert placed.outbox.job_ids() == {other}
 
@@ -303,9 +303,9 @@ def test_a_data_folder_of_an_earlier_version_goes_on_working(tmp_path: Path) -> 
         entry.rename(entry.with_name(entry_name(one)))
     (folder / "pending" / f"{entry_name(job)}.me").rename(folder / "pending" / f"{job.id}.me")
     store = open_folder(tmp_path / "data")
-    assert store.unfinished() == {job.id: "me"}
+    assert store.pending.all() == {job.id: "me"}
     assert store.page("me", None, 10).jobs == [ended, job]
     with store.open_mesh(job.id) as mesh:
         assert mesh.read() == b""
     store.finish(job.id, succeeded())
-    assert store.unfinished() == {}
+    assert store.pending.all() == {}
