@@ -64,7 +64,7 @@ def reopen(placed: JobStore, tmp_path: Path) -> Callable[..., JobStore]:
 def nothing_is_young(monkeypatch: pytest.MonkeyPatch) -> None:
     """Whatever has no job is not on its way to one any more."""
     monkeypatch.setattr("worker.jobs.store.pending._GRACE_S", -10.0)
-    monkeypatch.setattr("worker.jobs.store.pages._ON_ITS_WAY", timedelta(days=-1))
+    monkeypatch.setattr("worker.jobs.store.pages._GRACE", timedelta(days=-1))
 
 
 def a_job() -> Job:

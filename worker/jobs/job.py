@@ -1,4 +1,4 @@
-"""What a job is, and the ways in which one ends, as values."""
+"""A job and its possible outcomes."""
 
 import re
 import secrets
@@ -13,24 +13,24 @@ _JOB_ID = re.compile(r"[0-9a-f]{32}", re.ASCII)
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Job:
-    """A mesh that somebody wants segmented."""
+    """A mesh to be segmented."""
 
-    id: str  # 128 random bits in hexadecimal: who knows it may read the job
+    id: str  # 128 random bits in hexadecimal, which nobody can guess
     sha256: str  # of the mesh file, in hexadecimal
     size_bytes: int  # of the mesh file
-    mesh_format: str | None  # what the client's file name says, a hint; None: told from the bytes alone
+    mesh_format: str | None  # a hint from the client or its file name; None: detected from the bytes alone
     parameters: dict[str, Any]  # every field of SegmentationParameters
     created_at: datetime  # UTC
-    file_name: str | None = None  # what the client calls the file: a label for people, never a path
-    owner: str | None = None  # the name of the API key that it was submitted with; None: without one
-    version: str | None = None  # of the software that accepted it
-    webhook_url: str | None = None  # who is told that it has ended
-    traceparent: str | None = None  # of the request that brought it, as in W3C Trace Context
+    file_name: str | None = None  # the client's name of the file, for display; never used as a path
+    owner: str | None = None  # the name of the API key of the request; None if there was none
+    version: str | None = None  # of the software that accepted the job
+    webhook_url: str | None = None  # to which the end of the job is reported
+    traceparent: str | None = None  # of the request, as in W3C Trace Context
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Succeeded:
-    """The result file is in the store."""
+    """The job has a result file in the store."""
 
     status: Literal["succeeded"] = "succeeded"
     finished_at: datetime
@@ -38,22 +38,22 @@ class Succeeded:
     vertices: int
     max_segments: int
     automatic_segments: int
-    report: dict[str, Any] | None = None  # a MeshReport as values of JSON; None in records of earlier versions
+    report: dict[str, Any] | None = None  # a MeshReport as JSON; None in records of earlier versions
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Failed:
-    """There is no result, and running the job again would not change that."""
+    """The job has no result, and running it again would not change that."""
 
     status: Literal["failed"] = "failed"
     finished_at: datetime
-    code: str  # for programs
-    message: str  # one sentence for people
+    code: str  # stable, for programs
+    message: str  # one sentence, for people
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Canceled:
-    """The client no longer wants the result."""
+    """The client has canceled the job."""
 
     status: Literal["canceled"] = "canceled"
     finished_at: datetime

@@ -1,4 +1,4 @@
-"""The work itself: a mesh from the store becomes a result file in the store, and the job gets its outcome."""
+"""Runs a job: segments its mesh, and writes the result file and the outcome to the store."""
 
 import logging
 from dataclasses import asdict, dataclass
@@ -16,7 +16,7 @@ log = logging.getLogger("cleave.work_horse")
 
 @dataclass(frozen=True, slots=True)
 class Work:
-    """What was done for a job that had no outcome before."""
+    """A job that this run has given its outcome, and the durations of the stages."""
 
     job: Job
     outcome: Outcome
@@ -24,7 +24,7 @@ class Work:
 
 
 def perform(store: JobStore, settings: Settings, job_id: str, on_progress: OnProgress) -> Work | None:
-    """Bring a job to its outcome; None where it has another one or was deleted."""
+    """Give a job its outcome; return None if it has one already or was deleted."""
     job = store.records.job(job_id)
     if job is None or store.records.outcome(job_id) is not None:
         return None
@@ -32,7 +32,7 @@ def perform(store: JobStore, settings: Settings, job_id: str, on_progress: OnPro
     try:
         outcome = segment_stored_mesh(store, job, read_limits(settings), clock)
         if store.finish(job_id, outcome).finished_at != outcome.finished_at:
-            log.info("the job had ended meanwhile: the outcome of this run is dropped")
+            log.info("the job has ended meanwhile: the outcome of this run is dropped")
             return None
     except UnknownJob:
         return None
@@ -44,7 +44,7 @@ def perform(store: JobStore, settings: Settings, job_id: str, on_progress: OnPro
 
 
 def segment_stored_mesh(store: JobStore, job: Job, limits: ReadLimits, clock: StageClock) -> Outcome:
-    """Read, segment, write the result file: what was expected to go wrong is a value, the rest is raised."""
+    """Segment the mesh of a job and write its result file; expected errors are returned as Failed."""
     try:
         clock("reading", 0.0)
         with store.open_mesh(job.id) as source:

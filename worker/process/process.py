@@ -1,4 +1,4 @@
-"""The process that takes jobs from the queue and runs each in a child process, the work-horse."""
+"""The worker process: it takes jobs from the queue and runs each in a child process, the work-horse."""
 
 import logging
 import os
@@ -40,23 +40,23 @@ from worker.process.work_horse import Ending, ending_of, exit_status, limit_reso
 
 log = logging.getLogger("cleave.worker")
 
-_STORE_PAUSE_S = 2.0  # after the store was full or did not answer
-_DEQUEUE_TTL_S = 20  # rq blocks for 15 s less, and gives a sign of life in between
+_STORE_PAUSE_S = 2.0  # before the next job if the store is full or does not answer; set by hand
+_DEQUEUE_TTL_S = 20  # rq waits 15 s less than this for an entry, then sends a heartbeat and waits again
 
 
 class JobWorker(Worker):  # type: ignore[misc]  # rq is not analysed
-    """An rq worker for which the store, not Redis, says what has become of a job.
+    """An rq worker that reads the state of jobs from the store instead of Redis.
 
-    rq's part is the registration, the dequeue with its intermediate list, the fork and the warm shutdown. The
-    work-horse writes its outcome to the store and needs no Redis; this process renews the lease meanwhile, and stops a
-    work-horse that overruns, or whose job got an outcome elsewhere, or that would hold up a shutdown. It takes no
-    commands from Redis, and the one function that it runs is not looked up by the name in the entry.
+    It uses rq for the registration, the dequeue through an intermediate list, the fork and the warm shutdown. The
+    work-horse writes its outcome to the store and needs no Redis. Meanwhile this process renews the lease, and kills
+    the work-horse if it exceeds its time, if its job gets an outcome elsewhere, or on shutdown. It takes no commands
+    from Redis, and it does not import the function that an entry names.
     """
 
-    max_connection_wait_time = 2.0
+    max_connection_wait_time = 2.0  # rq's longest pause between two attempts to reach Redis
 
     def __init__(self, store: JobStore, queue: JobQueue, leases: JobQueue, settings: Settings, size: SizeClass) -> None:
-        """``queue`` may wait for Redis as long as it takes, ``leases`` must not."""
+        """``queue`` needs a connection that retries for minutes, ``leases`` one with a short timeout."""
         super().__init__(
             [queue.entries[size]],
             name=f"{socket.gethostname()}.{os.getpid()}.{secrets.token_hex(4)}",
@@ -74,21 +74,21 @@ class JobWorker(Worker):  # type: ignore[misc]  # rq is not analysed
         self._lease = LeaseKeeper(leases, self.name, settings.lease_s, partial(self.heartbeat, None))
         self._ledger = Ledger(store, queue, self._counters, settings, size, self.name)
         self._watch = Watch(settings)
-        self._horse_is_gone = -1  # a descriptor that becomes readable
+        self._horse_exit = -1  # a descriptor that becomes readable when the work-horse has ended
 
-    # What rq calls.
+    # Methods that rq calls.
 
     def execute_job(self, job: Entry, queue: Any) -> None:
         self.set_state(WorkerStatus.BUSY)
         if not is_valid(job):
-            log.warning("an entry of the queue that is not a job of this installation was dropped: %r", job.id)
+            log.warning("an entry of the queue that this version does not know was dropped: %r", job.id)
             self._queue.forget(job.id)
         elif self._queue.take(job.id, self.name, self._settings.lease_s):
             self._run_or_hand_back(job, queue)
         self.set_state(WorkerStatus.IDLE)
 
     def fork_work_horse(self, job: Entry, queue: Any) -> None:
-        self._horse_is_gone, held_by_the_horse = os.pipe()
+        self._horse_exit, held_by_the_horse = os.pipe()
         super().fork_work_horse(job, queue)
         os.close(held_by_the_horse)
 
@@ -99,7 +99,7 @@ class JobWorker(Worker):  # type: ignore[misc]  # rq is not analysed
         os._exit(exit_status(lambda: self._perform(job.id)))
 
     def setup_work_horse_signals(self) -> None:
-        """A signal to the whole group is for the worker to decide about; its death is the end of the work-horse."""
+        """Ignore signals to the process group, which the worker handles, and die with the worker."""
         signal.signal(signal.SIGINT, signal.SIG_IGN)
         signal.signal(signal.SIGTERM, signal.SIG_IGN)
         die_with_parent(self.pid)
@@ -111,23 +111,23 @@ class JobWorker(Worker):  # type: ignore[misc]  # rq is not analysed
         self._watch.stop_within(0.0)
 
     def set_shutdown_requested_date(self) -> None:
-        """Nothing: a signal handler does not wait for Redis."""
+        """Do nothing, as rq writes to Redis here, which a signal handler must not wait for."""
 
     def heartbeat(self, timeout: int | None = None, pipeline: Any = None) -> None:  # noqa: ARG002
         super().heartbeat(HEARTBEAT_TTL_S, pipeline)
-        register(self, pipeline)  # Redis may have been wiped since the last time
+        register(self, pipeline)  # again, as Redis may have lost its data
 
     @property
     def should_run_maintenance_tasks(self) -> bool:
-        return False  # the janitor's
+        return False  # the janitor does this
 
     def subscribe(self) -> None:
-        """No commands from Redis."""
+        """Do nothing: no commands are taken from Redis."""
 
-    # One job.
+    # Running one job.
 
     def _run_or_hand_back(self, entry: Entry, queue: Any) -> None:
-        """Do a job, or, where the store does not let it be done, leave it to another worker or for later."""
+        """Run a job, or requeue it if the store fails."""
         with about(entry.id) as subject:
             try:
                 subject.trace = self._trace(entry.id)
@@ -136,7 +136,7 @@ class JobWorker(Worker):  # type: ignore[misc]  # rq is not analysed
                     self._attempt(entry, queue, attempt)
                 self._ledger.settle(entry.id)
             except OSError as error:
-                log.warning("job %s waits again: %s", entry.id, error)
+                log.warning("job %s waits again, as the store failed: %s", entry.id, error)
                 self._counters.store_failed("worker")
                 self._watch.pause(_STORE_PAUSE_S)
                 self._ledger.hand_back(entry.id)
@@ -154,7 +154,7 @@ class JobWorker(Worker):  # type: ignore[misc]  # rq is not analysed
             self._ledger.end(entry.id, attempt, ending)
         except UnknownJob:
             log.info("job %s was deleted", entry.id)
-        except OSError:  # through no fault of the job
+        except OSError:  # not the fault of the job
             self._ledger.uncount(entry.id, attempt)
             raise
 
@@ -163,7 +163,7 @@ class JobWorker(Worker):  # type: ignore[misc]  # rq is not analysed
         self.fork_work_horse(entry, queue)
         stopped_for = self._watch.wait(
             self.horse_pid,
-            self._horse_is_gone,
+            self._horse_exit,
             has_ended=partial(self._store.records.has_ended, entry.id),
             on_tick=partial(self._lease.renew, entry.id),
         )
@@ -173,7 +173,7 @@ class JobWorker(Worker):  # type: ignore[misc]  # rq is not analysed
         return stopped_for or ending_of(status, kills_before)
 
     def _perform(self, job_id: str) -> None:
-        """The work, in the work-horse."""
+        """Run the job; called in the work-horse."""
         assert self._staged, "the job is staged before the fork"
         work = perform(self._staged.store, self._settings, job_id, ProgressReporter(self._leases, job_id))
         if work is not None:
@@ -181,12 +181,12 @@ class JobWorker(Worker):  # type: ignore[misc]  # rq is not analysed
 
 
 def main() -> None:
-    """Work for the queue whose size class is the first argument."""
+    """Run a worker for the queue of the size class that is the first argument."""
     size = SizeClass(sys.argv[1])
     settings = load_settings()
     configure_logging(settings.log_level, settings.log_format, "worker")
     assert settings.redis_url, "the parent process sets CLEAVE_REDIS_URL"
-    log.info("loading the kernels; the first time they are compiled, which takes up to a minute")
+    log.info("loading the kernels; at the first start they are compiled, which takes up to a minute")
     segcore.warm_up()
     log.info("ready for %s jobs", size)
     queue = JobQueue(connect_with_retries(settings.redis_url))

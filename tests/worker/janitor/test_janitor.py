@@ -104,7 +104,7 @@ def test_a_time_without_knowledge_of_the_queue_does_not_count(
 ) -> None:
     accepted(store, b"mesh")
     janitor.sweep(0.0)
-    janitor.note_trouble(QueueError())
+    janitor.sweep_failed(QueueError())
     janitor.sweep(MISSING_S)
     assert waiting(queue) == []
 

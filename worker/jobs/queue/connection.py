@@ -19,8 +19,8 @@ def connect(url: str, timeout_s: float = 0.9) -> Redis:
 def connect_with_retries(url: str) -> Redis:
     """Return a connection for the main loop of a worker, which can do nothing without the queue.
 
-    150 retries with pauses of up to 2 s are about five minutes; after that the worker's supervisor starts it again. The
-    socket timeout is longer than the 5 s for which rq blocks on an empty queue.
+    150 retries with pauses of up to 2 s are about five minutes. The socket timeout is longer than the 5 s for which rq
+    blocks on an empty queue.
     """
     return Redis.from_url(
         url,

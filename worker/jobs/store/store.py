@@ -104,7 +104,7 @@ class JobStore:
         return standing
 
     def delete(self, job_id: str) -> None:
-        """Remove a job and all its files at once; that it existed is remembered."""
+        """Remove a job and all its files; it disappears at once, and only that it existed is remembered."""
         job = self.records.job(job_id)
         if job is None:
             raise UnknownJob(job_id)

@@ -10,7 +10,7 @@ import pytest
 from helpers.jobs import accepted
 from worker.jobs.job import Canceled, Failed, Job, Succeeded, new_job_id, now
 from worker.jobs.store.acceptance import JobExists
-from worker.jobs.store.index import turned
+from worker.jobs.store.index import complemented
 from worker.jobs.store.installation_secret import InstallationSecret
 from worker.jobs.store.layout import entry_name
 from worker.jobs.store.opening import open_folder
@@ -299,7 +299,7 @@ def test_a_data_folder_of_an_earlier_version_goes_on_working(tmp_path: Path) -> 
     folder = tmp_path / "data"
     for one in (job, ended):  # as they were named
         (folder / "jobs" / one.id / f"mesh-{one.sha256}").rename(folder / "jobs" / one.id / "mesh")
-        entry = folder / "index" / "me" / turned(entry_name(one))
+        entry = folder / "index" / "me" / complemented(entry_name(one))
         entry.rename(entry.with_name(entry_name(one)))
     (folder / "pending" / f"{entry_name(job)}.me").rename(folder / "pending" / f"{job.id}.me")
     store = open_folder(tmp_path / "data")
