@@ -23,8 +23,8 @@ _LOGGED_AS = "courier"  # the process in the log, as docs/operations.md lists it
 
 log = logging.getLogger(f"cleave.{_LOGGED_AS}")
 
-# Pauses after the first failure, the second, ...; after one more the delivery is given up. They are those of Svix, who
-# wrote Standard Webhooks, with one more of 30 s for receivers that are restarted, and without its second one of 10 h.
+# Pauses after the first failure, the second, ...; after one more the delivery is given up. They are those of Svix, the
+# authors of Standard Webhooks, with one more after 30 s and without the second one of 10 h.
 BACK_OFF_S = (5.0, 30.0, 300.0, 1800.0, 7200.0, 18_000.0, 36_000.0)
 _POLL_S = 0.5  # the longest delay of a message; set by hand
 _LOCK_S = 60.0  # longer than a delivery takes, which times out after 10 s without progress
