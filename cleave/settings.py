@@ -19,8 +19,8 @@ class InvalidSettings(Exception):  # noqa: N818
 class Settings(BaseSettings):
     """The settings of an installation; the environment variable of each is CLEAVE_ and its name in capitals.
 
-    The default of job_memory_bytes is more than three times what a mesh of max_faces needs (300 MB and 400 bytes per
-    face, docs/operations.md). The other defaults are limits that were set by hand.
+    By default a job of max_faces faces uses a third of job_memory_bytes (bench/RESULTS.md, "Throughput and memory").
+    The other defaults are limits that were set by hand.
     """
 
     model_config = SettingsConfigDict(env_prefix="CLEAVE_", env_ignore_empty=True, extra="ignore", frozen=True)

@@ -1,4 +1,4 @@
-"""The work of a job, without a queue: a mesh in the store becomes a result, or a reason why there is none."""
+"""Running a job without a queue: the outcome is a result, or a failure with a reason."""
 
 import gzip
 import json
@@ -28,7 +28,7 @@ def settings(tmp_path: Path) -> Settings:
     return Settings(data_dir=tmp_path / "data", max_faces=10_000)
 
 
-def test_a_mesh_becomes_the_result_that_segcore_gives(store: JobStore, settings: Settings, tmp_path: Path) -> None:
+def test_the_result_is_that_of_segcore(store: JobStore, settings: Settings, tmp_path: Path) -> None:
     mesh_file = tmp_path / "mesh.off"
     mesh_file.write_bytes(sphere(20))
     job = accepted(store, mesh_file.read_bytes(), max_segments=9)
@@ -46,7 +46,7 @@ def test_a_mesh_becomes_the_result_that_segcore_gives(store: JobStore, settings:
     assert json.loads(json.dumps(asdict(report))) == outcome.report
 
 
-def test_what_the_file_says_beside_the_shape_is_kept(store: JobStore, settings: Settings) -> None:
+def test_the_appearance_in_the_file_is_kept(store: JobStore, settings: Settings) -> None:
     job = accepted(store, b"NOFF\n3 1 0\n0 0 0 0 0 1\n1 0 0 0 0 1\n0 1 0 0 0 1\n3 0 1 2\n")
     perform(store, settings, job.id, ignore)
     with store.results.open(job.id) as file:
@@ -65,7 +65,7 @@ def test_a_second_run_writes_the_same_bytes(store: JobStore, settings: Settings)
     assert contents[0] == contents[1]
 
 
-def test_progress_goes_from_nothing_to_all_and_never_back(store: JobStore, settings: Settings) -> None:
+def test_progress_increases_from_0_to_1(store: JobStore, settings: Settings) -> None:
     seen: list[tuple[str, float]] = []
     perform(store, settings, accepted(store, sphere(12)).id, lambda stage, fraction: seen.append((stage, fraction)))
     fractions = [fraction for _, fraction in seen]
@@ -84,7 +84,7 @@ def test_progress_goes_from_nothing_to_all_and_never_back(store: JobStore, setti
         (TETRAHEDRON, {"max_segments": 0}, "invalid_parameters"),
     ],
 )
-def test_what_is_wrong_with_the_input_is_said_at_the_first_attempt(
+def test_an_invalid_input_fails_at_the_first_attempt_with_a_reason(
     store: JobStore, settings: Settings, mesh: bytes, parameters: dict[str, object], code: str
 ) -> None:
     job = accepted(store, mesh, **parameters)
@@ -114,13 +114,13 @@ def test_a_job_with_an_outcome_is_not_run_again(store: JobStore, settings: Setti
     assert isinstance(store.records.outcome(job.id), Canceled)
 
 
-def test_a_job_that_is_deleted_meanwhile_ends_without_an_error(store: JobStore, settings: Settings) -> None:
+def test_a_job_that_is_deleted_while_it_runs_ends_without_an_error(store: JobStore, settings: Settings) -> None:
     job = accepted(store, TETRAHEDRON)
     perform(store, settings, job.id, lambda stage, _: store.delete(job.id) if stage == "reading" else None)
     assert store.records.job(job.id) is None
 
 
-def test_an_error_that_nobody_expects_is_not_an_outcome(store: JobStore, settings: Settings) -> None:
+def test_an_unexpected_error_is_not_an_outcome(store: JobStore, settings: Settings) -> None:
     job = accepted(store, TETRAHEDRON)
 
     def fail(stage: str, fraction: float) -> None:
@@ -132,7 +132,7 @@ def test_an_error_that_nobody_expects_is_not_an_outcome(store: JobStore, setting
 
 
 @pytest.mark.parametrize("limit", ["max_uncompressed_bytes", "max_faces", "max_vertices"])
-def test_every_limit_of_the_settings_is_one_of_the_reader(store: JobStore, settings: Settings, limit: str) -> None:
+def test_every_limit_of_the_settings_is_applied_by_the_reader(store: JobStore, settings: Settings, limit: str) -> None:
     job = accepted(store, gzip.compress(sphere(12)))
     perform(store, settings.model_copy(update={limit: 100}), job.id, ignore)
     outcome = store.records.outcome(job.id)

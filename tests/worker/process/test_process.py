@@ -1,4 +1,4 @@
-"""The worker process, the real one: what it runs, what it refuses, and what becomes of a job when a process dies."""
+"""Real worker processes: what they run and refuse, and what happens to a job if a process dies."""
 
 import os
 import pickle
@@ -14,6 +14,7 @@ from helpers.jobs import LARGE, LONG, SMALL, accepted, sphere
 from helpers.processes import StartWorker, children_of, is_alive
 from helpers.waiting import wait_until
 from worker.jobs.job import Canceled, Failed, Job, Outcome, Succeeded, now
+from worker.jobs.queue.entries import FUNCTION_NAME
 from worker.jobs.queue.queue import JobQueue
 from worker.jobs.queue.workers import worker_counts
 from worker.jobs.store.store import JobStore
@@ -27,7 +28,7 @@ def outcome_of(store: JobStore, job: Job, within_s: float = 60.0) -> Outcome:
 
 
 def horse_of(worker: "subprocess.Popen[bytes]") -> int:
-    """The work-horse of a worker, once it has one."""
+    """Wait for the work-horse of a worker and return its process id."""
     wait_until(lambda: children_of(worker.pid))
     return children_of(worker.pid)[0]
 
@@ -38,7 +39,7 @@ def submitted(store: JobStore, queue: JobQueue, **parameters: object) -> Job:
     return job
 
 
-def test_a_queued_job_succeeds_and_leaves_nothing_in_redis(
+def test_a_queued_job_succeeds_and_no_key_remains_in_redis(
     start_worker: StartWorker, store: JobStore, queue: JobQueue, connection: Redis
 ) -> None:
     worker = start_worker()
@@ -69,8 +70,8 @@ def test_entries_that_name_another_callable_are_dropped_unrun(
     job = accepted(store, sphere(20))
     touched = tmp_path / "touched"
     queue.entries[SMALL].enqueue("os.system", f"touch {touched}", job_id=job.id)
-    queue.entries[SMALL].enqueue("worker.tasks.perform", "x", job_id="not-a-job-id")
-    queue.entries[SMALL].enqueue("worker.tasks.perform", job.id, job_id="0" * 32)
+    queue.entries[SMALL].enqueue(FUNCTION_NAME, "x", job_id="not-a-job-id")
+    queue.entries[SMALL].enqueue(FUNCTION_NAME, job.id, job_id="0" * 32)
     pickled = pickle.dumps(("os.system", None, (f"touch {touched}",), {}))
     connection.hset("rq:job:pickled", mapping={"data": pickled, "created_at": "2026-01-01T00:00:00.000000Z"})
     connection.rpush(queue.entries[SMALL].key, "pickled")
@@ -93,16 +94,17 @@ def test_a_killed_work_horse_costs_an_attempt_and_not_the_job(
 
 
 def poison(statement: str) -> tuple[str, str]:
-    """A worker whose work is a statement for one kind of mesh, and next to nothing for others."""
+    """Return a worker program that runs a statement for the mesh b"poison", and cancels every other job."""
     source = f"""
-import ctypes, os, tempfile, worker.process
-from worker.jobs import Canceled, now
+import ctypes, os, tempfile
+from worker.jobs.job import Canceled, now
+from worker.process import process
 def perform(store, settings, job_id, on_progress):
     if store.open_mesh(job_id).read() == b"poison":
         {statement}
     store.finish(job_id, Canceled(finished_at=now()))
-worker.process.process.perform = perform
-worker.process.process.main()
+process.perform = perform
+process.main()
 """
     return "-c", source
 
@@ -113,7 +115,7 @@ worker.process.process.main()
         ("os.kill(os.getpid(), 9)", "worker_lost", {}),
         ("os.abort()", "worker_lost", {}),
         ("bytearray(2**31)", "out_of_memory", {"CLEAVE_JOB_MEMORY_BYTES": str(2**31)}),
-        # In C, where no other thread of Python gets a turn.
+        # In C and with the interpreter locked, so that no signal handler of Python runs.
         ("ctypes.PyDLL(None).sleep(1000)", "timed_out", {"CLEAVE_JOB_TIMEOUT_S": "0.5"}),
         ("while True: pass", "timed_out", {"CLEAVE_JOB_CPU_S": "1"}),
         ("tempfile.TemporaryFile().write(bytes(2**22))", "file_too_large", {"CLEAVE_JOB_FILE_BYTES": str(2**21)}),
@@ -134,9 +136,7 @@ def test_poison_ends_as_failed_after_three_attempts_and_the_worker_goes_on(
     assert worker.poll() is None
 
 
-def test_what_is_wrong_with_the_input_costs_one_attempt(
-    start_worker: StartWorker, store: JobStore, queue: JobQueue
-) -> None:
+def test_an_invalid_input_costs_one_attempt(start_worker: StartWorker, store: JobStore, queue: JobQueue) -> None:
     start_worker()
     jobs = [accepted(store, mesh) for mesh in (b"OFF\n1 0 0\n0 0 0\n", b"what is this", sphere(20)[:-50])]
     for job in jobs:
@@ -183,7 +183,7 @@ def test_a_deleted_job_stops_and_the_worker_goes_on(
 
 
 @pytest.mark.parametrize("to_group", [False, True])
-def test_a_worker_that_is_told_to_stop_hands_its_job_back(
+def test_a_stopped_worker_requeues_its_job(
     start_worker: StartWorker, store: JobStore, queue: JobQueue, to_group: bool
 ) -> None:
     worker = start_worker(CLEAVE_SHUTDOWN_GRACE_S="0")
@@ -200,7 +200,7 @@ def test_a_worker_that_is_told_to_stop_hands_its_job_back(
     assert queue.entries[SMALL].get_job_ids() == [job.id]
 
 
-def test_a_worker_that_is_told_to_stop_lets_a_job_end_within_the_grace(
+def test_a_stopped_worker_lets_a_job_end_within_the_grace_time(
     start_worker: StartWorker, store: JobStore, queue: JobQueue
 ) -> None:
     worker = start_worker(CLEAVE_SHUTDOWN_GRACE_S="120")
@@ -222,7 +222,7 @@ def test_a_killed_worker_takes_its_work_horse_along(
     assert store.records.outcome(job.id) is None
 
 
-def test_a_job_that_another_worker_holds_is_left_to_it(
+def test_a_job_whose_lease_another_worker_holds_is_not_run(
     start_worker: StartWorker, store: JobStore, queue: JobQueue
 ) -> None:
     held = accepted(store, sphere(20))
@@ -234,12 +234,12 @@ def test_a_job_that_another_worker_holds_is_left_to_it(
     assert store.records.attempts(held.id) == []
 
 
-def test_a_large_job_holds_up_no_small_one(start_worker: StartWorker, store: JobStore, queue: JobQueue) -> None:
+def test_a_large_job_does_not_delay_small_ones(start_worker: StartWorker, store: JobStore, queue: JobQueue) -> None:
     start_worker(SMALL)
     worker = start_worker(LARGE)
     large = accepted(store, sphere(100), **LONG)
     queue.enqueue(large.id, LARGE)
-    os.kill(horse_of(worker), signal.SIGSTOP)  # it runs for as long as the test wants
+    os.kill(horse_of(worker), signal.SIGSTOP)  # so that it runs until the end of the test
     for _ in range(3):
         assert isinstance(outcome_of(store, submitted(store, queue)), Succeeded)
     assert queue.activity(large.id).running

@@ -21,6 +21,8 @@ crash between two writes leaves an entry without a job, never a job without an e
 from worker.jobs.job import Job, is_job_id
 
 JOBS = "jobs"
+DELETED = "gone"
+BEING_DELETED = "doomed"
 RECORD = "job.json"
 MANIFEST = "manifest.json"
 RESULT = "result.cleave"

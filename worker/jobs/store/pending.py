@@ -36,11 +36,13 @@ class PendingJobs:
         """Return the unfinished jobs and their owners, oldest first."""
         markers = self._markers()
         self._checked = {marker: self._checked.get(marker, _NEVER) for marker in markers}
-        return {_job_id(marker): _owner(marker) for marker in self._true(markers)}
+        return {_job_id(marker): _owner(marker) for marker in self._unfinished(markers)}
 
     def of(self, owner: str | None) -> list[str]:
         """Return the unfinished jobs of an owner, oldest first."""
-        return [_job_id(marker) for marker in self._true([one for one in self._markers() if _owner(one) == owner])]
+        return [
+            _job_id(marker) for marker in self._unfinished([one for one in self._markers() if _owner(one) == owner])
+        ]
 
     def ids(self) -> set[str]:
         """Return all unfinished jobs without a check, so that ended ones may be among them."""
@@ -65,16 +67,16 @@ class PendingJobs:
             self._listed = (began_at, markers)
         return markers
 
-    def _true(self, markers: list[str]) -> list[str]:
+    def _unfinished(self, markers: list[str]) -> list[str]:
         """Return those whose job exists and has no outcome."""
         at_s, checked = time.monotonic(), self._checked
         valid_s = _CHECKED_POLLS * self._objects.poll_interval_s
         doubtful = [marker for marker in markers if at_s - checked.get(marker, _NEVER) >= valid_s]
-        verdicts = dict(zip(doubtful, self._objects.each(self._is_true, doubtful), strict=True))
-        checked.update({marker: at_s for marker, is_true in verdicts.items() if is_true})
+        verdicts = dict(zip(doubtful, self._objects.each(self._is_unfinished, doubtful), strict=True))
+        checked.update({marker: at_s for marker, is_unfinished in verdicts.items() if is_unfinished})
         return [marker for marker in markers if verdicts.get(marker, True)]
 
-    def _is_true(self, marker: str) -> bool:
+    def _is_unfinished(self, marker: str) -> bool:
         """Whether the job of a marker exists and has no outcome; if it has ended, the marker is removed."""
         job_id = _job_id(marker)
         accepted = self._objects.exists(job_key(job_id, RECORD))

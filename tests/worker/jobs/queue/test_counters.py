@@ -9,7 +9,6 @@ from worker.jobs.job import Failed, Succeeded
 from worker.jobs.queue.connection import connect
 from worker.jobs.queue.counters import BOUNDS_S, JobCounters, durations
 from worker.jobs.store.store import JobStore
-from worker.process.progress import StageClock
 
 
 def test_jobs_are_counted_by_their_outcome_with_faces_and_durations(connection: Redis, store: JobStore) -> None:
@@ -31,14 +30,14 @@ def test_jobs_are_counted_by_their_outcome_with_faces_and_durations(connection: 
 
 
 def test_other_events_are_counted_by_their_label(connection: Redis) -> None:
-    tallies = JobCounters(connection)
-    tallies.attempt_lost("worker_lost")
-    tallies.attempt_lost("out_of_memory")
-    tallies.attempt_lost("worker_lost")
-    tallies.job_given_up("worker_lost")
-    tallies.job_recovered()
-    tallies.store_failed("worker")
-    assert tallies.counts() == {
+    counters = JobCounters(connection)
+    counters.attempt_lost("worker_lost")
+    counters.attempt_lost("out_of_memory")
+    counters.attempt_lost("worker_lost")
+    counters.job_given_up("worker_lost")
+    counters.job_recovered()
+    counters.store_failed("worker")
+    assert counters.counts() == {
         ("lost", "worker_lost"): 2,
         ("lost", "out_of_memory"): 1,
         ("finished", "failed", "worker_lost"): 1,
@@ -47,18 +46,6 @@ def test_other_events_are_counted_by_their_label(connection: Redis) -> None:
     }
 
 
-def test_counting_without_redis_does_nothing() -> None:
+def test_counting_without_redis_is_ignored() -> None:
     with connect("unix:///nowhere/queue.sock", timeout_s=0.1) as gone:
         JobCounters(gone).job_recovered()
-
-
-def test_the_clock_gives_every_stage_its_time_and_passes_everything_on() -> None:
-    times = iter([0.0, 1.0, 1.0, 4.0, 4.0, 6.0])
-    seen: list[tuple[str, float]] = []
-    clock = StageClock(lambda stage, fraction: seen.append((stage, fraction)), lambda: next(times))
-    clock("reading", 0.0)
-    clock("cut", 0.1)
-    clock("cut", 0.2)
-    clock.begin("storing")
-    assert clock.stop() == {"reading": 1.0, "cut": 3.0, "storing": 2.0}
-    assert seen == [("reading", 0.0), ("cut", 0.1), ("cut", 0.2)]

@@ -1,4 +1,4 @@
-"""A real worker process and its store: in a bucket, on a full disk, and away for a while."""
+"""A real worker process with its store in a bucket, and on a full disk."""
 
 import os
 import signal
@@ -28,7 +28,7 @@ def succeeds(store: JobStore, job_id: str) -> bool:
     return isinstance(store.records.outcome(job_id), Succeeded)
 
 
-def test_a_worker_does_its_jobs_by_way_of_a_bucket_also_one_that_hangs_meanwhile(
+def test_a_worker_runs_jobs_of_a_bucket_even_if_the_bucket_hangs_meanwhile(
     start_worker: StartWorker, queue: JobQueue, tmp_path: Path, s3_url: str
 ) -> None:
     del s3_url  # the credentials
@@ -52,7 +52,7 @@ def test_a_worker_does_its_jobs_by_way_of_a_bucket_also_one_that_hangs_meanwhile
         assert worker.poll() is None
 
 
-def test_a_full_disk_makes_a_job_wait_and_not_fail(
+def test_on_a_full_disk_a_job_waits_and_does_not_fail(
     start_worker: StartWorker, queue: JobQueue, small_disk: Path
 ) -> None:
     store = open_folder(small_disk)
