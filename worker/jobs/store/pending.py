@@ -40,9 +40,8 @@ class PendingJobs:
 
     def of(self, owner: str | None) -> list[str]:
         """Return the unfinished jobs of an owner, oldest first."""
-        return [
-            _job_id(marker) for marker in self._unfinished([one for one in self._markers() if _owner(one) == owner])
-        ]
+        owned = [marker for marker in self._markers() if _owner(marker) == owner]
+        return [_job_id(marker) for marker in self._unfinished(owned)]
 
     def ids(self) -> set[str]:
         """Return all unfinished jobs without a check, so that ended ones may be among them."""
