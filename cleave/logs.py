@@ -109,8 +109,8 @@ def _subject() -> dict[str, str]:
     subject = _SUBJECT.get()
     if subject is None:
         return {}
-    known = {"job_id": subject.job_id, "trace_id": subject.trace.trace_id if subject.trace else None}
-    return {name: value for name, value in known.items() if value is not None}
+    fields = {"job_id": subject.job_id, "trace_id": subject.trace.trace_id if subject.trace else None}
+    return {name: value for name, value in fields.items() if value is not None}
 
 
 def _fields(record: logging.LogRecord) -> dict[str, Any]:

@@ -10,11 +10,11 @@ Cause: TypeAlias = Literal["worker_lost", "out_of_memory", "timed_out", "file_to
 
 FAILURES: dict[Cause, str] = {
     "worker_lost": "The worker died while it ran this job, {attempts} times in a row: simplify the mesh, or ask the "
-    "operator to look into the log of the workers.",
+    "operator to check the log of the workers.",
     "out_of_memory": "The job needs more memory than this installation gives it: send a mesh of fewer faces.",
     "timed_out": "The job runs longer than this installation allows: send a mesh of fewer faces.",
     "file_too_large": "The job writes a larger file than this installation allows: send a mesh of fewer faces.",
-    "internal_error": "The job stopped at an internal error, {attempts} times in a row: ask the operator to look into "
+    "internal_error": "The job stopped at an internal error, {attempts} times in a row: ask the operator to check "
     "the log of the workers.",
 }
 

@@ -81,7 +81,7 @@ class JobWorker(Worker):  # type: ignore[misc]  # rq is not analysed
     def execute_job(self, job: Entry, queue: Any) -> None:
         self.set_state(WorkerStatus.BUSY)
         if not is_valid(job):
-            log.warning("an entry of the queue that this version does not know was dropped: %r", job.id)
+            log.warning("an unknown entry of the queue was dropped: %r", job.id)
             self._queue.forget(job.id)
         elif self._queue.take(job.id, self.name, self._settings.lease_s):
             self._run_or_hand_back(job, queue)

@@ -100,16 +100,16 @@ class JobQueue:
 
     def held(self, job_ids: Iterable[str]) -> set[str]:
         """Return those of the jobs that wait or run, read in one transaction."""
-        asked = list(job_ids)
+        ids = list(job_ids)
         with self.connection.pipeline() as transaction:
-            for job_id in asked:
+            for job_id in ids:
                 transaction.exists(_lease_key(job_id))
             for key in self._waiting_keys:
                 transaction.lrange(key, 0, -1)
-            answers = transaction.execute()
-        running = {job_id for job_id, lease in zip(asked, answers, strict=False) if lease}
-        waiting = {entry.decode() for entries in answers[len(asked) :] for entry in entries}
-        return running | (waiting & set(asked))
+            replies = transaction.execute()
+        running = {job_id for job_id, lease in zip(ids, replies, strict=False) if lease}
+        waiting = {entry.decode() for entries in replies[len(ids) :] for entry in entries}
+        return running | (waiting & set(ids))
 
     def publish(self, job_id: str, progress: Progress) -> None:
         document = json.dumps({"stage": progress.stage, "fraction": progress.fraction})
@@ -117,18 +117,18 @@ class JobQueue:
 
     def activities(self, job_ids: Iterable[str]) -> dict[str, Activity]:
         """Return the states of some unfinished jobs, by their ids."""
-        asked = list(job_ids)
+        ids = list(job_ids)
         with self.connection.pipeline(transaction=False) as pipeline:
-            for job_id in asked:
+            for job_id in ids:
                 pipeline.mget(_lease_key(job_id), _progress_key(job_id))
                 for key in self._waiting_keys:
                     pipeline.lpos(key, job_id)
-            answers = pipeline.execute()
+            replies = pipeline.execute()
         each = 1 + len(self._waiting_keys)
-        indices = zip(*(answers[1 + number :: each] for number in range(each - 1)), strict=True)
+        indices = zip(*(replies[1 + number :: each] for number in range(each - 1)), strict=True)
         return {
             job_id: _activity(lease, document, found)
-            for job_id, (lease, document), found in zip(asked, answers[::each], indices, strict=True)
+            for job_id, (lease, document), found in zip(ids, replies[::each], indices, strict=True)
         }
 
     def activity(self, job_id: str) -> Activity:

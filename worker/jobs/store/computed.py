@@ -5,7 +5,7 @@ import json
 
 from worker.jobs.job import Job, is_job_id
 from worker.jobs.objects.interface import ObjectStorage
-from worker.jobs.store.layout import NOBODY
+from worker.jobs.store.layout import NO_OWNER
 
 
 class ComputedIndex:
@@ -34,4 +34,4 @@ def fingerprint(job: Job) -> str:
 
 
 def _key(job: Job) -> str:
-    return f"computed/{job.owner or NOBODY}/{fingerprint(job)}"
+    return f"computed/{job.owner or NO_OWNER}/{fingerprint(job)}"

@@ -8,7 +8,7 @@ import re
 
 from worker.jobs.job import Job
 from worker.jobs.objects.interface import ObjectStorage, name_of
-from worker.jobs.store.layout import NOBODY, entry_name
+from worker.jobs.store.layout import NO_OWNER, entry_name
 
 CURSOR = r"^[0-9]{8}T[0-9]{12}-[0-9a-f]{32}$"
 _FOLDER = "index"
@@ -51,7 +51,7 @@ def complemented(entry: str) -> str:
 
 
 def _folder(owner: str | None) -> str:
-    return f"{_FOLDER}/{owner or NOBODY}"
+    return f"{_FOLDER}/{owner or NO_OWNER}"
 
 
 def _key(owner: str | None, entry: str) -> str:

@@ -29,7 +29,7 @@ RESULT = "result.cleave"
 MESH = "mesh"  # in folders of earlier versions
 
 TIME_FORMAT = "%Y%m%dT%H%M%S%f"  # UTC
-NOBODY = "_"  # the folder of jobs without an owner; no API key can have this name
+NO_OWNER = "_"  # the folder of jobs without an owner; no API key can have this name
 
 
 def job_folder(job_id: str) -> str:

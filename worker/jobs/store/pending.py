@@ -70,10 +70,10 @@ class PendingJobs:
         """Return those whose job exists and has no outcome."""
         at_s, checked = time.monotonic(), self._checked
         valid_s = _CHECKED_POLLS * self._objects.poll_interval_s
-        doubtful = [marker for marker in markers if at_s - checked.get(marker, _NEVER) >= valid_s]
-        verdicts = dict(zip(doubtful, self._objects.each(self._is_unfinished, doubtful), strict=True))
-        checked.update({marker: at_s for marker, is_unfinished in verdicts.items() if is_unfinished})
-        return [marker for marker in markers if verdicts.get(marker, True)]
+        unchecked = [marker for marker in markers if at_s - checked.get(marker, _NEVER) >= valid_s]
+        results = dict(zip(unchecked, self._objects.each(self._is_unfinished, unchecked), strict=True))
+        checked.update({marker: at_s for marker, is_unfinished in results.items() if is_unfinished})
+        return [marker for marker in markers if results.get(marker, True)]
 
     def _is_unfinished(self, marker: str) -> bool:
         """Whether the job of a marker exists and has no outcome; if it has ended, the marker is removed."""

@@ -68,7 +68,7 @@ class Records:
         key = job_key(job_id, MANIFEST)
         outcome = self._outcomes.get(job_id) or self._read(key, _OUTCOME)
         if outcome is not None:
-            self._remember(self._outcomes, job_id, outcome)
+            self._add_to(self._outcomes, job_id, outcome)
         return outcome
 
     def has_outcome(self, job_id: str) -> bool:
@@ -115,19 +115,19 @@ class Records:
         return dict(zip(job_ids, self._objects.each(self._state, job_ids), strict=True))
 
     def _state(self, job_id: str) -> JobState:
-        known = self._ended.get(job_id)
-        if known is not None:
-            return known
+        cached = self._ended.get(job_id)
+        if cached is not None:
+            return cached
         state = JobState(self.outcome(job_id), self.attempts(job_id))
         if state.outcome is not None:
-            self._remember(self._ended, job_id, state)
+            self._add_to(self._ended, job_id, state)
         return state
 
-    def _remember(self, known: OrderedDict[str, Document], job_id: str, document: Document) -> None:
+    def _add_to(self, cache: OrderedDict[str, Document], job_id: str, document: Document) -> None:
         if self._objects.poll_interval_s > 0:
-            known[job_id] = document
-            if len(known) > _CACHED_JOBS:
-                known.popitem(last=False)
+            cache[job_id] = document
+            if len(cache) > _CACHED_JOBS:
+                cache.popitem(last=False)
 
     def _remove_outcome(self, job_id: str) -> None:
         self._objects.delete(job_key(job_id, MANIFEST))

@@ -1,4 +1,4 @@
-"""JobCounters: what many processes count together, and nobody waits for."""
+"""Counters that several processes share, and that never delay them."""
 
 from datetime import timedelta
 
