@@ -8,6 +8,9 @@ import httpx
 import numpy as np
 import pytest
 
+import cleave.client
+import cleave.documents
+import cleave.errors
 from cleave.client import AsyncClient, Client
 from cleave.client.errors import JobEnded, RequestRefused, ServerUnreachable
 from helpers.jobs import sphere
@@ -117,6 +120,12 @@ def test_the_response_of_another_server_is_reported_as_such() -> None:
 def test_an_unreachable_server_has_its_own_error() -> None:
     with Client("http://127.0.0.1:1", retries=1) as client, pytest.raises(ServerUnreachable, match="is the server"):
         client.job("1")
+
+
+def test_errors_and_documents_can_be_imported_from_the_earlier_modules() -> None:
+    for module in (cleave.errors, cleave.documents):
+        for name in module.__all__:
+            assert getattr(module, name) is getattr(cleave.client, name)
 
 
 def test_the_api_key_is_sent() -> None:
