@@ -7,7 +7,8 @@ from pydantic import BaseModel, Field
 
 from segcore.report import MeshReport
 from service.problems import JobError
-from worker.jobs.job import Attempt, Canceled, Failed, Job, Outcome, Succeeded
+from worker.jobs.attempts import Attempt
+from worker.jobs.job import Canceled, Failed, Job, Outcome, Succeeded
 from worker.jobs.queue.queue import Activity
 
 Status = Literal["queued", "running", "succeeded", "failed", "canceled"]

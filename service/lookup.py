@@ -22,11 +22,11 @@ def known_job(context: Context, caller: Caller, job_id: str) -> Job:
     Problem
         Where there was one.
     """
-    job = context.store.job(job_id)
+    job = context.store.records.job(job_id)
     if job is not None and job.owner == caller.owner:
         note_job(job_id)
         return job
-    if context.store.was_deleted(job_id, caller.owner):
+    if context.store.deletions.was_deleted(job_id, caller.owner):
         raise Problem("job_deleted", "This job was deleted with its files: submit the mesh again.")
     raise UnknownJob(job_id)
 
@@ -37,7 +37,7 @@ def describe(context: Context, job: Job) -> JobDocument:
 
 def describe_all(context: Context, jobs: Sequence[Job]) -> list[JobDocument]:
     """How some jobs are, with one question to the queue."""
-    states = context.store.states(jobs)
+    states = context.store.records.states([job.id for job in jobs])
     activities = context.view.activities([job.id for job in jobs if states[job.id].outcome is None])
     return [job_document(job, states[job.id].outcome, states[job.id].attempts, activities.get(job.id)) for job in jobs]
 
@@ -50,7 +50,7 @@ def result_of(context: Context, job: Job) -> Segmentation:
 
 def check_succeeded(context: Context, job: Job) -> None:
     """Raise the Problem that says why a job has no result, where it has none."""
-    match context.store.outcome(job.id):
+    match context.store.records.outcome(job.id):
         case Succeeded():
             return
         case Failed(code=code, message=message):

@@ -101,7 +101,7 @@ async def create_batch(
     elif media_type == FORM_TYPE or media_type in _ZIPS:
         with ExitStack() as uploads:
             form = await _receive(
-                request, context, media_type, lambda: uploads.enter_context(context.store.begin_upload())
+                request, context, media_type, lambda: uploads.enter_context(context.store.spool.begin_upload())
             )
             wish = Wish(parameters=requested_parameters(form.parameters, parameters), webhook_url=webhook)
             limits = await run_in_threadpool(check_limits, context, caller, len(form.meshes), declared_length(request))
@@ -188,7 +188,7 @@ async def _receive(request: Request, context: Context, media_type: str, begin_up
     settings = context.settings
     if media_type == FORM_TYPE:
         return await receive_form(request, settings, begin_upload, settings.max_batch_bytes, settings.max_batch_jobs)
-    with context.store.begin_upload() as packed:
+    with context.store.spool.begin_upload() as packed:
         async for piece in pieces(request, settings):
             await run_in_threadpool(write_capped, packed, piece, settings.max_batch_bytes)
         packed.close()
@@ -237,7 +237,7 @@ def _known_batch(context: Context, caller: Caller, batch_id: str) -> Batch:
 
 def _jobs(context: Context, batch: Batch) -> list[tuple[Job | None, JobDocument | None]]:
     """The jobs of a batch in its order; None for those that were deleted."""
-    found = context.store.jobs(batch.job_ids)
+    found = context.store.records.jobs(batch.job_ids)
     there = [job for job in found.values() if job is not None]
     documents = {document.id: document for document in describe_all(context, there)}
     return [(found[job_id], documents.get(job_id)) for job_id in batch.job_ids]

@@ -50,10 +50,10 @@ def get_result_file(
     headers = {"ETag": entity_tag(f"{job.id}/result.cleave".encode()), "Cache-Control": FOR_EVER}
     if is_current(request, headers["ETag"]):
         return Response(status_code=304, headers=headers)
-    address = context.store.result_url(job.id, _URL_VALID_S) if redirect else None
+    address = context.store.results.presigned_url(job.id, _URL_VALID_S) if redirect else None
     if address is not None:
         return Response(status_code=307, headers={"Location": address, "Cache-Control": "no-store"})
-    file = context.store.open_result(job.id)
+    file = context.store.results.open(job.id)
     headers["Content-Length"] = str(file.seek(0, os.SEEK_END))
     headers["Content-Disposition"] = f'attachment; filename="{job.id}.cleave"'
     file.seek(0)

@@ -85,7 +85,7 @@ async def create_job(
     limits = await run_in_threadpool(check_limits, context, caller, 1, declared_length(request))
     with ExitStack() as uploads:
         form = await receive_mesh(
-            request, context.settings, lambda: uploads.enter_context(context.store.begin_upload())
+            request, context.settings, lambda: uploads.enter_context(context.store.spool.begin_upload())
         )
         wish = Wish(
             parameters=requested_parameters(form.parameters, parameters),

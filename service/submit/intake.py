@@ -11,7 +11,7 @@ from service.problems import Problem
 from service.submit.form import ReceivedMesh
 from service.submit.request import file_label, mesh_format
 from worker.jobs.job import Job, new_job_id, now
-from worker.jobs.queue.queue import QueueError
+from worker.jobs.queue.connection import QueueError
 from worker.jobs.store.acceptance import JobExists
 from worker.jobs.store.computed import fingerprint
 
@@ -47,11 +47,11 @@ def take_in(context: Context, caller: Caller, received: ReceivedMesh, wish: Wish
         Where the mesh is empty, or the Idempotency-Key stands for another request or a deleted job.
     """
     job = _candidate(context, caller, received, wish)
-    if wish.may_reuse and not (wish.idempotency_key and context.store.job(job.id)):
+    if wish.may_reuse and not (wish.idempotency_key and context.store.records.job(job.id)):
         known = context.store.computed_before(job)
         if known is not None:
             return Taken(known, is_new=False)
-    if wish.idempotency_key and context.store.was_deleted(job.id, caller.owner):
+    if wish.idempotency_key and context.store.deletions.was_deleted(job.id, caller.owner):
         raise Problem("idempotency_key_spent", "The job of this Idempotency-Key was deleted: use another key.")
     try:
         context.store.accept(job, received.upload)
@@ -99,7 +99,7 @@ def _job_id(context: Context, caller: Caller, idempotency_key: str | None) -> st
 
 
 def _replayed(context: Context, job: Job) -> Taken:
-    first = context.store.job(job.id)
+    first = context.store.records.job(job.id)
     if first is None or fingerprint(first) != fingerprint(job):
         raise Problem(
             "idempotency_key_reused",

@@ -17,7 +17,7 @@ def check_limits(context: Context, caller: Caller, jobs: int, declared_bytes: in
         Where that would be more than the caller, or the installation, may have.
     """
     settings = context.settings
-    everybodys, callers = context.store.count_unfinished(caller.owner)
+    everybodys, callers = context.store.pending.count(caller.owner)
     policies = [f'"jobs";q={settings.key_max_queued_jobs}']
     left = [f'"jobs";r={max(0, settings.key_max_queued_jobs - callers - jobs)}']
     refusals: list[tuple[bool, str, str, int]] = [
