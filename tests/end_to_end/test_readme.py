@@ -1,6 +1,7 @@
 """The examples of the README, the first steps and the guide for pages work as pasted."""
 
 import os
+import re
 import shutil
 import subprocess
 import sys
@@ -25,7 +26,7 @@ def block(document: Path, language: str, mark: str) -> str:
 
 def shell(text: str) -> list[str]:
     """Return the command that runs shell lines, with the ``cleave`` of this checkout."""
-    return ["bash", "-euc", text.replace("cleave ", f"{sys.executable} -m service.commands ")]
+    return ["bash", "-euc", re.sub(r"^cleave ", f"{sys.executable} -m service.commands ", text, flags=re.MULTILINE)]
 
 
 def run(command: list[str], folder: Path) -> str:
