@@ -26,7 +26,6 @@ export interface JobPage {
 }
 
 export interface Formats {
-  readonly meshes: { readonly title: string; readonly extensions: string[] }[];
   readonly max_upload_bytes: number;
 }
 

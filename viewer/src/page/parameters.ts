@@ -3,6 +3,7 @@
 import { getMethods, type Parameter } from "./api";
 import { byId, h, openDialog, toast } from "./dom";
 import { explain, problemOf } from "./problems";
+import { capitalized } from "./text";
 
 /** Shown at once; all others are under "More". */
 const USUAL = ["affinity", "solver", "max_segments"];
@@ -126,6 +127,5 @@ function valueOf(input: HTMLInputElement | HTMLSelectElement, schema: Parameter)
 }
 
 function title(name: string): string {
-  const words = name.replaceAll("_", " ");
-  return words.charAt(0).toUpperCase() + words.slice(1);
+  return capitalized(name.replaceAll("_", " "));
 }

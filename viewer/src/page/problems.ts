@@ -1,5 +1,7 @@
 /** Explains errors to users: what happened, and what to do next. */
 
+import lists from "./lists.json";
+
 export type Remedy = "choose" | "retry" | "parameters" | "key" | "jobs";
 
 export interface Problem {
@@ -32,13 +34,15 @@ export function problemOf(error: unknown): Problem {
   return { code: "unreachable", detail: "The server is not responding." };
 }
 
+const FORMATS = new Intl.ListFormat("en", { type: "disjunction" }).format(lists.inputFormats.map(({ title }) => title));
+
 const KNOWN: Record<string, [title: string, next: string, remedy: Remedy]> = {
   unreachable: ["The server cannot be reached", "Check that it is running and that you are connected, then try again.", "retry"],
   too_large: ["The file is too large", "Simplify the mesh, or ask the operator to raise CLEAVE_MAX_UPLOAD_BYTES.", "choose"],
   limit_exceeded: ["The mesh is too large", "Simplify the mesh, or ask the operator to raise the limit.", "choose"],
   invalid_mesh: ["This file cannot be read as a mesh", "Export it again from the program that created it, then choose it here.", "choose"],
-  unsupported_format: ["This is not a format Cleave reads", "Convert it to OFF, OBJ, PLY, STL, GLB or glTF.", "choose"],
-  unsupported_media_type: ["This is not a format Cleave reads", "Convert it to OFF, OBJ, PLY, STL, GLB or glTF.", "choose"],
+  unsupported_format: ["Cleave does not read this format", `Convert the file to ${FORMATS}.`, "choose"],
+  unsupported_media_type: ["Cleave does not read this format", `Convert the file to ${FORMATS}.`, "choose"],
   malformed_request: ["The upload was incomplete", "Send the file again.", "retry"],
   invalid_parameters: ["A parameter is out of range", "Change it and run again.", "parameters"],
   job_not_found: ["This job does not exist", "It was deleted, or the link is incomplete. Choose a mesh to start again.", "choose"],

@@ -3,6 +3,7 @@
 import { apiKey, cancelJob, getBlob, getFormats, submit, type Job } from "./api";
 import { announce, byId, h, icon } from "./dom";
 import { follow, hasEnded } from "./follow";
+import lists from "./lists.json";
 import { ApiError, explain, problemOf, type Problem, type Remedy } from "./problems";
 import { bytes } from "./text";
 
@@ -26,14 +27,10 @@ const SAMPLES: readonly [name: string, title: string][] = [
 const STAGES: readonly [stage: string, title: string][] = [
   ["upload", "Sending the mesh"],
   ["queued", "Waiting for a worker"],
-  ["reading", "Reading the file"],
-  ["clean", "Cleaning the surface"],
-  ["affinity", "Looking for concavities"],
-  ["coarsen", "Grouping faces"],
-  ["cut", "Finding the best cuts"],
-  ["label", "Naming the parts"],
+  ...lists.stages.map(({ name, title }): [string, string] => [name, title]),
   ["show", "Drawing"],
 ];
+const FORMATS = lists.inputFormats.map(({ title }) => title).join(", ");
 
 export class Start {
   readonly #events: StartEvents;
@@ -58,6 +55,8 @@ export class Start {
     byId("back").addEventListener("click", () => this.#events.onLeave());
     this.#listenToDrops();
     this.#fillSamples();
+    this.#input.accept = [...lists.inputFormats.flatMap(({ extensions }) => extensions), ".gz"].join(",");
+    byId("formats").textContent = FORMATS;
     void this.#loadLimits();
   }
 
@@ -140,7 +139,7 @@ export class Start {
 
   #showProgress(job: Job): void {
     const waiting = job.status === "queued";
-    this.#stage(waiting ? "queued" : (job.stage ?? "reading"), job.progress);
+    this.#stage(waiting ? "queued" : (job.stage ?? lists.stages[0]!.name), job.progress);
     const place = waiting && (job.queue_position ?? 0) > 1 ? `, ${job.queue_position! - 1} ahead of it` : "";
     byId("stages").querySelector("[data-stage=queued] span")!.textContent = `Waiting for a worker${place}`;
   }
@@ -241,10 +240,9 @@ export class Start {
 
   async #loadLimits(): Promise<void> {
     try {
-      const { meshes, max_upload_bytes } = await getFormats();
+      const { max_upload_bytes } = await getFormats();
       this.#mostBytes = max_upload_bytes;
-      this.#input.accept = [...meshes.flatMap(({ extensions }) => extensions), ".gz"].join(",");
-      byId("formats").textContent = `${meshes.map(({ title }) => title).join(", ")}, up to ${bytes(max_upload_bytes)}`;
+      byId("formats").textContent = `${FORMATS}, up to ${bytes(max_upload_bytes)}`;
     } catch (error) {
       if (error instanceof ApiError && error.status === 401) this.fail(problemOf(error));
     }

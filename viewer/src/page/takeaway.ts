@@ -3,9 +3,10 @@
 import type { CleaveViewer } from "../component/element";
 import { apiKey, getBlob, getMethods, jobPath, request } from "./api";
 import { byId, h, icon, openDialog, save, toast } from "./dom";
+import lists from "./lists.json";
 import { explain, problemOf } from "./problems";
 import type { Session } from "./session";
-import { plural, stem } from "./text";
+import { capitalized, plural, stem } from "./text";
 
 interface Download {
   readonly id: string;
@@ -13,15 +14,12 @@ interface Download {
   readonly about: string;
   /** End of the URL path. */
   readonly path: string;
+  /** End of the file name. */
   readonly ending: string;
 }
 
 const DOWNLOADS: readonly Download[] = [
-  { id: "glb", title: "GLB", about: "Named, coloured parts for any viewer", path: "model.glb", ending: ".glb" },
-  { id: "ply", title: "PLY", about: "Faces with colours and labels", path: "model.ply", ending: ".ply" },
-  { id: "obj", title: "OBJ", about: "A group for every part", path: "model.obj", ending: ".obj" },
-  { id: "3mf", title: "3MF", about: "Parts for printing", path: "model.3mf", ending: ".3mf" },
-  { id: "zip", title: "Separate parts", about: "A file for every part, in a ZIP", path: "parts.zip", ending: "-parts.zip" },
+  ...lists.formats.map(modelDownload),
   { id: "json", title: "Labels", about: "The part of every face, as JSON", path: "labels", ending: "-labels.json" },
 ];
 
@@ -92,6 +90,13 @@ export class TakeAway {
   async #savePicture(): Promise<void> {
     save(await this.#viewer.picture(), `${stem(this.#shown()!.fileName)}.png`);
   }
+}
+
+/** Return the download of a model; its title in the list is a name, a comma and a description. */
+function modelDownload({ name, title, extension, path }: (typeof lists.formats)[number]): Download {
+  const [short, about] = title.split(", ");
+  const kind = stem(path) === "model" ? "" : `-${stem(path)}`;
+  return { id: name, title: short!, about: capitalized(about ?? ""), path, ending: `${kind}${extension}` };
 }
 
 /** Return the query string that selects the present cut. */

@@ -26,6 +26,8 @@ export function when(time: string): string {
   return unit === "second" ? "just now" : ago.format(Math.round(seconds / length), unit);
 }
 
+export const capitalized = (text: string): string => text.charAt(0).toUpperCase() + text.slice(1);
+
 /** Return a file name without its folder and extension. */
 export function stem(fileName: string): string {
   return fileName.replace(/^.*[\\/]/, "").replace(/(\.gz)?$/i, "").replace(/\.[a-z0-9]{2,5}$/i, "") || "mesh";
