@@ -1,4 +1,4 @@
-"""The settings, metrics, errors and tests that the documents for operators name exist."""
+"""The documents for operators name existing settings, metrics, errors and tests."""
 
 import re
 from pathlib import Path
