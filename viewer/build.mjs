@@ -6,7 +6,7 @@ import { join } from "node:path";
 const target = "../service/viewer";
 const common = { bundle: true, minify: true, write: false, logLevel: "warning", outdir: target };
 
-/** The files of the viewer: contents by name. */
+/** Return the contents of the built files, by name. */
 async function built() {
   const scripts = await build({
     ...common,
@@ -34,7 +34,7 @@ if (process.argv.includes("--check")) {
   for (const [name, contents] of files)
     if (!stale.includes(name) && !contents.equals(await readFile(join(target, name)))) stale.push(name);
   if (stale.length > 0) {
-    console.error(`service/viewer is not what the sources make (${stale.join(", ")}): run npm run build in viewer/.`);
+    console.error(`service/viewer does not match its sources (${stale.join(", ")}): run npm run build in viewer/.`);
     process.exit(1);
   }
 } else {

@@ -1,4 +1,4 @@
-"""<cleave-viewer> in another page, as docs/viewer.md describes it."""
+"""<cleave-viewer> in another page, as docs/reference/viewer.md describes it."""
 
 from helpers.visit import Visit
 

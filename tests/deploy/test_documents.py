@@ -1,4 +1,4 @@
-"""What the documents for operators name is there: settings, metrics, errors, commands, tests."""
+"""The documents for operators name existing settings, metrics, errors and tests."""
 
 import re
 from pathlib import Path
@@ -12,8 +12,8 @@ from worker.jobs.queue.queue import JobQueue
 from worker.jobs.store.store import JobStore
 
 ROOT = Path(__file__).parents[2]
-OPERATIONS = (ROOT / "docs" / "operations.md").read_text()
-SECURITY = (ROOT / "docs" / "security.md").read_text()
+OPERATIONS = (ROOT / "docs" / "how-to" / "operations.md").read_text()
+SECURITY = (ROOT / "docs" / "explanation" / "security.md").read_text()
 OF_COMPOSE = {"CLEAVE_REDIS_PASSWORD", "CLEAVE_STORE_PASSWORD"}
 
 

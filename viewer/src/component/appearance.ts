@@ -1,4 +1,4 @@
-/** What every leaf looks like: three texels each, written whenever the cut or the selection changes. */
+/** A texture with three texels per leaf (colour, offset, part), rewritten when the cut or the selection changes. */
 
 import { DataTexture, FloatType, NearestFilter, RGBAFormat } from "three";
 import type { Model } from "./glb";
@@ -16,13 +16,13 @@ export interface Look {
 
 const COLUMNS = 1024;
 const ROWS = 3;
-const FARTHEST = 0.85; // of the distance between the centres of a node and of its child
-const FIRST_SPLIT_ENDS = 0.45; // of the way, where the coarsest cut has opened; the finest opens last
+const FARTHEST = 0.85; // of the distance between the centres of a node and its child
+const FIRST_SPLIT_ENDS = 0.45; // value of ``explode`` at which the coarsest cut is fully open; finer cuts open later
 
 export class Appearance {
   readonly texture: DataTexture;
   readonly columns: number;
-  /** (L) the part of every leaf. */
+  /** (L) part of every leaf. */
   readonly partOfLeaf: Int32Array;
   readonly #values: Float32Array;
   readonly #model: Model;
@@ -67,7 +67,7 @@ export class Appearance {
     this.#values.set(values, 4 * (line * this.columns + (leaf % this.columns)));
   }
 
-  /** Every split that is open moves its two sides apart, away from what they were one with; coarse splits first. */
+  /** Return the offset of every part: each split moves its two sides apart, coarse splits first. */
   #offsets(look: Look): Map<number, number[]> {
     const { tree } = this.#model;
     const offsets = new Map<number, number[]>([[0, [0, 0, 0]]]);
@@ -94,7 +94,7 @@ function smooth(t: number): number {
   return x * x * (3 - 2 * x);
 }
 
-/** The centre of area of every node of the tree. */
+/** Return the area-weighted centre of every node of the tree. */
 function nodeCentres(model: Model, surface: Surface): [number, number, number][] {
   const { tree, leafNodes } = model;
   const sums = tree.nodes.map(() => [0, 0, 0, 0] as [number, number, number, number]);

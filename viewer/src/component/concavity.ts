@@ -1,14 +1,14 @@
-/** How much the surface is bent inwards at every vertex that is drawn. */
+/** Concavity of the surface at every drawn vertex. */
 
 import type { Model } from "./glb";
 import type { Surface } from "./surface";
 
-const LEAST = 1.2; // curvature times the radius of the model; less is its roundness
+const LEAST = 1.2; // curvature times the radius of the model; less is not shown
 const FULL = 6;
 
 /**
- * (W) 0 to 255. Along an edge from p to q with unit normals m and n the surface has the curvature
- * (n - m) (q - p) / |q - p|^2; at a vertex the least of its edges counts, averaged once over its neighbours.
+ * Return (W) concavities, 0 to 255. The curvature along an edge from p to q with unit normals m and n is
+ * (n - m) (q - p) / |q - p|^2. A vertex takes the least curvature of its edges, averaged once over its neighbours.
  */
 export function vertexConcavity(model: Model, surface: Surface): Uint8Array {
   const { welded } = surface;

@@ -1,4 +1,4 @@
-/** The objects that are drawn for one model: its surface, wires and lines, over one buffer of vertices. */
+/** The three.js objects of one model: surface, wireframe and lines, on one vertex buffer. */
 
 import {
   BufferAttribute,
@@ -34,7 +34,7 @@ import {
 } from "./shaders";
 import type { Surface } from "./surface";
 
-/** Colours of what is not a part, for a light or a dark background; sRGB and opacity in 0..1. */
+/** Colours of lines and background for one theme; sRGB and opacity in 0..1. */
 export interface Inks {
   readonly line: readonly [number, number, number, number];
   readonly selected: readonly [number, number, number, number];
@@ -43,8 +43,8 @@ export interface Inks {
   readonly sky: readonly [number, number, number];
 }
 
-const HALF_LINE = 0.75; // pixels of the page
-const GROWTH = 0.6; // of a model whose parts are as far apart as can be
+const HALF_LINE = 0.75; // CSS pixels
+const GROWTH = 0.6; // of the radius at explode = 1
 
 export class Drawing {
   readonly group = new Group();
@@ -69,7 +69,7 @@ export class Drawing {
     this.appearance = new Appearance(model, surface);
     this.#geometry = surfaceGeometry(surface);
     this.#surfaceMaterial = this.#material(SURFACE_VERTEX, SURFACE_FRAGMENT, {
-      unfold: { value: 1 },
+      fadeIn: { value: 1 },
       sky: { value: new Vector3() },
       concaveInk: { value: new Vector4() },
       isBentShown: { value: false },
@@ -82,12 +82,12 @@ export class Drawing {
     this.applyInks(inks);
   }
 
-  /** Set how far the colours have come up, 0..1. */
-  set unfold(value: number) {
-    this.#surfaceMaterial.uniforms["unfold"]!.value = value;
+  /** Set the brightness during the entrance, 0..1. */
+  set fadeIn(value: number) {
+    this.#surfaceMaterial.uniforms["fadeIn"]!.value = value;
   }
 
-  /** Seen from outside every model is a ball of radius 1 around the origin; one that is moved apart shrinks to stay so. */
+  /** Scale the model into the unit ball around the origin, also with its parts moved apart. */
   set explode(explode: number) {
     const { centre, radius } = this.#surface;
     const scale = 1 / (radius * (1 + GROWTH * explode));
@@ -105,7 +105,7 @@ export class Drawing {
     setInk(this.#concave, "ink", inks.concave);
   }
 
-  /** The size of the picture in device pixels, and how many of them make one of the page. */
+  /** Set the size of the canvas in device pixels, and the number of device pixels per CSS pixel. */
   resize(width: number, height: number, ratio: number): void {
     this.#size = { width, height, ratio };
     for (const { uniforms } of this.#materials) {
@@ -143,8 +143,8 @@ export class Drawing {
     if (this.#concave !== null) this.#concave.visible = isShown;
   }
 
-  /** Draw the numbers of the leaves in place of their looks, while something is done. */
-  asNumbers(draw: () => void): void {
+  /** Call ``draw`` while the surface is drawn with leaf numbers as colours, for picking. */
+  withPickMaterial(draw: () => void): void {
     const others = [this.#wires, this.#borders, this.#concave].filter((mesh) => mesh?.visible === true) as Mesh[];
     for (const mesh of others) mesh.visible = false;
     this.#surfaceMesh.material = this.#pickMaterial;
@@ -199,7 +199,7 @@ export class Drawing {
         columns: { value: this.appearance.columns },
         ...uniforms,
       },
-      side: DoubleSide, // the input may be open or turned inside out
+      side: DoubleSide, // the mesh may be open or inside out
       depthWrite: !isInk,
       transparent: isInk,
     });
@@ -235,7 +235,7 @@ function lineGeometry(lines: SurfaceLines): InstancedBufferGeometry {
   return geometry;
 }
 
-/** Three values out of every ``stride``. */
+/** Return three values of every ``stride`` values. */
 function every(values: Float32Array, stride: number, start: number): Float32Array {
   const result = new Float32Array((values.length / stride) * 3);
   for (let i = 0, j = start; j < values.length; i += 3, j += stride) result.set(values.subarray(j, j + 3), i);

@@ -1,23 +1,23 @@
-/** Lines on the surface: where leaves meet, and where it is concave. */
+/** Line segments on the surface: borders of leaves and concave edges. */
 
 import type { Model } from "./glb";
 import type { Surface } from "./surface";
 
-/** Line segments, each seen from one leaf: ``ends`` (6 N), ``leaves`` (2 N) own and other, ``strength`` (N) in 0..1. */
+/** N line segments: ``ends`` (6 N) xyz, ``leaves`` (2 N) own and adjacent leaf, ``strength`` (N) opacity in 0..1. */
 export interface SurfaceLines {
   readonly ends: Float32Array;
   readonly leaves: Float32Array;
   readonly strength: Float32Array;
 }
 
-const LEAST_ANGLE = (15 * Math.PI) / 180; // less is the roundness of a mesh
+const LEAST_ANGLE = (15 * Math.PI) / 180; // smaller angles are not drawn
 const LEAST_COSINE = Math.cos(LEAST_ANGLE);
 const FULL_ANGLE = (60 * Math.PI) / 180;
 const MOST_LINES = 60_000;
-const FREE = -1; // states of a place in a table of corners
+const FREE = -1; // states of a slot in the hash table of corners
 const PAIRED = -2;
 
-/** The edges between two leaves, once from each side. */
+/** Return the edges between two leaves, once for each side. */
 export function borderLines(model: Model, surface: Surface): SurfaceLines {
   const leafOf = leafLookup(model);
   const kept: [number, number, number][] = [];
@@ -29,7 +29,7 @@ export function borderLines(model: Model, surface: Surface): SurfaceLines {
   return lines(model, kept, () => 1);
 }
 
-/** The edges at which the surface is sharply bent inwards, the sharpest ones where there are very many. */
+/** Return the sharply concave edges; only the sharpest if there are more than MOST_LINES. */
 export function concaveLines(model: Model, surface: Surface): SurfaceLines {
   const normals = faceNormals(model);
   const found: { corner: number; angle: number }[] = [];
@@ -48,8 +48,8 @@ export function concaveLines(model: Model, surface: Surface): SurfaceLines {
 }
 
 /**
- * Visit the edges of two faces, as the corners of both at which they begin; corner i begins the edge to the next corner
- * of its face. Where more faces meet, they are taken two by two.
+ * Visit every edge that two faces share, as one corner of each face. Corner i stands for the edge to the next corner of
+ * its face. If more than two faces share an edge, they are paired in the order of the corners.
  */
 function forAdjacentCorners(
   welded: Uint32Array,
@@ -83,7 +83,7 @@ function next(corner: number): number {
   return corner % 3 === 2 ? corner - 2 : corner + 1;
 }
 
-/** How far the faces of two corners of an edge are bent inwards, in radians; 0 where they are not. */
+/** Return the concave dihedral angle of the faces of two corners, in radians; 0 if the edge is convex. */
 function concaveAngle(
   { positions: p, index }: Model,
   n: Float32Array,
@@ -102,7 +102,7 @@ function concaveAngle(
   return orientation * above > 0 ? Math.acos(Math.max(cosine, -1)) : 0;
 }
 
-/** (3 F) the unit normal of every face; that of a face without area is no number, so that no edge of it looks bent. */
+/** Return (3 F) unit face normals; NaN for a face without area, so that its edges count as not concave. */
 function faceNormals({ positions: p, index }: Model): Float32Array {
   const normals = new Float32Array(index.length);
   for (let i = 0; i < index.length; i += 3) {

@@ -1,4 +1,4 @@
-/** ``<cleave-viewer>``: shows the GLB file of a job, its parts at any level. docs/viewer.md is its manual. */
+/** The web component ``<cleave-viewer>``, which shows the GLB file of a job. docs/reference/viewer.md describes it. */
 
 import { Drawing, type Inks } from "./drawing";
 import { InvalidModel, parseModel, type Model } from "./glb";
@@ -37,8 +37,8 @@ canvas:active { cursor: grabbing; }
 canvas.over { cursor: pointer; }
 canvas:focus-visible { box-shadow: inset 0 0 0 3px var(--cleave-focus, #5b5bd6); }
 `;
-const CLICK_PIXELS = 5; // a pointer that moved farther has dragged
-const PAUSE_MS = 12; // of work on a model before the page may breathe
+const CLICK_PIXELS = 5; // a pointer that moves farther drags
+const PAUSE_MS = 12; // of work on a model before control returns to the event loop
 
 export class CleaveViewer extends HTMLElement {
   static readonly observedAttributes = [
@@ -54,7 +54,7 @@ export class CleaveViewer extends HTMLElement {
     "label",
   ];
 
-  /** Sent with the request for ``src``. */
+  /** Headers of the request for ``src``. */
   requestHeaders: Record<string, string> = {};
 
   #canvas = document.createElement("canvas");
@@ -82,12 +82,12 @@ export class CleaveViewer extends HTMLElement {
   }
 
   connectedCallback(): void {
-    this.#canvas = this.#newCanvas(); // one whose graphics context was given back shows nothing any more
+    this.#canvas = this.#newCanvas(); // a canvas cannot be used after its WebGL context was released
     this.shadowRoot!.replaceChildren(this.#canvas);
     try {
       this.#stage = new Stage(this.#canvas, () => this.#emit("cleave-view", this.view));
     } catch {
-      this.#fail("no_webgl", "This browser shows no 3D graphics: switch on WebGL 2, or use another browser.");
+      this.#fail("no_webgl", "This browser shows no 3D graphics: enable WebGL 2, or use another browser.");
       return;
     }
     this.#resizing = new ResizeObserver(() => this.#stage?.resize());
@@ -127,7 +127,7 @@ export class CleaveViewer extends HTMLElement {
     }
   }
 
-  /** The tree of cuts of the model that is shown; null where there is none. */
+  /** The tree of cuts of the present model; null if no model is shown. */
   get tree(): PartTree | null {
     return this.#model?.tree ?? null;
   }
@@ -136,14 +136,14 @@ export class CleaveViewer extends HTMLElement {
     return this.#model?.automaticSegments ?? 1;
   }
 
-  /** The nodes that are split; the parts are the nodes below. */
+  /** The nodes that are split; the parts are the nodes just below. */
   get cut(): Cut {
     return this.#cut;
   }
 
   set cut(cut: Cut) {
     this.#cut = cut;
-    this.#look();
+    this.#updateLeaves();
   }
 
   get parts(): number[] {
@@ -156,7 +156,7 @@ export class CleaveViewer extends HTMLElement {
 
   set hiddenParts(parts: ReadonlySet<number>) {
     this.#hidden = parts;
-    this.#look();
+    this.#updateLeaves();
   }
 
   get selected(): readonly number[] {
@@ -165,10 +165,10 @@ export class CleaveViewer extends HTMLElement {
 
   set selected(parts: readonly number[]) {
     this.#selected = parts;
-    this.#look();
+    this.#updateLeaves();
   }
 
-  /** The part that is highlighted; -1 for none. */
+  /** The highlighted part; -1 for none. */
   get hovered(): number {
     return this.#hovered;
   }
@@ -176,10 +176,10 @@ export class CleaveViewer extends HTMLElement {
   set hovered(part: number) {
     if (part === this.#hovered) return;
     this.#hovered = part;
-    this.#look();
+    this.#updateLeaves();
   }
 
-  /** Names that people gave to nodes, for the text alternative. */
+  /** Names of nodes for the text alternative. */
   set names(names: ReadonlyMap<number, string>) {
     this.#names = names;
     this.#describe();
@@ -189,38 +189,38 @@ export class CleaveViewer extends HTMLElement {
     return this.#stage?.view ?? FIRST_VIEW;
   }
 
-  /** Where the viewer stands; set before a model is there, it is seen from there without an entrance. */
+  /** The camera. If it is set before a model is loaded, the model appears without an entrance. */
   set view(view: View) {
     if (this.#model === null) this.#firstView = view;
     if (this.#stage !== null) this.#stage.view = view;
   }
 
-  /** The whole model again, from the first side. */
+  /** Return to the first view of the whole model. */
   resetView(): void {
     this.view = FIRST_VIEW;
   }
 
-  /** The colour of a node as a CSS colour. */
+  /** Return the colour of a node as a CSS colour. */
   colorOf(node: number): string {
     const model = this.#model;
     const color = model?.palette[model.tree.node(node).label % model.palette.length] ?? [0.6, 0.6, 0.6];
     return `rgb(${color.map((channel) => Math.round(255 * channel)).join(" ")})`;
   }
 
-  /** The part at a place of the window; -1 where there is none. */
+  /** Return the part at a position in the window; -1 if there is none. */
   partAt(clientX: number, clientY: number): number {
     const box = this.#canvas.getBoundingClientRect();
     const leaf = this.#stage?.leafAt(clientX - box.left, clientY - box.top) ?? -1;
     return leaf < 0 ? -1 : (this.#drawing?.appearance.partOfLeaf[leaf] ?? -1);
   }
 
-  /** A PNG of what is seen, without a background. */
+  /** Return a PNG of the present view, without a background. */
   picture(): Promise<Blob> {
     if (this.#stage === null) return Promise.reject(new Error("Nothing is shown."));
     return this.#stage.picture();
   }
 
-  /** What drawing costs. ``frame`` draws one picture and waits for it. */
+  /** Figures for benchmarks. ``frame`` draws one frame and waits for the GPU. */
   readonly figures = {
     frame: (): void => this.#stage?.finish(),
     drawCalls: (): number => this.#stage?.drawCalls ?? 0,
@@ -234,7 +234,7 @@ export class CleaveViewer extends HTMLElement {
     await this.#show(data, loading.signal);
   }
 
-  /** Show nothing, and free what the last model needed. */
+  /** Remove the model and free its memory. */
   clear(): void {
     this.#drawing?.dispose();
     this.#drawing = null;
@@ -249,18 +249,18 @@ export class CleaveViewer extends HTMLElement {
     const loading = (this.#loading = new AbortController());
     try {
       const answer = await fetch(source, { headers: this.requestHeaders, signal: loading.signal });
-      if (!answer.ok) return this.#fail("not_loaded", `The model was not loaded: the server answered ${answer.status}.`);
+      if (!answer.ok) return this.#fail("not_loaded", `The model was not loaded: the server responded with status ${answer.status}.`);
       await this.#show(await answer.arrayBuffer(), loading.signal);
     } catch (error) {
       if (loading.signal.aborted) return;
       if (error instanceof InvalidModel) this.#fail("invalid_model", error.message);
-      else this.#fail("not_loaded", "The model was not loaded: the server does not answer.");
+      else this.#fail("not_loaded", "The model was not loaded: the server is not responding.");
     }
   }
 
   async #show(data: ArrayBuffer, signal: AbortSignal): Promise<void> {
     const model = parseModel(data);
-    const surface = await buildSurface(model, breather());
+    const surface = await buildSurface(model, eventLoopYielder());
     if (signal.aborted || this.#stage === null) return;
     this.clear();
     this.#model = model;
@@ -289,10 +289,10 @@ export class CleaveViewer extends HTMLElement {
     drawing.wireframe = this.hasAttribute("wireframe");
     drawing.concavity = this.hasAttribute("concavity");
     this.#stage.isZUp = this.getAttribute("up") === "z";
-    this.#look();
+    this.#updateLeaves();
   }
 
-  #look(): void {
+  #updateLeaves(): void {
     if (this.#drawing === null || this.#stage === null) return;
     const explode = Math.min(Math.max(Number(this.getAttribute("explode") ?? 0), 0), 1);
     const { appearance } = this.#drawing;
@@ -319,7 +319,7 @@ export class CleaveViewer extends HTMLElement {
     return theme === "dark" || (theme !== "light" && this.#dark.matches) ? DARK : LIGHT;
   }
 
-  /** The text alternative. */
+  /** Update the text alternative. */
   #describe(): void {
     const label = this.getAttribute("label");
     if (this.#model === null) {
@@ -350,7 +350,7 @@ export class CleaveViewer extends HTMLElement {
     canvas.addEventListener("pointerup", (event) => this.#click(event));
     canvas.addEventListener("keydown", (event) => this.#key(event));
     canvas.addEventListener("webglcontextlost", (event) => event.preventDefault());
-    canvas.addEventListener("webglcontextrestored", () => this.#look());
+    canvas.addEventListener("webglcontextrestored", () => this.#updateLeaves());
     return canvas;
   }
 
@@ -378,7 +378,7 @@ export class CleaveViewer extends HTMLElement {
     this.#pick(this.partAt(event.clientX, event.clientY), isMore);
   }
 
-  /** Select a part, or add it to the selection or take it out; listeners may refuse with ``preventDefault``. */
+  /** Select a part, or toggle it in the selection; listeners may refuse with ``preventDefault``. */
   #pick(part: number, isMore: boolean): void {
     const chosen = part < 0 ? [] : [part];
     const rest = this.#selected.filter((other) => other !== part);
@@ -430,8 +430,8 @@ function percent(share: number): string {
   return new Intl.NumberFormat("en", { style: "percent", maximumSignificantDigits: 2 }).format(share);
 }
 
-/** Lets the page draw and answer when work has gone on for a while. */
-function breather(): () => Promise<void> {
+/** Return a function that yields to the event loop if PAUSE_MS have passed since the last time. */
+function eventLoopYielder(): () => Promise<void> {
   let since = performance.now();
   return async () => {
     if (performance.now() - since < PAUSE_MS) return;

@@ -1,23 +1,23 @@
-/** Reads the GLB files that the service writes: one POSITION accessor, and a slice of one index buffer for each leaf. */
+/** Reads the GLB files of the service: one POSITION accessor, and one slice of the index buffer per leaf. */
 
 import { PartTree, type TreeNode } from "./tree";
 
 export interface Model {
   readonly tree: PartTree;
   readonly automaticSegments: number;
-  /** (3 V) xyz of every vertex in its own unit; see ``origin`` and ``scale``. */
+  /** (3 V) xyz of every vertex. */
   readonly positions: Float32Array;
-  /** (3 F) the vertices of every face, sorted by leaf. */
+  /** (3 F) vertices of every face, sorted by leaf. */
   readonly index: Uint32Array;
-  /** (L) the tree node of every leaf. */
+  /** (L) tree node of every leaf. */
   readonly leafNodes: readonly number[];
-  /** (L + 1) leaf i owns the faces leafStart[i] to leafStart[i + 1]. */
+  /** (L + 1) leaf i has the faces leafStart[i] to leafStart[i + 1] - 1. */
   readonly leafStart: readonly number[];
-  /** sRGB in 0..1 of every label. */
+  /** sRGB colour of every label, in 0..1. */
   readonly palette: readonly (readonly [number, number, number])[];
 }
 
-/** The bytes are no GLB file of the service; the message says what is wrong. */
+/** The data is not a GLB file of the service; the message names the fault. */
 export class InvalidModel extends Error {}
 
 interface GltfDocument {
@@ -46,10 +46,10 @@ export function parseModel(data: ArrayBuffer): Model {
 function chunks(data: ArrayBuffer): { document: GltfDocument; binary: number } {
   const view = new DataView(data);
   if (data.byteLength < 28 || view.getUint32(0, true) !== MAGIC || view.getUint32(8, true) !== data.byteLength)
-    throw new InvalidModel("The file is no complete GLB file: load it again.");
+    throw new InvalidModel("The GLB file is incomplete: load it again.");
   const length = view.getUint32(12, true);
   if (view.getUint32(16, true) !== JSON_CHUNK || 28 + length > data.byteLength)
-    throw new InvalidModel("The file is no complete GLB file: load it again.");
+    throw new InvalidModel("The GLB file is incomplete: load it again.");
   const text = new TextDecoder().decode(new Uint8Array(data, 20, length));
   return { document: JSON.parse(text) as GltfDocument, binary: 28 + length };
 }
@@ -77,7 +77,7 @@ function modelOf(document: GltfDocument, data: ArrayBuffer, binary: number): Mod
 function treeNode(document: GltfDocument, id: number): TreeNode {
   const { extras, children } = at(document.nodes, id);
   const parent = id === 0 ? -1 : document.nodes.findIndex((node) => node.children?.includes(id));
-  if (id > 0 && parent < 0) throw new InvalidModel("The nodes of the GLB file are no tree: load the file again.");
+  if (id > 0 && parent < 0) throw new InvalidModel("The nodes of the GLB file do not form a tree: load the file again.");
   return {
     id,
     parent,
@@ -90,7 +90,7 @@ function treeNode(document: GltfDocument, id: number): TreeNode {
   };
 }
 
-/** IEC 61966-2-1, from the linear light of glTF. */
+/** Convert a linear colour of glTF to sRGB (IEC 61966-2-1). */
 function srgb(linear: readonly number[]): readonly [number, number, number] {
   const encode = (value = 0) => (value <= 0.0031308 ? 12.92 * value : 1.055 * value ** (1 / 2.4) - 0.055);
   return [encode(linear[0]), encode(linear[1]), encode(linear[2])];
@@ -98,6 +98,6 @@ function srgb(linear: readonly number[]): readonly [number, number, number] {
 
 function at<T>(values: readonly T[], i: number): T {
   const value = values[i];
-  if (value === undefined) throw new InvalidModel("The GLB file points at something that it does not hold.");
+  if (value === undefined) throw new InvalidModel("The GLB file refers to an element that it does not contain.");
   return value;
 }

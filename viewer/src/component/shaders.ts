@@ -1,4 +1,4 @@
-/** The programs on the graphics card. Every leaf has a column of three texels: colour, offset and emphasis, part. */
+/** GLSL shaders. Every leaf has a column of three texels: colour, offset and emphasis, part. */
 
 const LEAF = /* glsl */ `
 uniform highp sampler2D leaves;
@@ -42,10 +42,10 @@ void main() {
 }
 `;
 
-/** Smooth where the mesh is, flat where it has a crease; lights that move with the viewer, as in a hand. */
+/** Smooth normals across soft edges, flat normals at creases; the lights are fixed to the camera. */
 export const SURFACE_FRAGMENT = /* glsl */ `
 precision highp float;
-uniform float unfold;
+uniform float fadeIn;
 uniform vec3 sky;
 uniform vec4 concaveInk;
 uniform bool isBentShown;
@@ -76,7 +76,7 @@ void main() {
   vec3 light = vec3(0.36) + 0.24 * up + 0.50 * key + 0.12 * fill + 0.08 * facing;
   vec3 lit = surface * light + vec3(0.06) * gloss + 0.10 * pow(1.0 - facing, 3.0) * toLinear(sky);
   lit = mix(lit, lit * 1.12 + 0.05, clamp(emphasis, 0.0, 1.0));
-  color = vec4(toScreen(lit), 1.0) * unfold;
+  color = vec4(toScreen(lit), 1.0) * fadeIn;
 }
 `;
 
@@ -120,7 +120,7 @@ out vec4 color;
 void main() { color = vec4(ink.rgb * ink.a, ink.a); }
 `;
 
-/** A line segment is a thin rectangle that faces the viewer. Lines between leaves of one part are not drawn. */
+/** Expands a line segment to a thin rectangle that faces the camera; omits lines between leaves of one part. */
 export const LINE_VERTEX = /* glsl */ `${HEAD}
 uniform vec2 pixels;
 uniform float width;

@@ -1,4 +1,4 @@
-/** Renderer, camera and loop: draws when something has changed, and not otherwise. */
+/** Renderer, camera and controls; draws only after a change. */
 
 import {
   Group,
@@ -13,7 +13,7 @@ import {
 import { OrbitControls } from "three/addons/controls/OrbitControls.js";
 import type { Drawing } from "./drawing";
 
-/** Where the viewer stands, in radii of the model: angles in radians, distance and target. */
+/** Camera position: angles in radians; distance and target in radii of the model. */
 export interface View {
   readonly azimuth: number;
   readonly polar: number;
@@ -23,10 +23,10 @@ export interface View {
 
 export const FIRST_VIEW: View = { azimuth: 0.55, polar: 1.18, distance: 3.5, target: [0, 0, 0] };
 
-const FIELD_OF_VIEW = 32; // degrees, of the shorter side
-const MOST_PIXELS = 2; // device pixels for one of the page; more cost much and show little
+const FIELD_OF_VIEW = 32; // degrees, along the shorter side
+const MOST_PIXELS = 2; // device pixels per CSS pixel; more cost much and show little
 const ENTRANCE_MS = 1100;
-const LATE_MS = 45; // of a frame after it was asked for
+const LATE_MS = 45; // from the request of a frame to its start
 const LEAST_SHARPNESS = 0.35;
 const REST_MS = 350;
 const KEY_STEP = Math.PI / 24;
@@ -39,19 +39,19 @@ export class Stage {
   readonly #upright = new Group();
   readonly #camera = new PerspectiveCamera(FIELD_OF_VIEW, 1, 0.01, 100);
   readonly #controls: OrbitControls;
-  readonly #numbers = new WebGLRenderTarget(1, 1);
+  readonly #pickTarget = new WebGLRenderTarget(1, 1);
   #pixels = new Uint8Array(0);
   #drawing: Drawing | null = null;
   #frame = 0;
-  #askedAt = 0;
+  #requestedAt = 0;
   #late = 0;
   #sharpness = 1;
   #resting = 0;
   #entrance = 0;
-  #numbersAreOld = true;
+  #pickTargetIsStale = true;
   #reach = 1;
 
-  /** ``onView`` is called after the viewer has moved. Throws where the browser has no WebGL 2. */
+  /** ``onView`` is called after the camera has moved. Throws if the browser has no WebGL 2. */
   constructor(canvas: HTMLCanvasElement, onView: () => void) {
     this.canvas = canvas;
     this.onView = onView;
@@ -72,7 +72,7 @@ export class Stage {
     return this.#renderer.info.render.calls;
   }
 
-  /** What is held on the graphics card. */
+  /** Numbers of objects in GPU memory. */
   get memory(): { geometries: number; textures: number } {
     const { geometries, textures } = this.#renderer.info.memory;
     return { geometries, textures };
@@ -92,13 +92,13 @@ export class Stage {
     this.#moved();
   }
 
-  /** Whether the z axis of the mesh points up, instead of its y axis. */
+  /** Whether the z axis of the mesh points up instead of its y axis. */
   set isZUp(isZUp: boolean) {
     this.#upright.rotation.x = isZUp ? -Math.PI / 2 : 0;
     this.changed();
   }
 
-  /** How far from the centre things are drawn, in radii of the model. */
+  /** Radius around the centre that the clipping planes enclose, in radii of the model. */
   set reach(reach: number) {
     this.#reach = reach;
     this.#clip();
@@ -110,7 +110,7 @@ export class Stage {
     this.resize();
   }
 
-  /** Turn gently into view; at once for people who want less motion. */
+  /** Animate the camera into the first view, unless reduced motion is preferred. */
   enter(): void {
     if (matchMedia("(prefers-reduced-motion: reduce)").matches) return;
     this.#endEntrance();
@@ -120,7 +120,7 @@ export class Stage {
       const t = Math.min((performance.now() - began) / ENTRANCE_MS, 1);
       const left = (1 - t) ** 4;
       this.view = { ...end, azimuth: end.azimuth - 1.2 * left, distance: end.distance * (1 + 0.35 * left) };
-      if (this.#drawing !== null) this.#drawing.unfold = 1 - (1 - t) ** 3 * 0.9;
+      if (this.#drawing !== null) this.#drawing.fadeIn = 1 - (1 - t) ** 3 * 0.9;
       this.#entrance = t < 1 ? requestAnimationFrame(step) : 0;
     };
     step();
@@ -136,20 +136,20 @@ export class Stage {
     const narrow = Math.min(this.#camera.aspect, 1);
     this.#camera.fov = (2 * Math.atan(Math.tan((FIELD_OF_VIEW * Math.PI) / 360) / narrow) * 180) / Math.PI;
     this.#camera.updateProjectionMatrix();
-    this.#numbers.setSize(width, height);
+    this.#pickTarget.setSize(width, height);
     this.#drawing?.resize(width * ratio, height * ratio, ratio);
     this.changed();
-    // The picture of another size is empty: it is filled before anybody sees that.
+    // A resized canvas is blank: draw before the browser shows it.
     this.draw();
   }
 
-  /** Have a picture drawn soon. */
+  /** Request a new frame. */
   changed(): void {
-    this.#numbersAreOld = true;
+    this.#pickTargetIsStale = true;
     if (this.#frame !== 0) return;
-    this.#askedAt = performance.now();
+    this.#requestedAt = performance.now();
     this.#frame = requestAnimationFrame(() => {
-      this.#keepPace(performance.now() - this.#askedAt);
+      this.#adaptResolution(performance.now() - this.#requestedAt);
       this.draw();
     });
   }
@@ -161,28 +161,28 @@ export class Stage {
     this.#renderer.render(this.#scene, this.#camera);
   }
 
-  /** Wait until the graphics card has drawn everything asked for. */
+  /** Draw, and wait until the GPU has finished. */
   finish(): void {
     this.draw();
     const gl = this.#renderer.getContext();
     gl.readPixels(0, 0, 1, 1, gl.RGBA, gl.UNSIGNED_BYTE, new Uint8Array(4));
   }
 
-  /** The leaf at a place of the canvas in pixels of the page; -1 where there is none. */
+  /** Return the leaf at a position of the canvas in CSS pixels; -1 if there is none. */
   leafAt(x: number, y: number): number {
-    const { width, height } = this.#numbers;
+    const { width, height } = this.#pickTarget;
     if (this.#drawing === null || x < 0 || y < 0 || x >= width || y >= height) return -1;
-    if (this.#numbersAreOld) this.#drawNumbers(this.#drawing);
+    if (this.#pickTargetIsStale) this.#drawPickTarget(this.#drawing);
     const pixel = 4 * ((height - 1 - Math.floor(y)) * width + Math.floor(x));
     return this.#pixels[pixel]! + 256 * this.#pixels[pixel + 1]! - 1;
   }
 
-  /** The picture as it is seen, without a background. */
+  /** Return a PNG of the present view, without a background. */
   async picture(): Promise<Blob> {
     this.#sharpness = 1;
     this.resize();
     return new Promise((resolve, reject) => {
-      this.canvas.toBlob((blob) => (blob ? resolve(blob) : reject(new Error("The picture could not be made."))));
+      this.canvas.toBlob((blob) => (blob ? resolve(blob) : reject(new Error("The picture could not be created."))));
     });
   }
 
@@ -200,27 +200,27 @@ export class Stage {
     clearTimeout(this.#resting);
     this.#endEntrance();
     this.#controls.dispose();
-    this.#numbers.dispose();
+    this.#pickTarget.dispose();
     this.#renderer.dispose();
     this.#renderer.forceContextLoss();
   }
 
-  #drawNumbers(drawing: Drawing): void {
-    drawing.asNumbers(() => {
-      this.#renderer.setRenderTarget(this.#numbers);
+  #drawPickTarget(drawing: Drawing): void {
+    drawing.withPickMaterial(() => {
+      this.#renderer.setRenderTarget(this.#pickTarget);
       this.#renderer.clear();
       this.#renderer.render(this.#scene, this.#camera);
       this.#renderer.setRenderTarget(null);
     });
-    // All at once, so that a pointer that moves over a picture that rests waits for nothing.
-    const { width, height } = this.#numbers;
+    // Read the whole target once: later positions of the pointer then need no read-back.
+    const { width, height } = this.#pickTarget;
     if (this.#pixels.length !== 4 * width * height) this.#pixels = new Uint8Array(4 * width * height);
-    this.#renderer.readRenderTargetPixels(this.#numbers, 0, 0, width, height, this.#pixels);
-    this.#numbersAreOld = false;
+    this.#renderer.readRenderTargetPixels(this.#pickTarget, 0, 0, width, height, this.#pixels);
+    this.#pickTargetIsStale = false;
   }
 
-  /** Frames that come late are drawn less sharply while things move, and sharply again once they rest. */
-  #keepPace(delay_ms: number): void {
+  /** Lower the resolution while frames are late, and restore it after a pause. */
+  #adaptResolution(delay_ms: number): void {
     this.#late = delay_ms > LATE_MS ? this.#late + 1 : 0;
     if (this.#late > 1 && this.#sharpness > LEAST_SHARPNESS) {
       this.#late = 0;
@@ -238,7 +238,7 @@ export class Stage {
   #endEntrance(): void {
     cancelAnimationFrame(this.#entrance);
     this.#entrance = 0;
-    if (this.#drawing !== null) this.#drawing.unfold = 1;
+    if (this.#drawing !== null) this.#drawing.fadeIn = 1;
   }
 
   #moved(): void {

@@ -1,25 +1,25 @@
-/** The one buffer that is drawn: every vertex belongs to one leaf, so that a leaf can be coloured and moved alone. */
+/** The drawn buffers: every vertex belongs to one leaf, so that each leaf has its own colour and offset. */
 
 import type { Model } from "./glb";
 
 export interface Surface {
   /** (3 W) xyz. */
   readonly position: Float32Array;
-  /** (4 W) a unit normal in 32767ths, and the leaf. */
+  /** (4 W) unit normal in 32767ths, and leaf. */
   readonly normalAndLeaf: Int16Array;
-  /** (3 F) into the W vertices, sorted by leaf. */
+  /** (3 F) indices into the W vertices, sorted by leaf. */
   readonly index: Uint32Array;
-  /** (3 F) the same corners as vertices of a surface without seams: equal where positions are. */
+  /** (3 F) the corners as welded vertices: equal for equal positions. */
   readonly welded: Uint32Array;
-  /** (3 V) the unit normal at every vertex of ``welded``. */
+  /** (3 V) unit normal of every welded vertex. */
   readonly vertexNormals: Float32Array;
-  /** (3 F) whether the corner's vertex is also one of another leaf. */
+  /** (3 F) whether the vertex of the corner belongs to other leaves too. */
   readonly isShared: Uint8Array;
-  /** (3 L) centre of area of every leaf. */
+  /** (3 L) area-weighted centre of every leaf. */
   readonly leafCentre: Float64Array;
-  /** (L) */
+  /** (L) area of every leaf. */
   readonly leafArea: Float64Array;
-  /** -1 where the faces are turned inside out, else 1; ``vertexNormals`` are not turned. */
+  /** -1 if the faces are inside out, else 1; ``vertexNormals`` are as in the file. */
   readonly orientation: number;
   readonly centre: readonly [number, number, number];
   readonly radius: number;
@@ -27,15 +27,15 @@ export interface Surface {
 
 const UNIT = 32767;
 
-export async function buildSurface(model: Model, breathe: () => Promise<void>): Promise<Surface> {
+export async function buildSurface(model: Model, yieldToEventLoop: () => Promise<void>): Promise<Surface> {
   const { positions, index } = model;
   const representative = weld(positions, index.length / 3);
-  await breathe();
+  await yieldToEventLoop();
   const { normals, leafCentre, leafArea, volume } = faceSums(model, representative);
   normalize(normals);
-  await breathe();
+  await yieldToEventLoop();
   const corners = splitByLeaf(model, representative);
-  await breathe();
+  await yieldToEventLoop();
   const { centre, radius } = bounds(positions, index);
   return {
     position: gather(positions, corners.source),
@@ -52,7 +52,7 @@ export async function buildSurface(model: Model, breathe: () => Promise<void>): 
   };
 }
 
-/** For every vertex the first one at the same place; null where the mesh shares its vertices already. */
+/** Return the first vertex at the position of each vertex; null if the faces share their vertices already. */
 function weld(positions: Float32Array, faces: number): Uint32Array | null {
   const count = positions.length / 3;
   if (count < 0.6 * faces) return null;
@@ -93,7 +93,7 @@ function hash(a: number, b: number, c: number): number {
   return h ^ (h >>> 13);
 }
 
-/** Sums over faces, weighted with their areas: normals at vertices, centres of leaves. */
+/** Return area-weighted sums over the faces: vertex normals, leaf centres, leaf areas and the volume. */
 function faceSums(model: Model, representative: Uint32Array | null) {
   const { positions: p, index, leafStart } = model;
   const leaves = leafStart.length - 1;
@@ -101,7 +101,7 @@ function faceSums(model: Model, representative: Uint32Array | null) {
   const leafCentre = new Float64Array(3 * leaves);
   const leafArea = new Float64Array(leaves);
   const [ox, oy, oz] = [p[0] ?? 0, p[1] ?? 0, p[2] ?? 0];
-  let volume = 0; // six times that which the faces enclose, seen from the first vertex
+  let volume = 0; // six times the enclosed volume
   for (let leaf = 0; leaf < leaves; leaf++) {
     let total = 0;
     let cx = 0;
@@ -141,15 +141,15 @@ function faceSums(model: Model, representative: Uint32Array | null) {
   return { normals, leafCentre, leafArea, volume };
 }
 
-/** A vertex for every pair of a leaf and a vertex of the file that it uses. */
+/** Create one vertex for every pair of a leaf and a vertex that it uses. */
 function splitByLeaf(model: Model, representative: Uint32Array | null) {
   const { positions, index, leafStart } = model;
   const leaves = leafStart.length - 1;
   const count = positions.length / 3;
   const owner = new Int32Array(count).fill(-1);
   const latest = new Int32Array(count);
-  const firstLeafAt = new Int32Array(count).fill(-1); // by place
-  const manyAt = new Uint8Array(count); // by place: whether several leaves meet there
+  const firstLeafAt = new Int32Array(count).fill(-1); // by welded vertex
+  const manyAt = new Uint8Array(count); // by welded vertex: whether several leaves meet
   const result = new Uint32Array(index.length);
   const source: number[] = [];
   const leafOf: number[] = [];
@@ -203,7 +203,7 @@ function encode(
   return result;
 }
 
-/** Make vectors unit vectors; those of no length stay. */
+/** Normalize vectors in place; vectors of length 0 are kept. */
 function normalize(vectors: Float32Array): void {
   for (let i = 0; i < vectors.length; i += 3) {
     const length = Math.sqrt(vectors[i]! ** 2 + vectors[i + 1]! ** 2 + vectors[i + 2]! ** 2);

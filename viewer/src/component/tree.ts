@@ -1,4 +1,4 @@
-/** The tree of cuts: its nodes, and the sets of nodes that are the parts at a level or after cuts made by hand. */
+/** The tree of cuts, and its cuts: the parts at a level or after edits by hand. */
 
 /** A node of the tree; node 0 is the whole mesh, and split s makes the nodes 2 s + 1 and 2 s + 2. */
 export interface TreeNode {
@@ -9,16 +9,16 @@ export interface TreeNode {
   readonly children: readonly number[];
   /** The smallest number of segments at which the node is a segment. */
   readonly level: number;
-  /** Its label, and so its colour, wherever it is a segment. */
+  /** Its label at every level at which it is a segment; selects its colour. */
   readonly label: number;
   /** In squared units of the mesh. */
   readonly area: number;
   readonly faces: number;
-  /** Of the cut that splits the node; null where nothing splits it. */
+  /** Value of the cut that splits the node; null for a leaf. */
   readonly cutValue: number | null;
 }
 
-/** The nodes that are split; with a node its parent is in the set too. The parts are the nodes just below. */
+/** The set of nodes that are split; it contains the parents of its nodes. The parts are the nodes just below. */
 export type Cut = ReadonlySet<number>;
 
 export class PartTree {
@@ -42,29 +42,29 @@ export class PartTree {
     return this.node(0).area;
   }
 
-  /** Entry i is the value of the cut from i + 1 to i + 2 segments. */
+  /** Entry i: value of the cut from i + 1 to i + 2 segments. */
   get cutValues(): (number | null)[] {
     return Array.from({ length: this.maxSegments - 1 }, (_, split) => this.node(this.splitNode(split)).cutValue);
   }
 
-  /** The node that split s cuts. */
+  /** Return the node that a split cuts. */
   splitNode(split: number): number {
     return this.node(2 * split + 1).parent;
   }
 
-  /** The number of the split that cuts a node; -1 for a leaf. */
+  /** Return the split that cuts a node; -1 for a leaf. */
   splitOf(id: number): number {
     const first = this.node(id).children[0];
     return first === undefined ? -1 : (first - 1) / 2;
   }
 
-  /** The cut that has a number of segments, 1 to maxSegments. */
+  /** Return the cut with a number of segments, clipped to 1..maxSegments. */
   cutAt(segments: number): Cut {
     const count = Math.min(Math.max(Math.round(segments), 1), this.maxSegments) - 1;
     return new Set(Array.from({ length: count }, (_, split) => this.splitNode(split)));
   }
 
-  /** The cut that makes exactly these splits and those that they need. */
+  /** Return the cut with the given splits and the splits above them. */
   cutOfSplits(splits: Iterable<number>): Cut {
     const cut = new Set<number>();
     for (const split of splits) {
@@ -74,18 +74,18 @@ export class PartTree {
     return cut;
   }
 
-  /** The splits of a cut, in the order of the tree. */
+  /** Return the splits of a cut in ascending order. */
   splitsOf(cut: Cut): number[] {
     return [...cut].map((id) => this.splitOf(id)).sort((a, b) => a - b);
   }
 
-  /** The number of segments whose cut this is; null where the cut was made by hand. */
+  /** Return the number of segments of a cut; null if it is not a level of the tree. */
   levelOf(cut: Cut): number | null {
     for (let split = 0; split < cut.size; split++) if (!cut.has(this.splitNode(split))) return null;
     return cut.size + 1;
   }
 
-  /** The parts of a cut, by label. */
+  /** Return the parts of a cut, sorted by label. */
   parts(cut: Cut): number[] {
     const parts: number[] = [];
     this.walk(cut, (id, isPart) => isPart && parts.push(id));
@@ -104,35 +104,35 @@ export class PartTree {
     }
   }
 
-  /** The part that a node belongs to: itself or the first node above it that is not split; -1 where it is split. */
+  /** Return the part that contains a node; -1 if the node itself is split. */
   partOf(cut: Cut, id: number): number {
     let part = -1;
     for (let at = id; at >= 0; at = this.node(at).parent) if (!cut.has(at)) part = at;
     return part;
   }
 
-  /** Whether a node is another one or lies above it. */
+  /** Whether ``above`` is ``below`` or one of its ancestors. */
   contains(above: number, below: number): boolean {
     for (let id = below; id >= above; id = this.node(id).parent) if (id === above) return true;
     return false;
   }
 
-  /** The parts of a cut below a node, or the node itself where it is one. */
+  /** Return the parts of a cut at or below a node. */
   partsBelow(cut: Cut, id: number): number[] {
     return this.parts(cut).filter((part) => this.contains(id, part));
   }
 
-  /** The cut with one part split further. */
+  /** Return the cut with one more part split. */
   split(cut: Cut, part: number): Cut {
     return this.node(part).children.length === 0 ? cut : new Set([...cut, part]);
   }
 
-  /** The cut with all parts below a node made one. */
+  /** Return the cut with all parts below a node merged. */
   merge(cut: Cut, id: number): Cut {
     return new Set([...cut].filter((other) => !this.contains(id, other)));
   }
 
-  /** The nearest node that lies above all the given ones; the parent where it is one alone. */
+  /** Return the lowest node that contains all the given nodes; for a single node its parent. */
   commonAncestor(ids: readonly number[]): number {
     const [first, ...others] = ids;
     if (first === undefined) return 0;

@@ -1,11 +1,11 @@
-/** The state of the page as the fragment of its address, so that a link shows the same thing. */
+/** Reads and writes the state of the page as the fragment of its URL, so that a link shows the same view. */
 
 import type { PartTree, View } from "../component/element";
 import { FIRST_MODES, type Modes, type Session, type Work } from "./session";
 
 export interface Address {
   readonly job: string | null;
-  /** A second job, shown beside the first. */
+  /** A second job to show beside the first. */
   readonly beside: string | null;
   readonly view: View | null;
   readonly values: URLSearchParams;
@@ -16,7 +16,7 @@ export function readAddress(hash: string): Address {
   return { job: values.get("job"), beside: values.get("beside"), view: readView(values.get("view")), values };
 }
 
-/** What an address says about the work on a result and the way it is looked at. */
+/** Return the edits and the display modes that a fragment contains. */
 export function readState({ values }: Address, tree: PartTree): { work: Partial<Work>; modes: Partial<Modes> } {
   const level = values.get("k");
   const splits = values.get("cut");

@@ -1,4 +1,4 @@
-/** The HTTP API of the service, as far as the page needs it. */
+/** Client for the parts of the HTTP API that the page uses. */
 
 import { ApiError, type Problem } from "./problems";
 
@@ -26,7 +26,6 @@ export interface JobPage {
 }
 
 export interface Formats {
-  readonly meshes: { readonly title: string; readonly extensions: string[] }[];
   readonly max_upload_bytes: number;
 }
 
@@ -49,7 +48,7 @@ export interface Parameter {
 
 const KEY = "cleave.key";
 
-/** The API key of this browser; empty where the server asks for none. */
+/** The API key stored in this browser; empty if the server requires none. */
 export const apiKey = {
   get: (): string => localStorage.getItem(KEY) ?? "",
   set: (key: string): void => localStorage.setItem(KEY, key),
@@ -60,7 +59,7 @@ export function headers(): Record<string, string> {
   return key === "" ? {} : { Authorization: `Bearer ${key}` };
 }
 
-/** The path of a job on this server, below the folder of the page. */
+/** Return the path of a job, relative to the page. */
 export const jobPath = (id: string, rest = ""): string => `v1/jobs/${encodeURIComponent(id)}${rest}`;
 
 export const getJob = (id: string): Promise<Job> => get(jobPath(id));
@@ -83,14 +82,14 @@ export async function getBlob(path: string, signal?: AbortSignal): Promise<Blob>
   return (await request(path, signal === undefined ? {} : { signal })).blob();
 }
 
-/** An answer that is no error. Throws ApiError, or TypeError where the server does not answer. */
+/** Send a request and return its response. Throws ApiError for an error response, TypeError if the server is unreachable. */
 export async function request(path: string, options: RequestInit = {}): Promise<Response> {
   const answer = await fetch(path, { ...options, headers: { ...headers(), ...options.headers } });
   if (!answer.ok) throw new ApiError(problemIn(await answer.text(), answer.status), answer.status);
   return answer;
 }
 
-/** Send a mesh, telling how much of it is under way. */
+/** Upload a mesh; ``onSent`` receives the fraction of bytes sent. */
 export function submit(
   file: File,
   parameters: Readonly<Record<string, unknown>>,
@@ -109,7 +108,7 @@ export function submit(
       if (exchange.status < 300) resolve(JSON.parse(exchange.responseText) as Job);
       else reject(new ApiError(problemIn(exchange.responseText, exchange.status), exchange.status));
     };
-    exchange.onerror = () => reject(new TypeError("The server does not answer."));
+    exchange.onerror = () => reject(new TypeError("The server is not responding."));
     exchange.onabort = () => reject(new DOMException("Stopped.", "AbortError"));
     signal.addEventListener("abort", () => exchange.abort());
     exchange.send(form);
@@ -125,7 +124,7 @@ function problemIn(text: string, status: number): Problem {
     const { code, detail } = JSON.parse(text) as Partial<Problem>;
     if (typeof code === "string" && typeof detail === "string") return { code, detail };
   } catch {
-    // Something between the page and the server has answered.
+    // The response is not from Cleave, for example an HTML error page of a proxy.
   }
-  return { code: status === 401 ? "unauthorized" : "unexpected", detail: `The server answered ${status}.` };
+  return { code: status === 401 ? "unauthorized" : "unexpected", detail: `The server responded with status ${status}.` };
 }

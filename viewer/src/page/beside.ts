@@ -1,4 +1,4 @@
-/** A second result beside the first, seen from the same side. */
+/** Shows a second result beside the first, with a shared camera. */
 
 import type { CleaveViewer, LoadDetail } from "../component/element";
 import { headers, jobPath, type Job } from "./api";
@@ -35,7 +35,7 @@ export class Beside {
     byId("beside-about").textContent = differences(job);
     byId("beside-stage").append(this.viewer);
     this.viewer.requestHeaders = headers();
-    this.viewer.setAttribute("label", `Beside it: ${job.input.file_name ?? "mesh"}`);
+    this.viewer.setAttribute("label", `Second result: ${job.input.file_name ?? "mesh"}`);
     this.viewer.setAttribute("src", jobPath(job.id, "/model.glb?levels=all"));
     this.#onChange();
   }

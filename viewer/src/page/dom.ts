@@ -1,16 +1,16 @@
-/** Short ways to the elements of the page. */
+/** Helpers for finding, creating and announcing page elements. */
 
 type Child = Node | string | null | false;
 type Properties = Record<string, unknown>;
 
-/** The element with an id; the page has it. */
+/** Return the element with an id. Throws if the page has none. */
 export function byId<T extends Element = HTMLElement>(id: string): T {
   const element = document.getElementById(id);
   if (element === null) throw new Error(`The page has no element ${id}.`);
   return element as unknown as T;
 }
 
-/** A new element. Properties are set as such; names with a dash and ``role`` are attributes, ``on...`` are listeners. */
+/** Create an element. Names with a dash, ``role`` and ``list`` set attributes, ``on...`` adds listeners, others set properties. */
 export function h<K extends keyof HTMLElementTagNameMap>(
   tag: K,
   properties: Properties = {},
@@ -26,7 +26,7 @@ export function h<K extends keyof HTMLElementTagNameMap>(
   return element;
 }
 
-/** One of the icons of the page. */
+/** Create an icon from the sprite in index.html. */
 export function icon(name: string): SVGSVGElement {
   const svg = document.createElementNS("http://www.w3.org/2000/svg", "svg");
   svg.setAttribute("aria-hidden", "true");
@@ -37,12 +37,12 @@ export function icon(name: string): SVGSVGElement {
   return svg;
 }
 
-/** Tell people who listen to the page. */
+/** Announce a text to screen readers. */
 export function announce(text: string): void {
   byId("announcer").textContent = text;
 }
 
-/** A short message at the edge of the page. */
+/** Show a short message for four seconds. */
 export function toast(text: string): void {
   const note = h("p", { className: "toast" }, text);
   byId("toasts").append(note);
@@ -50,7 +50,7 @@ export function toast(text: string): void {
   setTimeout(() => note.remove(), 4000);
 }
 
-/** Open a dialog that a click outside closes too. */
+/** Open a modal dialog; a click on its backdrop closes it. */
 export function openDialog(dialog: HTMLDialogElement): void {
   dialog.showModal();
   dialog.onclick = (event) => {

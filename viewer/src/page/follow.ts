@@ -1,4 +1,4 @@
-/** Follows a job to its end: by server-sent events, or by asking again and again where they do not come through. */
+/** Follows a job to its end by server-sent events, or by polling if the event stream fails. */
 
 import { getJob, headers, jobPath, type Job } from "./api";
 import { ApiError } from "./problems";
@@ -9,11 +9,11 @@ const LONGEST_PAUSE_MS = 5000;
 
 export interface Follower {
   onJob(job: Job): void;
-  /** Whether the server answers; told when that changes. */
+  /** Called after each poll: whether the server responded. */
   onConnection(isThere: boolean): void;
 }
 
-/** The job when it has ended. Throws ApiError where the server no longer has it; waits for a server that is away. */
+/** Return the job once it has ended. Throws ApiError if the job is gone; retries while the server is unreachable. */
 export async function follow(id: string, follower: Follower, signal: AbortSignal): Promise<Job> {
   const ended = await stream(id, follower, signal).catch((error: unknown) => {
     if (signal.aborted || (error instanceof ApiError && error.status < 500)) throw error;
@@ -39,7 +39,7 @@ async function stream(id: string, follower: Follower, signal: AbortSignal): Prom
       const job = jobIn(event);
       if (job === null) continue;
       follower.onJob(job);
-      if (hasEnded(job)) ended = job; // the service closes the stream
+      if (hasEnded(job)) ended = job; // the service then closes the stream
     }
   }
 }

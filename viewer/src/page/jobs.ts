@@ -1,4 +1,4 @@
-/** The list of jobs: pictures, search, delete. */
+/** The drawer with the list of jobs: thumbnails, search, deletion. */
 
 import { deleteJob, getBlob, jobPath, listJobs, type Job } from "./api";
 import { byId, h, icon, openDialog, toast } from "./dom";
@@ -15,7 +15,7 @@ export class JobList {
   readonly #search = byId<HTMLInputElement>("job-search");
   readonly #onChoose: (job: Job, purpose: Purpose) => void;
   readonly #onDeleted: (id: string) => void;
-  readonly #pictures = new Map<string, string>(); // addresses of blobs, by job
+  readonly #pictures = new Map<string, string>(); // object URLs by job id
   readonly #seen = new IntersectionObserver((entries) => this.#loadPictures(entries));
   #jobs: Job[] = [];
   #cursor: string | null = null;
@@ -78,7 +78,7 @@ export class JobList {
     this.#onChoose(job, this.#purpose);
   }
 
-  /** A second press deletes. */
+  /** Ask for confirmation before deleting a job. */
   #ask(job: Job, row: HTMLElement, remove: HTMLElement): void {
     const sure = h("button", { type: "button", className: "danger" }, "Delete");
     const keep = h("button", { type: "button", className: "quiet" }, "Keep");
@@ -103,7 +103,7 @@ export class JobList {
     const next = (row.nextElementSibling ?? row.previousElementSibling)?.querySelector("button") ?? this.#search;
     row.remove();
     next.focus();
-    toast(`${nameOf(job)} is deleted.`);
+    toast(`${nameOf(job)} was deleted.`);
     this.#filter();
     this.#onDeleted(job.id);
   }
@@ -117,7 +117,7 @@ export class JobList {
       if (isShown) shown++;
     }
     byId("no-jobs").hidden = shown > 0;
-    byId("no-jobs").textContent = this.#jobs.length === 0 ? "No jobs yet. Drop a mesh to begin." : "No job of this name.";
+    byId("no-jobs").textContent = this.#jobs.length === 0 ? "No jobs yet. Drop a mesh to start." : "No job matches.";
   }
 
   #loadPictures(entries: IntersectionObserverEntry[]): void {

@@ -1,11 +1,11 @@
-/** The level slider, with the curve of cut values under it. */
+/** The slider for the number of parts, over a chart of the cut values. */
 
 import { byId } from "./dom";
 import type { Session } from "./session";
 import { figure, plural } from "./text";
 
 const HEIGHT = 40;
-const HEADROOM = 3; // above the highest value
+const HEADROOM = 3; // pixels above the highest value
 
 export class LevelSlider {
   readonly #range = byId<HTMLInputElement>("level");
@@ -28,7 +28,7 @@ export class LevelSlider {
     byId("level-more").addEventListener("click", () => this.#step(1));
   }
 
-  /** Draw the curve of a new result. */
+  /** Draw the chart of a new result. */
   open(session: Session): void {
     const values = session.tree.cutValues;
     const most = session.tree.maxSegments;
@@ -36,7 +36,7 @@ export class LevelSlider {
     this.#range.disabled = most === 1;
     this.#chart.setAttribute("viewBox", `0 0 ${Math.max(most - 1, 1)} ${HEIGHT}`);
     const highest = Math.max(...values.map((value) => value ?? 0), Number.MIN_VALUE);
-    // Roots, since the cuts between parts have far smaller values than the arbitrary ones at the end.
+    // Square roots: cuts between parts have much smaller values than the arbitrary cuts at the end.
     const heights = values.map((value) => HEIGHT - (HEIGHT - HEADROOM) * Math.sqrt((value ?? highest) / highest));
     const curve = heights.map((height, i) => `${i === 0 ? "M" : "L"}${i + 1} ${height}`).join("");
     const area = values.length === 0 ? "" : `M0 ${HEIGHT}L1 ${heights[0]}${curve.replace("M", "L")}V${HEIGHT}Z`;
@@ -56,10 +56,10 @@ export class LevelSlider {
     this.#range.value = String(segments);
     this.#number.value = String(segments);
     this.#unit.textContent = segments === 1 ? "part" : "parts";
-    this.#range.setAttribute("aria-valuetext", `${plural(segments, "part")}${isLevel ? "" : ", cut by hand"}`);
+    this.#range.setAttribute("aria-valuetext", `${plural(segments, "part")}${isLevel ? "" : ", edited by hand"}`);
     const isAutomatic = isLevel && segments === session.automaticSegments;
     this.#automatic.setAttribute("aria-pressed", String(isAutomatic));
-    this.#note.textContent = isLevel ? nextCut(session, segments) : "Cut by hand. Moving the slider returns to the levels.";
+    this.#note.textContent = isLevel ? nextCut(session, segments) : "Edited by hand. Moving the slider replaces the edits.";
     this.#chart.querySelector("#level-clip rect")!.setAttribute("width", String(segments - 1));
   }
 
@@ -73,6 +73,6 @@ export class LevelSlider {
 
 function nextCut(session: Session, segments: number): string {
   const value = session.tree.cutValues[segments - 1];
-  if (value === undefined) return "The finest level.";
-  return `The next cut has the value ${figure(value)}.`;
+  if (value === undefined) return "This is the finest level.";
+  return `Value of the next cut: ${figure(value)}. Low values are clear borders.`;
 }

@@ -1,4 +1,4 @@
-/** The page: one viewer, what is shown in it, and everything around it. */
+/** The page: connects the viewer with the panels, the dialogs and the URL. */
 
 import { CleaveViewer, type LoadDetail, type View } from "../component/element";
 import { readAddress, readState, writeAddress, type Address } from "./address";
@@ -18,13 +18,13 @@ import { bytes, plural, stem } from "./text";
 import { listenToTheme } from "./theme";
 import { Tools } from "./tools";
 
-const SAVE_PAUSE_MS = 250; // browsers refuse an address that changes too often
+const SAVE_PAUSE_MS = 250; // browsers limit how often a page may change its URL
 
 class Page {
   readonly #viewer = byId<CleaveViewer>("viewer");
   readonly #start = new Start({
     onFinished: (job, file) => this.#finished(job, file),
-    onRemedy: (remedy) => this.#help(remedy),
+    onRemedy: (remedy) => this.#applyRemedy(remedy),
     onLeave: () => this.#leave(),
   });
   readonly #level = new LevelSlider(() => this.#session);
@@ -38,12 +38,12 @@ class Page {
   readonly #beside = new Beside(this.#viewer, () => this.#save());
   #session: Session | null = null;
   #job: Job | null = null;
-  /** The mesh itself, where it was sent from this page. */
+  /** The mesh file, if it was uploaded from this page. */
   #file: File | null = null;
   #opening: Address | null = null;
   #next: { segments: number | null; isBeside: boolean } = { segments: null, isBeside: false };
   #view: View | null = null;
-  /** Whether a person has turned the model. */
+  /** Whether the user has moved the camera. */
   #isMoved = false;
   #saving = 0;
   #frame = 0;
@@ -74,7 +74,7 @@ class Page {
       this.#session?.setModes({ selected: parts });
       if (parts.length === 1) announce(`${this.#session?.nameOf(parts[0]!)} selected.`);
     });
-    // The camera comes to rest after the hand, so all moves count from the first one on.
+    // The camera is damped and moves on after the input, so every move after the first input counts.
     for (const name of ["pointerdown", "wheel", "keydown"])
       viewer.addEventListener(name, () => (this.#isMoved = true), { passive: true });
     byId("reset-view").addEventListener("click", () => (this.#isMoved = true), { capture: true });
@@ -98,7 +98,7 @@ class Page {
     listenToTheme([viewer, this.#beside.viewer]);
   }
 
-  /** Show what the address says. */
+  /** Show the state in the URL. */
   async #openAddress(): Promise<void> {
     const address = readAddress(location.hash);
     if (address.job === null) return this.#close();
@@ -190,7 +190,7 @@ class Page {
     }
   }
 
-  /** After any change: the picture follows at once, the rest of the page with the next frame. */
+  /** Update the viewer at once after a change, the rest of the page with the next frame. */
   #changed(): void {
     const { work, modes } = this.#session!;
     this.#viewer.cut = work.cut;
@@ -223,7 +223,7 @@ class Page {
   async #run(run: Run): Promise<void> {
     this.#next = { segments: run.segments, isBeside: run.isBeside };
     if (this.#file === null) {
-      toast("Choose the mesh again to run it with other parameters.");
+      toast("Choose the mesh file again to run it with other parameters.");
       this.#start.parameters = run.parameters;
       this.#start.choose();
     } else {
@@ -235,13 +235,13 @@ class Page {
     void this.#drawer.open(this.#job?.parameters ?? this.#start.parameters, this.#session !== null);
   }
 
-  #help(remedy: Remedy): void {
+  #applyRemedy(remedy: Remedy): void {
     if (remedy === "jobs") void this.#jobs.open("open");
     else if (remedy === "parameters") this.#openParameters();
     else void this.#openAddress();
   }
 
-  /** Back to the result that was there before, or to the beginning. */
+  /** Return to the previous result, or to the start page. */
   #leave(): void {
     this.#next = { segments: null, isBeside: false };
     if (this.#session !== null) return this.#start.show("none");

@@ -1,15 +1,16 @@
-/** The drawer of parameters, made from the schema that the service gives. */
+/** The drawer of parameters, built from the JSON Schema of GET /v1/methods. */
 
 import { getMethods, type Parameter } from "./api";
 import { byId, h, openDialog, toast } from "./dom";
 import { explain, problemOf } from "./problems";
+import { capitalized } from "./text";
 
-/** Changed by few people; shown under "More". */
+/** Shown at once; all others are under "More". */
 const USUAL = ["affinity", "solver", "max_segments"];
 
 export interface Run {
   readonly parameters: Readonly<Record<string, unknown>>;
-  /** The number of parts to show; null for the automatic one. */
+  /** The number of parts to show; null for the automatic number. */
   readonly segments: number | null;
   readonly isBeside: boolean;
 }
@@ -26,7 +27,7 @@ export class ParameterDrawer {
     byId("want").addEventListener("change", () => this.#showNumber());
   }
 
-  /** ``canRun`` says whether the mesh is at hand; else one is to be chosen. */
+  /** Open the drawer with the present values; ``hasResult`` enables a comparison with the shown result. */
   async open(present: Readonly<Record<string, unknown>>, hasResult: boolean): Promise<void> {
     try {
       if (this.#fields.size === 0) this.#build((await getMethods()).properties);
@@ -80,7 +81,7 @@ export class ParameterDrawer {
   }
 }
 
-/** What a schema allows, with the way out for null taken away. */
+/** Return a schema merged with its first alternative that is not null. */
 function core(schema: Parameter): Parameter {
   return { ...schema, ...schema.anyOf?.find(({ type }) => type !== "null") };
 }
@@ -109,7 +110,7 @@ function fieldFor(name: string, schema: Parameter): HTMLInputElement | HTMLSelec
   const { minimum, maximum } = core(schema);
   const isWhole = typesOf(schema).includes("integer");
   const input = h("input", { id, type: "number", step: isWhole ? "1" : "any", placeholder: "automatic" });
-  // With alternatives the limits are those of one of them, and the service checks.
+  // With alternatives, the limits belong to one of them only; the service checks the value.
   if (schema.anyOf === undefined) {
     if (minimum !== undefined) input.min = String(minimum);
     if (maximum !== undefined) input.max = String(maximum);
@@ -126,6 +127,5 @@ function valueOf(input: HTMLInputElement | HTMLSelectElement, schema: Parameter)
 }
 
 function title(name: string): string {
-  const words = name.replaceAll("_", " ");
-  return words.charAt(0).toUpperCase() + words.slice(1);
+  return capitalized(name.replaceAll("_", " "));
 }

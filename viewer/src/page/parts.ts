@@ -1,11 +1,11 @@
-/** The tree of parts beside the picture: opening a part splits it, closing a group merges it. */
+/** The tree of parts: expanding a part splits it, collapsing a group merges it. */
 
 import type { CleaveViewer } from "../component/element";
 import { byId, h, icon } from "./dom";
 import type { Session } from "./session";
 import { count, figure, plural, share } from "./text";
 
-const DEEPEST_STEP = 7; // deeper rows are not moved further in
+const DEEPEST_STEP = 7; // deeper rows are not indented further
 
 export class PartsPanel {
   readonly #list = byId("tree");
@@ -40,7 +40,7 @@ export class PartsPanel {
     byId("show-all").textContent = `Show ${plural(work.hidden.size, "hidden part")}`;
     const focused = idOf(rowOf(document.activeElement));
     this.#rows.clear();
-    // A group of all parts would say nothing: the rows begin below it.
+    // The root is omitted: it always contains all parts.
     tree.walk(work.cut, (id, isPart, depth) => {
       if (isPart || id > 0) this.#rows.set(id, this.#row(session, id, isPart, Math.max(depth - 1, 0)));
     });
@@ -52,7 +52,7 @@ export class PartsPanel {
     this.#revealSelection(session);
   }
 
-  /** Mark the row of the part that is pointed at in the picture. */
+  /** Highlight the row of the part under the pointer. */
   highlight(part: number): void {
     this.#list.querySelector(".is-hovered")?.classList.remove("is-hovered");
     this.#rows.get(part)?.classList.add("is-hovered");
@@ -127,13 +127,13 @@ export class PartsPanel {
     session.setHidden(parts, !parts.every((part) => session.work.hidden.has(part)));
   }
 
-  /** Have the name of the selected part typed. */
+  /** Focus the name field of the selected part. */
   #rename(): void {
-    this.update(); // the field is shown with the selection
+    this.update(); // shows the field
     byId<HTMLInputElement>("part-name").select();
   }
 
-  /** As the ARIA Authoring Practices have it for trees. */
+  /** Handle a key as in the tree view pattern of the ARIA Authoring Practices. */
   #key(event: KeyboardEvent): void {
     const session = this.#session();
     const row = rowOf(event.target);
@@ -205,7 +205,7 @@ export class PartsPanel {
     const merge = byId<HTMLButtonElement>("merge");
     merge.disabled = merged < 2;
     merge.querySelector("span")!.textContent = merged > selected.length ? `Merge ${merged}` : "Merge";
-    merge.title = merged > selected.length ? `The smallest group around it has ${merged} parts` : "";
+    merge.title = merged > selected.length ? `Merges the smallest group that contains the selection: ${merged} parts` : "";
     const isHidden = selected.every((id) => work.hidden.has(id));
     byId("hide").querySelector("span")!.textContent = isHidden ? "Show" : "Hide";
   }

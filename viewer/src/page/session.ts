@@ -1,8 +1,8 @@
-/** What is done to a result in the page: cuts by hand, hidden parts, names, with undo; and how it is looked at. */
+/** The editing state of a result (cut, hidden parts, names) with undo, and its display modes. */
 
 import type { Cut, PartTree } from "../component/element";
 
-/** What undo takes back. */
+/** The state that undo restores. */
 export interface Work {
   readonly cut: Cut;
   readonly hidden: ReadonlySet<number>;
@@ -73,7 +73,7 @@ export class Session {
     return isPart ? `Part ${this.tree.node(id).label + 1}` : "Group";
   }
 
-  /** Begin again from what a link says. */
+  /** Replace the state by that of a link. */
   restore(work: Partial<Work>, modes: Partial<Modes>): void {
     this.#work = { ...this.#work, ...work };
     this.#work = { ...this.#work, hidden: carryHidden(this.tree, this.#work.cut, this.#work.cut, this.#work.hidden) };
@@ -87,7 +87,7 @@ export class Session {
     this.#onChange();
   }
 
-  /** Show a level; while the slider is held the steps between are one for undo. */
+  /** Show a level while the slider moves; all steps until endSlide are one undo step. */
   slide(segments: number): void {
     this.#slidingFrom ??= this.#work;
     this.#recut(this.tree.cutAt(segments));
@@ -109,7 +109,7 @@ export class Session {
     this.#change(() => this.#recut(cut));
   }
 
-  /** Make one part of everything below a node. */
+  /** Merge all parts below a node into one. */
   mergeBelow(id: number): void {
     this.#change(() => {
       this.#recut(this.tree.merge(this.#work.cut, id));
@@ -143,14 +143,14 @@ export class Session {
   }
 
   undo(): void {
-    this.#travel(this.#past, this.#future);
+    this.#moveHistory(this.#past, this.#future);
   }
 
   redo(): void {
-    this.#travel(this.#future, this.#past);
+    this.#moveHistory(this.#future, this.#past);
   }
 
-  #travel(from: Work[], to: Work[]): void {
+  #moveHistory(from: Work[], to: Work[]): void {
     const work = from.pop();
     if (work === undefined) return;
     to.push(this.#work);
@@ -177,7 +177,7 @@ export class Session {
     this.#modes = { ...this.#modes, selected: this.#carrySelected() };
   }
 
-  /** The selected parts, or what became of them. */
+  /** Return the selection, mapped to the parts of the present cut. */
   #carrySelected(): number[] {
     const { tree } = this;
     const parts = this.#modes.selected.flatMap((id) => {
@@ -189,7 +189,7 @@ export class Session {
   }
 }
 
-/** A part is hidden where it was, or the one that it comes from, or all those that it is made of. */
+/** Hide a part of the new cut if it, its ancestor or all its descendants were hidden in the old one. */
 function carryHidden(tree: PartTree, before: Cut, after: Cut, hidden: ReadonlySet<number>): Set<number> {
   if (hidden.size === 0) return new Set();
   return new Set(

@@ -1,8 +1,9 @@
-/** From a file to a finished job: dropping, choosing, samples, the upload and the stages of the work. */
+/** The start page: choosing a file or a sample, the upload, and the progress of the job. */
 
 import { apiKey, cancelJob, getBlob, getFormats, submit, type Job } from "./api";
 import { announce, byId, h, icon } from "./dom";
 import { follow, hasEnded } from "./follow";
+import lists from "./lists.json";
 import { ApiError, explain, problemOf, type Problem, type Remedy } from "./problems";
 import { bytes } from "./text";
 
@@ -11,7 +12,7 @@ type Parameters = Readonly<Record<string, unknown>>;
 export interface StartEvents {
   onFinished(job: Job, file: File | null): void;
   onRemedy(remedy: Remedy): void;
-  /** A person goes back to where they came from. */
+  /** Called if the user stops a job or goes back from an error. */
   onLeave(): void;
 }
 
@@ -22,18 +23,14 @@ const SAMPLES: readonly [name: string, title: string][] = [
   ["stool", "Stool"],
 ];
 
-/** What the stages of a job are called, in their order. */
+/** Titles of the stages of a job, in order. */
 const STAGES: readonly [stage: string, title: string][] = [
   ["upload", "Sending the mesh"],
   ["queued", "Waiting for a worker"],
-  ["reading", "Reading the file"],
-  ["clean", "Cleaning the surface"],
-  ["affinity", "Looking for concavities"],
-  ["coarsen", "Grouping faces"],
-  ["cut", "Finding the best cuts"],
-  ["label", "Naming the parts"],
+  ...lists.stages.map(({ name, title }): [string, string] => [name, title]),
   ["show", "Drawing"],
 ];
+const FORMATS = lists.inputFormats.map(({ title }) => title).join(", ");
 
 export class Start {
   readonly #events: StartEvents;
@@ -42,7 +39,7 @@ export class Start {
   #job: Job | null = null;
   #last: { file: File; parameters: Parameters } | null = null;
   #mostBytes = Infinity;
-  /** For the next mesh that is chosen. */
+  /** Parameters for the next file that is chosen. */
   parameters: Parameters = {};
 
   constructor(events: StartEvents) {
@@ -58,24 +55,26 @@ export class Start {
     byId("back").addEventListener("click", () => this.#events.onLeave());
     this.#listenToDrops();
     this.#fillSamples();
-    void this.#learnLimits();
+    this.#input.accept = [...lists.inputFormats.flatMap(({ extensions }) => extensions), ".gz"].join(",");
+    byId("formats").textContent = FORMATS;
+    void this.#loadLimits();
   }
 
   choose(): void {
     this.#input.click();
   }
 
-  /** Show the first page, or what became of a mesh. */
+  /** Show one of the cards of the start page, or none. */
   show(what: "start" | "progress" | "problem" | "none"): void {
     byId("welcome").hidden = what === "none";
     for (const id of ["start", "progress", "problem"]) byId(id).hidden = id !== what;
   }
 
-  /** Segment a file. */
+  /** Upload a file and follow its job. */
   async send(file: File, parameters: Parameters): Promise<void> {
     this.#last = { file, parameters };
     if (file.size > this.#mostBytes) {
-      const detail = `${file.name} has ${bytes(file.size)}, and this server takes ${bytes(this.#mostBytes)}.`;
+      const detail = `${file.name} has ${bytes(file.size)}; this server accepts at most ${bytes(this.#mostBytes)}.`;
       return this.fail({ code: "too_large", detail });
     }
     await this.#run(file.name, file, (signal) => {
@@ -84,7 +83,7 @@ export class Start {
     });
   }
 
-  /** Follow a job that was submitted before. */
+  /** Follow a job that was submitted earlier. */
   async resume(job: Job): Promise<void> {
     this.#last = null;
     await this.#run(job.input.file_name ?? "mesh", null, () => Promise.resolve(job));
@@ -120,7 +119,7 @@ export class Start {
       this.#job = await begin(running.signal);
       const job = hasEnded(this.#job)
         ? this.#job
-        : await follow(this.#job.id, { onJob: (job) => this.#told(job), onConnection: connection }, running.signal);
+        : await follow(this.#job.id, { onJob: (job) => this.#showProgress(job), onConnection: connection }, running.signal);
       if (!running.signal.aborted) this.#ended(job, file);
     } catch (error) {
       if (!running.signal.aborted) this.fail(problemOf(error));
@@ -138,18 +137,18 @@ export class Start {
     }
   }
 
-  #told(job: Job): void {
+  #showProgress(job: Job): void {
     const waiting = job.status === "queued";
-    this.#stage(waiting ? "queued" : (job.stage ?? "read"), job.progress);
-    const place = waiting && (job.queue_position ?? 0) > 1 ? `, ${job.queue_position! - 1} before it` : "";
+    this.#stage(waiting ? "queued" : (job.stage ?? lists.stages[0]!.name), job.progress);
+    const place = waiting && (job.queue_position ?? 0) > 1 ? `, ${job.queue_position! - 1} ahead of it` : "";
     byId("stages").querySelector("[data-stage=queued] span")!.textContent = `Waiting for a worker${place}`;
   }
 
-  /** Mark a stage as the present one; ``done`` is the part of the upload or of the work, 0..1. */
+  /** Mark the current stage; ``done`` is the completed fraction of the upload or of the job, 0..1. */
   #stage(stage: string, done: number): void {
     const at = Math.max(STAGES.findIndex(([name]) => name === stage), 0);
     const bar = byId<HTMLProgressElement>("progress-bar");
-    // The upload is the first third of the bar: both parts take seconds for meshes of every size.
+    // The upload takes the first third of the bar: upload and job both take seconds.
     bar.value = stage === "upload" ? done / 3 : 1 / 3 + (2 / 3) * done;
     byId("progress-share").textContent = `${Math.round(100 * bar.value)} %`;
     [...byId("stages").children].forEach((item, i) => {
@@ -239,12 +238,11 @@ export class Start {
     }
   }
 
-  async #learnLimits(): Promise<void> {
+  async #loadLimits(): Promise<void> {
     try {
-      const { meshes, max_upload_bytes } = await getFormats();
+      const { max_upload_bytes } = await getFormats();
       this.#mostBytes = max_upload_bytes;
-      this.#input.accept = [...meshes.flatMap(({ extensions }) => extensions), ".gz"].join(",");
-      byId("formats").textContent = `${meshes.map(({ title }) => title).join(", ")}, up to ${bytes(max_upload_bytes)}`;
+      byId("formats").textContent = `${FORMATS}, up to ${bytes(max_upload_bytes)}`;
     } catch (error) {
       if (error instanceof ApiError && error.status === 401) this.fail(problemOf(error));
     }
@@ -263,5 +261,5 @@ function connection(isThere: boolean): void {
   const note = byId("offline");
   if (note.hidden === isThere) return;
   note.hidden = isThere;
-  announce(isThere ? "The server answers again." : "The server does not answer. Trying again.");
+  announce(isThere ? "The server is responding again." : "The server is not responding. Retrying.");
 }

@@ -1,27 +1,25 @@
-/** Taking the result away: files at the cut that is shown, a picture, and the lines that would have done the same. */
+/** The dialog Take away: downloads of the present cut, a picture, and commands that produce the same result. */
 
 import type { CleaveViewer } from "../component/element";
 import { apiKey, getBlob, getMethods, jobPath, request } from "./api";
 import { byId, h, icon, openDialog, save, toast } from "./dom";
+import lists from "./lists.json";
 import { explain, problemOf } from "./problems";
 import type { Session } from "./session";
-import { plural, stem } from "./text";
+import { capitalized, plural, stem } from "./text";
 
 interface Download {
   readonly id: string;
   readonly title: string;
   readonly about: string;
-  /** The end of its path, and of the name of the file. */
+  /** End of the URL path. */
   readonly path: string;
+  /** End of the file name. */
   readonly ending: string;
 }
 
 const DOWNLOADS: readonly Download[] = [
-  { id: "glb", title: "GLB", about: "Named, coloured parts for any viewer", path: "model.glb", ending: ".glb" },
-  { id: "ply", title: "PLY", about: "Faces with colours and labels", path: "model.ply", ending: ".ply" },
-  { id: "obj", title: "OBJ", about: "A group for every part", path: "model.obj", ending: ".obj" },
-  { id: "3mf", title: "3MF", about: "Parts for printing", path: "model.3mf", ending: ".3mf" },
-  { id: "zip", title: "Separate parts", about: "A file for every part, in a ZIP", path: "parts.zip", ending: "-parts.zip" },
+  ...lists.formats.map(modelDownload),
   { id: "json", title: "Labels", about: "The part of every face, as JSON", path: "labels", ending: "-labels.json" },
 ];
 
@@ -41,9 +39,9 @@ export class TakeAway {
     this.#viewer = viewer;
     this.#shown = shown;
     byId("open-take-away").addEventListener("click", () => this.open());
-    byId("copy-link").addEventListener("click", () => void copy(location.href, "The link is copied."));
+    byId("copy-link").addEventListener("click", () => void copy(location.href, "Link copied."));
     for (const id of ["curl", "python"])
-      byId(`copy-${id}`).addEventListener("click", () => void copy(byId(id).textContent, "The lines are copied."));
+      byId(`copy-${id}`).addEventListener("click", () => void copy(byId(id).textContent, "Copied."));
   }
 
   open(): void {
@@ -52,7 +50,7 @@ export class TakeAway {
     byId("take-away-title").textContent = `Take away ${plural(shown.session.parts.length, "part")}`;
     byId("downloads").replaceChildren(
       ...DOWNLOADS.map((item) => this.#row(item.id, item.title, item.about, () => this.#download(item))),
-      this.#row("png", "Picture", "What you see, as PNG without a background", () => this.#savePicture()),
+      this.#row("png", "Picture", "This view as PNG, without a background", () => this.#savePicture()),
     );
     openDialog(this.#dialog);
     void this.#writeLines(shown);
@@ -94,20 +92,27 @@ export class TakeAway {
   }
 }
 
-/** What the cut that is shown is called in the address of a result. */
+/** Return the download of a model; its title in the list is a name, a comma and a description. */
+function modelDownload({ name, title, extension, path }: (typeof lists.formats)[number]): Download {
+  const [short, about] = title.split(", ");
+  const kind = stem(path) === "model" ? "" : `-${stem(path)}`;
+  return { id: name, title: short!, about: capitalized(about ?? ""), path, ending: `${kind}${extension}` };
+}
+
+/** Return the query string that selects the present cut. */
 function query(session: Session): string {
   const { tree, work } = session;
   const level = tree.levelOf(work.cut);
   return level === null ? `?splits=${tree.splitsOf(work.cut).join(",")}` : `?segments=${level}`;
 }
 
-/** The names that parts were given, by their labels in a file: 0, 1, ... in the order of the parts. */
+/** Return the query string with the names of the parts, by label: 0, 1, ... in the order of the parts. */
 function nameQuery({ parts, work }: Session): string {
   const named = parts.flatMap((id, label) => (work.names.has(id) ? [`${label}:${work.names.get(id)}`] : []));
   return named.map((name) => `&name=${encodeURIComponent(name)}`).join("");
 }
 
-/** The parameters that are not the defaults; all of them where the defaults cannot be asked for. */
+/** Return the parameters that differ from the defaults; all of them if the defaults cannot be loaded. */
 async function chosenParameters(parameters: Shown["parameters"]): Promise<[string, unknown][]> {
   const schema = await getMethods().catch(() => null);
   return Object.entries(parameters).filter(([name, value]) => schema?.properties[name]?.default !== value);
@@ -128,16 +133,14 @@ function pythonLines({ fileName, session }: Shown, chosen: [string, unknown][]):
   const { tree, work } = session;
   const level = tree.levelOf(work.cut);
   const values = chosen.map(([name, value]) => `${name}=${literal(value)}`).join(", ");
-  const call = values === "" ? "mesh" : `mesh, SegmentationParameters(${values})`;
+  const call = values === "" ? "mesh" : `mesh, segcore.SegmentationParameters(${values})`;
   return [
     "import segcore",
-    ...(values === "" ? [] : ["from segcore.parameters import SegmentationParameters"]),
-    ...(level === null ? ["from segcore.levels import keep_splits"] : []),
     "",
     `mesh = segcore.read_mesh(${JSON.stringify(fileName)})`,
     `hierarchy = segcore.segment(${call})`,
-    ...(level === null ? [`hierarchy = keep_splits(hierarchy, [${tree.splitsOf(work.cut).join(", ")}])`] : []),
-    `labels = hierarchy.labels(${level ?? ""})  # the part 0..${session.parts.length - 1} of every face`,
+    ...(level === null ? [`hierarchy = segcore.keep_splits(hierarchy, [${tree.splitsOf(work.cut).join(", ")}])`] : []),
+    `labels = hierarchy.labels(${level ?? ""})  # (F,) part 0..${session.parts.length - 1} of every face`,
   ].join("\n");
 }
 
@@ -151,11 +154,11 @@ function literal(value: unknown): string {
   return JSON.stringify(value);
 }
 
-async function copy(text: string | null, said: string): Promise<void> {
+async function copy(text: string | null, confirmation: string): Promise<void> {
   try {
     await navigator.clipboard.writeText(text ?? "");
-    toast(said);
+    toast(confirmation);
   } catch {
-    toast("The browser does not allow copying: select the text and copy it by hand.");
+    toast("The browser does not allow copying. Select the text and copy it by hand.");
   }
 }

@@ -1,4 +1,4 @@
-/** Numbers and times as people read them. */
+/** Formats numbers, sizes, times and file names. */
 
 const counts = new Intl.NumberFormat("en");
 const shares = new Intl.NumberFormat("en", { style: "percent", maximumFractionDigits: 1 });
@@ -26,7 +26,9 @@ export function when(time: string): string {
   return unit === "second" ? "just now" : ago.format(Math.round(seconds / length), unit);
 }
 
-/** The name of a file without its folder and its ending. */
+export const capitalized = (text: string): string => text.charAt(0).toUpperCase() + text.slice(1);
+
+/** Return a file name without its folder and extension. */
 export function stem(fileName: string): string {
   return fileName.replace(/^.*[\\/]/, "").replace(/(\.gz)?$/i, "").replace(/\.[a-z0-9]{2,5}$/i, "") || "mesh";
 }

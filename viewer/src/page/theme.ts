@@ -1,4 +1,4 @@
-/** Light, dark, or as the system has it. */
+/** The theme button: light, dark, or that of the system. */
 
 import type { CleaveViewer } from "../component/element";
 import { byId } from "./dom";
@@ -7,7 +7,7 @@ type Theme = "auto" | "light" | "dark";
 
 const KEPT_AS = "cleave.theme";
 const NEXT: Record<Theme, Theme> = { auto: "light", light: "dark", dark: "auto" };
-const TITLES: Record<Theme, string> = { auto: "Theme: as the system", light: "Theme: light", dark: "Theme: dark" };
+const TITLES: Record<Theme, string> = { auto: "Theme: system", light: "Theme: light", dark: "Theme: dark" };
 
 export function listenToTheme(viewers: readonly CleaveViewer[]): void {
   const button = byId("theme");

@@ -1,4 +1,4 @@
-/** The tools beside the picture, what can be done with selected parts, and their keys. */
+/** The toolbar of the 3D view, the actions on selected parts, and their keyboard shortcuts. */
 
 import type { CleaveViewer } from "../component/element";
 import { byId, openDialog } from "./dom";
@@ -88,7 +88,7 @@ export class Tools {
     });
   }
 
-  /** Keys that work while the picture has the focus. */
+  /** Handle a key while the 3D view has the focus. */
   #key(event: KeyboardEvent): void {
     if (event.ctrlKey || event.metaKey || event.altKey) return;
     const step = (by: number) =>
@@ -122,7 +122,7 @@ export class Tools {
   }
 }
 
-/** Have a viewer show a result as the page is set. */
+/** Apply the display modes to a viewer. */
 export function applyModes(viewer: CleaveViewer, modes: Modes): void {
   viewer.toggleAttribute("wireframe", modes.wireframe);
   viewer.toggleAttribute("concavity", modes.concavity);
