@@ -2,7 +2,11 @@
 
 import time
 
+from segcore.progress import STAGES as SEGMENTATION_STAGES
 from worker.jobs.queue.queue import JobQueue, Progress, QueueError
+
+STAGES = ("reading", *SEGMENTATION_STAGES, "storing")  # of a job, in order
+REPORTED_STAGES = STAGES[:-1]  # to the queue; storing a result is only measured
 
 _INTERVAL_S = 0.25
 _PAUSE_AFTER_ERROR_S = 5.0
