@@ -1,1 +1,1 @@
-"""A client of a Cleave server: :class:`cleave.client.Client`, and :class:`cleave.client.AsyncClient` for asyncio."""
+"""The Python client, :mod:`cleave.client`, and the settings, logs and version that the packages of Cleave share."""

@@ -1,7 +1,7 @@
-"""How the processes of Cleave log: lines on the standard error, which the supervisor or the container keeps.
+"""Logging of the processes of Cleave to the standard error, as text or as JSON objects.
 
-A line is text, or a JSON object for programs that collect logs. Either says which job and which trace it is about: what
-is logged inside ``about`` carries both, also by libraries, and in a work-horse that is forked there.
+Every line that is logged inside the context ``about`` contains the job and the trace, also lines of libraries and of a
+child process that is forked in the context.
 """
 
 import json
@@ -18,12 +18,12 @@ from cleave.trace import Trace, parse_traceparent
 
 LogFormat: TypeAlias = Literal["auto", "json", "text"]
 
-_FIELDS = "fields"  # what callers give as logging's ``extra``: {"fields": {...}}
+_FIELDS = "fields"  # the key of further fields in logging's ``extra``: {"fields": {...}}
 
 
 @dataclass(slots=True)
 class Subject:
-    """What the lines of a request or of a job are about; the job of a request is known only in its course."""
+    """The job and the trace of log lines; the job of a request is set once it is known."""
 
     job_id: str | None = None
     trace: Trace | None = None
@@ -34,7 +34,7 @@ _SUBJECT: ContextVar[Subject | None] = ContextVar("cleave_log_subject", default=
 
 @contextmanager
 def about(job_id: str | None = None, trace: Trace | str | None = None) -> Iterator[Subject]:
-    """Have every line that is logged inside say what it is about; a trace may be given as its ``traceparent``."""
+    """Add a job and a trace, or its ``traceparent``, to every line that is logged in this context."""
     subject = Subject(job_id, parse_traceparent(trace) if isinstance(trace, str) else trace)
     token = _SUBJECT.set(subject)
     try:
@@ -44,20 +44,20 @@ def about(job_id: str | None = None, trace: Trace | str | None = None) -> Iterat
 
 
 def note_job(job_id: str) -> None:
-    """Say that the rest of what is logged here is about a job; without effect outside of ``about``."""
+    """Set the job of the current context ``about``, if there is one."""
     subject = _SUBJECT.get()
     if subject is not None:
         subject.job_id = job_id
 
 
 def current_traceparent() -> str | None:
-    """The trace of what is going on here, in the form in which a job keeps it."""
+    """Return the trace of the current context as a ``traceparent``; None if there is none."""
     subject = _SUBJECT.get()
     return subject.trace.traceparent() if subject and subject.trace else None
 
 
 def configure_logging(level: str, log_format: LogFormat = "auto", process: str = "cleave") -> None:
-    """Log to the standard error; ``auto`` is text at a terminal and JSON elsewhere."""
+    """Configure logging to the standard error; the format ``auto`` is text on a terminal and JSON elsewhere."""
     is_text = log_format == "text" or (log_format == "auto" and sys.stderr.isatty())
     handler = logging.StreamHandler()
     handler.setFormatter(TextFormatter() if is_text else JsonFormatter(process))
@@ -65,14 +65,14 @@ def configure_logging(level: str, log_format: LogFormat = "auto", process: str =
 
 
 def rename_process(process: str) -> None:
-    """Log under another name, after a fork."""
+    """Change the process name in the log, after a fork."""
     for handler in logging.getLogger().handlers:
         if isinstance(handler.formatter, JsonFormatter):
             handler.formatter.process = process
 
 
 class TextFormatter(logging.Formatter):
-    """For people: the time, the level, who says it, what, and in brackets what it is about."""
+    """Text lines: time, level, logger and message, then job, trace and other fields in brackets."""
 
     def __init__(self) -> None:
         super().__init__("%(asctime)s %(levelname)-7s %(name)s: %(message)s")
@@ -83,7 +83,7 @@ class TextFormatter(logging.Formatter):
 
 
 class JsonFormatter(logging.Formatter):
-    """For programs: one JSON object per line, whatever the message holds."""
+    """One JSON object per line, with line breaks in messages escaped."""
 
     def __init__(self, process: str) -> None:
         super().__init__()

@@ -1,19 +1,19 @@
-"""A process that must not outlive the one that started it."""
+"""Child processes that end with their parent."""
 
 import ctypes
 import os
 import signal
 import sys
 
-_PR_SET_PDEATHSIG = 1
+_PR_SET_PDEATHSIG = 1  # from linux/prctl.h
 _LIBC = ctypes.CDLL(None, use_errno=True) if sys.platform == "linux" else None
 
 
 def die_with_parent(parent_pid: int) -> None:
-    """Have the kernel kill this process when its parent dies, however that dies; on Linux only, no other kernel can.
+    """Have the kernel kill this process when its parent dies; without effect on systems other than Linux.
 
-    To be called in the child, with the process id that the parent noted before the fork: a parent that died before
-    this call would not be noticed by the kernel.
+    To be called in the child process, with the process id of the parent from before the fork, so that a parent that has
+    died before this call is noticed too.
     """
     if _LIBC is None:
         return

@@ -1,4 +1,4 @@
-"""What an installation may choose, read once at the edge of a process from the environment."""
+"""The settings of an installation, read from the environment at the start of a process."""
 
 from pathlib import Path
 from typing import Annotated, Any, Literal
@@ -9,15 +9,19 @@ from pydantic_settings import BaseSettings, SettingsConfigDict
 
 from cleave.logs import LogFormat
 
-LONGEST_WAIT_S = 600.0  # that any installation may hold back an answer
+LONGEST_WAIT_S = 600.0  # upper limit of CLEAVE_MAX_WAIT_S; set by hand
 
 
 class InvalidSettings(Exception):  # noqa: N818
-    """A variable of the environment has a value that cannot be used; the message names it."""
+    """An environment variable has an invalid value; the message names it."""
 
 
 class Settings(BaseSettings):
-    """The settings of one installation; each is the environment variable CLEAVE_ and its name in capitals."""
+    """The settings of an installation; the environment variable of each is CLEAVE_ and its name in capitals.
+
+    By default a job of max_faces faces uses a third of job_memory_bytes (bench/RESULTS.md, "Throughput and memory").
+    The other defaults are limits that were set by hand.
+    """
 
     model_config = SettingsConfigDict(env_prefix="CLEAVE_", env_ignore_empty=True, extra="ignore", frozen=True)
 
@@ -28,48 +32,52 @@ class Settings(BaseSettings):
     store_url: str | None = Field(
         default=None,
         pattern=r"^(s3|gs|az)://",
-        description="The bucket of the jobs, such as s3://bucket/prefix; the data folder where none is set.",
+        description="Bucket of the jobs, such as s3://bucket/prefix; if none is set, jobs are kept in the data folder.",
     )
     store_cache_bytes: int = Field(
-        default=2**30, ge=0, description="Results of a bucket that are kept in the data folder of a service."
+        default=2**30, ge=0, description="Size of the cache of a bucket's results in the data folder of a service."
     )
     retention_s: float | None = Field(
-        default=None, ge=0, description="Age after its end at which a job is deleted; never where none is set."
+        default=None, ge=0, description="Time after its end after which a job is deleted; never if none is set."
     )
     retention_bytes: int | None = Field(
-        default=None, ge=0, description="Size of all jobs above which those go that ended first; any where none is set."
+        default=None,
+        ge=0,
+        description="Size of all jobs above which those that ended first are deleted; no limit if none is set.",
     )
     redis_url: str | None = Field(
         default=None,
         pattern=r"^(redis|rediss|unix)://",
-        description="The queue server, such as redis://host:6379/0; `cleave serve` brings its own where none is set.",
+        description="Queue server, such as redis://host:6379/0; if none is set, `cleave serve` starts its own.",
     )
     auth: Literal["auto", "required", "off"] = Field(
         default="auto",
-        description="Whether API keys are required; auto: where there are any, or the address is not loopback.",
+        description="Whether API keys are required; auto: if there are any, or if the address is not loopback.",
     )
     api_keys: str | None = Field(
-        default=None, description="API keys, NAME:DIGEST with commas between, as `cleave key NAME` prints them."
+        default=None, description="API keys, NAME:DIGEST separated by commas, as `cleave key NAME` prints them."
     )
     api_keys_file: Path | None = Field(
         default=None, description="File with one NAME:DIGEST per line; it is read again when it changes."
     )
     cors_origins: str | None = Field(
-        default=None, description="Origins whose pages may use the API, with commas between; * for all."
+        default=None, description="Origins whose pages may use the API, separated by commas; * for all."
     )
     key_max_queued_jobs: int = Field(default=1000, ge=1, description="Unfinished jobs that a key may have.")
     key_max_running_jobs: int | None = Field(
-        default=None, ge=1, description="Jobs of a key that are in the queue or run at a time; the others wait outside."
+        default=None,
+        ge=1,
+        description="Jobs of a key that wait in the queue or run at a time; the others wait in the store.",
     )
     key_upload_bytes_per_hour: int | None = Field(
         default=None, ge=1, description="Bytes that a key may upload in an hour."
     )
     max_queued_jobs: int = Field(default=10_000, ge=1, description="Unfinished jobs that the installation may have.")
     max_wait_s: float = Field(
-        default=60.0, ge=0, le=LONGEST_WAIT_S, description="Longest time that an answer is held back."
+        default=60.0, ge=0, le=LONGEST_WAIT_S, description="Longest time for which a response is held back."
     )
     max_stream_s: float = Field(
-        default=3600.0, gt=0, description="Longest stream of events; a client that wants more comes back by itself."
+        default=3600.0, gt=0, description="Longest stream of events; clients reconnect by themselves."
     )
     max_batch_jobs: int = Field(default=1000, ge=1, le=10_000, description="Most jobs in a batch.")
     webhook_private_targets: bool = Field(
@@ -77,12 +85,12 @@ class Settings(BaseSettings):
     )
     max_upload_bytes: int = Field(default=512 * 2**20, gt=0, description="Largest mesh file that is accepted.")
     max_batch_bytes: int = Field(default=4 * 2**30, gt=0, description="Largest batch, packed and unpacked.")
-    upload_idle_s: float = Field(default=30.0, gt=0, description="Silence after which an upload is given up.")
+    upload_idle_s: float = Field(default=30.0, gt=0, description="Time without data after which an upload is ended.")
     upload_bytes_per_s: int = Field(
-        default=1024, ge=0, description="Least speed of an upload, on average after its first upload_idle_s."
+        default=1024, ge=0, description="Lowest average speed of an upload, after its first upload_idle_s."
     )
     max_uncompressed_bytes: int = Field(
-        default=2 * 2**30, gt=0, description="Largest mesh file after it is unpacked, where it is a compressed one."
+        default=2 * 2**30, gt=0, description="Largest mesh file after decompression, if it is compressed."
     )
     max_faces: int = Field(default=5_000_000, gt=0, description="Largest number of faces that is segmented.")
     max_vertices: int = Field(
@@ -91,15 +99,20 @@ class Settings(BaseSettings):
         description="Largest number of vertices of a mesh; STL files have three for every face.",
     )
     large_job_bytes: int = Field(
-        default=4 * 2**20, gt=0, description="Mesh files from this size on wait in the queue of the large jobs."
+        default=4 * 2**20,
+        gt=0,
+        description="Size of a mesh file from which on its job waits in the queue of the large jobs.",
     )
-    max_attempts: int = Field(default=3, ge=1, description="Runs of a job that keeps killing its worker.")
+    max_attempts: int = Field(default=3, ge=1, description="Runs of a job whose worker dies every time.")
     job_timeout_s: float = Field(default=3600.0, gt=0, description="Longest run of a job.")
-    job_cpu_s: int = Field(default=3600, gt=0, description="Longest time of a processor that a job may use.")
+    job_cpu_s: int = Field(default=3600, gt=0, description="Longest processor time of a job.")
     job_memory_bytes: int = Field(default=8 * 2**30, gt=0, description="Address space of the process that runs a job.")
     job_file_bytes: int = Field(default=4 * 2**30, gt=0, description="Largest file that a job may write.")
     lease_s: float = Field(
-        default=10.0, ge=3, le=30, description="A running job whose worker was silent for this long is run again."
+        default=10.0,
+        ge=3,
+        le=30,
+        description="A running job is run again if its worker sends no heartbeat for this long.",
     )
     janitor_interval_s: float = Field(
         default=2.0, gt=0, le=30, description="Pause between two searches for jobs that the queue has lost."
@@ -107,27 +120,29 @@ class Settings(BaseSettings):
     shutdown_grace_s: float = Field(
         default=3.0,
         ge=0,
-        description="Time a running job has to end when its worker is stopped; then it is handed back.",
+        description="Time for which a running job may go on when its worker is stopped; then it is requeued.",
     )
     result_cache_bytes: int = Field(
-        default=64 * 2**20, ge=0, description="Memory in which the service keeps results that it has opened."
+        default=64 * 2**20, ge=0, description="Size of the service's cache of opened results, in memory."
     )
     rendered_cache_bytes: int = Field(
-        default=64 * 2**20, ge=0, description="Memory in which it keeps pictures and models that it has made of them."
+        default=64 * 2**20, ge=0, description="Size of its cache of pictures and models made of them, in memory."
     )
-    log_level: str = Field(default="info", pattern=r"^(debug|info|warning|error)$", description="Least level logged.")
+    log_level: str = Field(
+        default="info", pattern=r"^(debug|info|warning|error)$", description="Lowest level that is logged."
+    )
     log_format: LogFormat = Field(
-        default="auto", description="How lines are logged: text, json, or auto: text at a terminal, JSON elsewhere."
+        default="auto", description="Format of the log: text, json, or auto: text on a terminal, JSON elsewhere."
     )
 
 
 def load_settings(**overrides: Any) -> Settings:
-    """The settings from the environment; an override that is None leaves the environment's value.
+    """Read the settings from the environment; an override that is None has no effect.
 
     Raises
     ------
     InvalidSettings
-        Where a value cannot be used.
+        If a value is invalid.
     """
     try:
         return Settings(**{name: value for name, value in overrides.items() if value is not None})

@@ -1,7 +1,7 @@
-"""What ties together the lines that several processes log about one request: the trace of W3C Trace Context, level 1.
+"""Traces as in W3C Trace Context, level 1, which connect the log lines of several processes about one request.
 
-A client, or the proxy in front of the service, sends a ``traceparent``; where none comes, the service begins a trace.
-The job keeps it, so the worker, its work-horse and the janitor log under the same trace as the request.
+A client or a proxy sends a ``traceparent``; if there is none, the service begins a trace. It is stored with the job, so
+that the worker, its work-horse and the janitor log under the trace of the request.
 """
 
 import re
@@ -19,12 +19,12 @@ _SAMPLED = 0x01
 class Trace:
     """One span of a trace."""
 
-    trace_id: str  # 32 hexadecimal digits, the same for everything that a request causes
-    span_id: str  # 16 of them, of this step
-    sampled: bool = False  # whether whoever began the trace records it
+    trace_id: str  # 32 hexadecimal digits, the same for everything that belongs to a request
+    span_id: str  # 16 hexadecimal digits
+    sampled: bool = False  # whether the caller may record the trace
 
     def child(self) -> "Trace":
-        """A step that this one causes."""
+        """Return a new span of the same trace."""
         return Trace(self.trace_id, secrets.token_hex(8), self.sampled)
 
     def traceparent(self) -> str:
@@ -36,7 +36,7 @@ def new_trace() -> Trace:
 
 
 def parse_traceparent(header: str | None) -> Trace | None:
-    """The trace of a header; None where there is none or it is not valid, upon which a new one is to be begun."""
+    """Return the trace of a header; None if the header is missing or invalid, and a new trace has to be begun."""
     match = _PARENT.fullmatch((header or "").strip())
     if match is None or (match[1] == _FIRST_VERSION and match[5]):
         return None

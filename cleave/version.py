@@ -6,7 +6,7 @@ DISTRIBUTION = "cleave-mesh"  # `cleave` on PyPI is another project
 
 
 def installed_version() -> str:
-    """The version of the installed distribution; ``0+checkout`` if the packages are imported without installation."""
+    """Return the version of the installed distribution; ``0+checkout`` if the packages are not installed."""
     try:
         return version(DISTRIBUTION)
     except PackageNotFoundError:
@@ -14,5 +14,5 @@ def installed_version() -> str:
 
 
 def extra_command(extra: str) -> str:
-    """The shell command that installs an optional dependency of this project."""
+    """Return the shell command that installs an optional dependency of this project."""
     return f"pip install '{DISTRIBUTION}[{extra}]'"

@@ -15,7 +15,8 @@ from service.result_cache import ResultCache
 from service.routes import about, batches, docs_page, files, health, home, jobs, models, results, submission, webhooks
 from service.telemetry.metrics import Metrics
 from service.telemetry.request_log import ObservedRequests
-from worker.jobs.queue.queue import JobQueue, connect_impatiently
+from worker.jobs.queue.connection import connect
+from worker.jobs.queue.queue import JobQueue
 from worker.jobs.queue.quota import UploadQuota
 from worker.jobs.store.opening import open_store
 
@@ -59,7 +60,7 @@ def create_app(settings: Settings) -> FastAPI:
     )
     store = open_store(settings)
     keys = key_ring(settings)
-    queue = JobQueue(connect_impatiently(settings.redis_url))
+    queue = JobQueue(connect(settings.redis_url))
     metrics = Metrics(store, queue)
     app.state.context = Context(
         settings=settings,

@@ -13,8 +13,9 @@ from service.telemetry.metrics import Metrics
 from worker.jobs.admission import admit
 from worker.jobs.job import Canceled, Job, Outcome, now
 from worker.jobs.objects.durable import is_disk_full
-from worker.jobs.queue.counters import Tallies
-from worker.jobs.queue.queue import Activity, JobQueue, QueueError
+from worker.jobs.queue.connection import QueueError
+from worker.jobs.queue.counters import JobCounters
+from worker.jobs.queue.queue import Activity, JobQueue
 from worker.jobs.queue.quota import UploadQuota
 from worker.jobs.store.batches import BatchStore
 from worker.jobs.store.installation_secret import InstallationSecret
@@ -71,7 +72,7 @@ class Context:
         canceled = Canceled(finished_at=now())
         outcome = self.store.finish(job.id, canceled)
         if isinstance(outcome, Canceled) and self.withdraw(job) and outcome.finished_at == canceled.finished_at:
-            Tallies(self.queue.connection).job_canceled()
+            JobCounters(self.queue.connection).job_canceled()
         return outcome
 
     def discard(self, job: Job) -> None:

@@ -8,7 +8,8 @@ from pydantic import BaseModel, Field
 from segcore.report import MeshReport
 from service.answer.model_formats import model_links
 from service.problems import JobError
-from worker.jobs.job import Attempt, Canceled, Failed, Job, Outcome, Succeeded
+from worker.jobs.attempts import Attempt
+from worker.jobs.job import Canceled, Failed, Job, Outcome, Succeeded
 from worker.jobs.queue.queue import Activity
 from worker.process.progress import REPORTED_STAGES
 

@@ -33,11 +33,11 @@ def find_job(context: Context, caller: Caller, job_id: str) -> Job:
     Problem
         If the job was deleted.
     """
-    job = context.store.job(job_id)
+    job = context.store.records.job(job_id)
     if job is not None and job.owner == caller.owner:
         note_job(job_id)
         return job
-    if context.store.was_deleted(job_id, caller.owner):
+    if context.store.deletions.was_deleted(job_id, caller.owner):
         raise Problem("job_deleted")
     raise UnknownJob(job_id)
 
@@ -49,7 +49,7 @@ def describe(context: Context, job: Job) -> JobDocument:
 
 def describe_all(context: Context, jobs: Sequence[Job]) -> list[JobDocument]:
     """Return the documents of some jobs, with one request to the queue."""
-    states = context.store.states(jobs)
+    states = context.store.records.states([job.id for job in jobs])
     activities = context.view.activities([job.id for job in jobs if states[job.id].outcome is None])
     return [job_document(job, states[job.id].outcome, states[job.id].attempts, activities.get(job.id)) for job in jobs]
 
@@ -68,7 +68,7 @@ def check_succeeded(context: Context, job: Job) -> None:
     Problem
         If the job has not finished, has failed or was canceled.
     """
-    match context.store.outcome(job.id):
+    match context.store.records.outcome(job.id):
         case Succeeded():
             return
         case Failed(code=code, message=message):
@@ -95,7 +95,7 @@ def find_batch(context: Context, caller: Caller, batch_id: str) -> Batch:
 
 def jobs_of_batch(context: Context, batch: Batch) -> list[tuple[Job | None, JobDocument | None]]:
     """Return the jobs of a batch in its order, None for deleted ones."""
-    found = context.store.jobs(batch.job_ids)
+    found = context.store.records.jobs(batch.job_ids)
     existing = [job for job in found.values() if job is not None]
     documents = {document.id: document for document in describe_all(context, existing)}
     return [(found[job_id], documents.get(job_id)) for job_id in batch.job_ids]

@@ -15,8 +15,8 @@ from starlette.responses import Response
 
 from segcore.errors import InvalidParameters
 from worker.jobs.objects.durable import is_disk_full
-from worker.jobs.objects.seam import StoreError
-from worker.jobs.queue.queue import QueueError
+from worker.jobs.objects.interface import StoreError
+from worker.jobs.queue.connection import QueueError
 from worker.jobs.store.store import UnknownJob
 
 log = logging.getLogger("cleave.service")

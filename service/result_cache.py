@@ -77,7 +77,7 @@ class ResultCache:
         self._rendered.drop(lambda key: key[0] == job_id)
 
     def _read(self, job_id: str) -> Segmentation:
-        with self._store.open_result(job_id) as file:
+        with self._store.results.open(job_id) as file:
             return read_result(file)
 
 

@@ -14,7 +14,8 @@ from redis import Redis
 from helpers.buckets import CREDENTIALS, s3_server
 from helpers.waiting import wait_until
 from service.host.queue_server import embedded_queue_server
-from worker.jobs.queue.queue import JobQueue, connect_impatiently
+from worker.jobs.queue.connection import connect
+from worker.jobs.queue.queue import JobQueue
 from worker.jobs.store.opening import open_folder
 from worker.jobs.store.store import JobStore
 
@@ -81,7 +82,7 @@ def queue_url(tmp_path_factory: pytest.TempPathFactory) -> Iterator[str]:
 
 @pytest.fixture
 def connection(queue_url: str) -> Iterator[Redis]:
-    with connect_impatiently(queue_url, timeout_s=10.0) as connection:
+    with connect(queue_url, timeout_s=10.0) as connection:
         connection.flushall()
         yield connection
 

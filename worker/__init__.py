@@ -1,5 +1,5 @@
-"""Jobs: what one is, where its files live, the queue that hands it out, the process that runs it.
+"""Jobs: their records and files, the queue, the worker process that runs them, the janitor and the webhooks.
 
-The store is the truth and the queue is disposable: a job is accepted when its record is durable in the store and
-finished when its manifest is, and everything in Redis can be made again from the two.
+The store is the only state that counts: a job is accepted when its record is durable in the store, and finished when
+its manifest is. Everything in Redis can be restored from these two.
 """

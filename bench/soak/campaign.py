@@ -11,7 +11,8 @@ from itertools import pairwise
 from bench.load.installation import Installation, installed
 from bench.soak.faults import WORKER_DEATHS, inflict, schedule
 from bench.soak.work import LARGE_JOB_BYTES, Client, Submitted
-from worker.jobs.job import Attempt, now
+from worker.jobs.attempts import Attempt
+from worker.jobs.job import now
 
 _SETTLED_WITHIN_S = 180.0
 _DROPPED = "the outcome of this run is dropped"

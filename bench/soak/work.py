@@ -13,7 +13,7 @@ from bench.errors import BenchmarkError
 from bench.load.installation import Installation
 from bench.load.meshes import wavy_torus
 from cleave.settings import Settings
-from worker.jobs.job import Attempt
+from worker.jobs.attempts import Attempt
 from worker.jobs.store.opening import open_store
 
 LARGE_JOB_BYTES = 300_000  # such that the last of the meshes are large
@@ -99,14 +99,14 @@ class Client:
         digests: dict[str, str] = {}
         for job_id, status in self.statuses().items():
             if status == "succeeded":
-                with store.open_result(job_id) as result:
+                with store.results.open(job_id) as result:
                     digests[job_id] = hashlib.sha256(result.read()).hexdigest()
         return digests
 
     def attempts(self) -> list[list[Attempt]]:
         """The runs of every job."""
         store = open_store(Settings(data_dir=self._installation.data_dir))
-        return [store.attempts(job_id) for job_id in self.statuses()]
+        return [store.records.attempts(job_id) for job_id in self.statuses()]
 
     def close(self) -> None:
         self._http.close()

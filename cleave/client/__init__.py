@@ -1,4 +1,4 @@
-"""A typed client, for programs that wait and for asyncio.
+"""A typed client of a Cleave server: Client, and AsyncClient for asyncio.
 
 with Client("http://127.0.0.1:8000") as client:
     parts = client.segment("hand.off", segments=6)
@@ -6,6 +6,20 @@ with Client("http://127.0.0.1:8000") as client:
 """
 
 from cleave.client.async_client import AsyncClient
+from cleave.client.documents import Job, JobError, Labels, Segmentation, Status
+from cleave.client.errors import ClientError, JobEnded, RequestRefused, ServerUnreachable
 from cleave.client.sync_client import Client
 
-__all__ = ["AsyncClient", "Client"]
+__all__ = [
+    "AsyncClient",
+    "Client",
+    "ClientError",
+    "Job",
+    "JobEnded",
+    "JobError",
+    "Labels",
+    "RequestRefused",
+    "Segmentation",
+    "ServerUnreachable",
+    "Status",
+]

@@ -15,7 +15,7 @@ from cleave.client.flows import Call, Flow, Value
 
 
 class AsyncClient:
-    """The same as :class:`cleave.client.Client`, to be awaited."""
+    """The same as :class:`cleave.client.Client`, with methods to be awaited."""
 
     def __init__(
         self,
@@ -52,7 +52,7 @@ class AsyncClient:
         idempotency_key: str | None = None,
         recompute: bool = False,
     ) -> Job:
-        """Submit a mesh and return at once."""
+        """Submit a mesh and return its job at once."""
         return await self._run(
             flows.submit(submission_of(mesh, parameters, format, webhook, idempotency_key, recompute))
         )
@@ -66,20 +66,26 @@ class AsyncClient:
         parameters: Mapping[str, object] | None = None,
         format: str | None = None,  # noqa: A002
     ) -> Segmentation:
-        """Submit a mesh and wait for its labels: at a number of segments, or a granularity from 0 to 1, or neither."""
+        """Submit a mesh and wait for its labels.
+
+        Parameters
+        ----------
+        segments : number of segments; None for the automatic number.
+        granularity : 0 (coarse) to 1 (fine), in place of a number of segments.
+        """
         submission = submission_of(mesh, parameters, format, None, None, False)
         return await self._run(flows.segment(submission, flows.level_of(segments, granularity)))
 
     async def job(self, job_id: str, *, wait_s: float = 0.0) -> Job:
-        """How a job is; the answer comes when it has ended, or after ``wait_s``."""
+        """Return a job; with ``wait_s`` the server answers when the job has ended, or after that time."""
         return await self._run(flows.get(job_id, wait_s))
 
     async def wait(self, job_id: str) -> Job:
-        """Wait for the end of a job."""
+        """Wait until a job has ended."""
         return await self._run(flows.wait(job_id))
 
     async def jobs(self, status: Status | None = None) -> AsyncIterator[Job]:
-        """All jobs, newest first."""
+        """Iterate over all jobs, newest first."""
         cursor: str | None = None
         while True:
             jobs, cursor = await self._run(flows.page(status, cursor))
@@ -89,26 +95,26 @@ class AsyncClient:
                 return
 
     async def labels(self, job: Job, segments: int | None = None, *, granularity: float | None = None) -> Segmentation:
-        """The labels of a job that has succeeded."""
+        """Return the labels of a job that has succeeded."""
         return await self._run(flows.labels(job, flows.level_of(segments, granularity)))
 
     async def hierarchy(self, job_id: str) -> dict[str, Any]:
-        """The tree of cuts."""
+        """Return the tree of cuts as the API documents it."""
         return await self._run(flows.hierarchy(job_id))
 
     async def download(self, job_id: str, result: str, target: str | os.PathLike[str], **params: object) -> None:
-        """Save a result, such as ``model.glb``; the file is there whole or not at all."""
+        """Save a result, such as ``model.glb``, in a file, which is written completely or not at all."""
         path = f"/v1/jobs/{job_id}/{result}"
         partial = partial_path(target)
         try:
             async with self._http.stream(
                 "GET", path, params=texts(params), timeout=self._connection.timeout_s
-            ) as answer:
-                if answer.is_error:
-                    await answer.aread()
-                    raise flows.refusal(answer)
+            ) as response:
+                if response.is_error:
+                    await response.aread()
+                    raise flows.refusal(response)
                 with partial.open("wb") as file:
-                    async for chunk in answer.aiter_bytes(CHUNK_BYTES):
+                    async for chunk in response.aiter_bytes(CHUNK_BYTES):
                         await asyncio.to_thread(file.write, chunk)
         except httpx.TransportError as error:
             raise self._connection.failure(None, error) from error
@@ -135,15 +141,15 @@ class AsyncClient:
     async def _send(self, call: Call) -> httpx.Response:
         attempt = 0
         while True:
-            answer, failure = None, None
+            response, failure = None, None
             try:
-                answer = await self._http.send(self._connection.request(self._http, call, async_chunks(call.body)))
-                if not answer.is_error:
-                    return answer
+                response = await self._http.send(self._connection.request(self._http, call, async_chunks(call.body)))
+                if not response.is_error:
+                    return response
             except httpx.TransportError as error:
                 failure = error
-            pause_s = self._connection.pause_s(attempt, answer)
+            pause_s = self._connection.pause_s(attempt, response)
             if pause_s is None:
-                raise self._connection.failure(answer, failure)
+                raise self._connection.failure(response, failure)
             attempt += 1
             await asyncio.sleep(pause_s)

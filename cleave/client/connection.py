@@ -1,4 +1,4 @@
-"""What both clients have in common: requests, patience, and bytes that come piece by piece."""
+"""What both clients share: requests, retries and streamed bodies."""
 
 import asyncio
 import os
@@ -13,13 +13,14 @@ from cleave.client.flows import Call, Submission, refusal
 
 Mesh: TypeAlias = str | os.PathLike[str] | bytes  # a path, or the bytes of a file
 
-CHUNK_BYTES = 256 * 1024
-_RETRIED = (429, 502, 503, 504)
-_LONGEST_PAUSE_S = 30.0
+CHUNK_BYTES = 256 * 1024  # of streamed files; set by hand
+_RETRIED = (429, 502, 503, 504)  # the server, or a proxy in front of it, is busy or restarts
+_FIRST_PAUSE_S = 0.25  # doubled after each attempt, if the server sends no Retry-After; set by hand
+_LONGEST_PAUSE_S = 30.0  # set by hand
 
 
 class Connection:
-    """How a server is talked to, whoever waits for it."""
+    """The URL, credentials, timeouts and retries of a client."""
 
     def __init__(self, url: str, api_key: str | None, timeout_s: float, retries: int) -> None:
         self.url = url.rstrip("/")
@@ -37,23 +38,23 @@ class Connection:
             params=call.params,
             headers=headers,
             content=content,
-            timeout=self.timeout_s + call.patience_s,
+            timeout=self.timeout_s + call.wait_s,
         )
 
-    def pause_s(self, attempt: int, answer: httpx.Response | None) -> float | None:
-        """How long to wait before the next try; None where this was the last, or the answer is final."""
-        if answer is not None and answer.status_code not in _RETRIED:
+    def pause_s(self, attempt: int, response: httpx.Response | None) -> float | None:
+        """Return the pause before the next attempt; None if this was the last one or the response is final."""
+        if response is not None and response.status_code not in _RETRIED:
             return None
         if attempt >= self.retries:
             return None
-        asked = answer.headers.get("Retry-After", "") if answer is not None else ""
-        return min(float(asked) if asked.isdigit() else 0.25 * 2**attempt, _LONGEST_PAUSE_S)
+        retry_after = response.headers.get("Retry-After", "") if response is not None else ""
+        return min(float(retry_after) if retry_after.isdigit() else _FIRST_PAUSE_S * 2**attempt, _LONGEST_PAUSE_S)
 
-    def failure(self, answer: httpx.Response | None, error: httpx.TransportError | None) -> ClientError:
-        """What is raised where no further try is made."""
-        if answer is not None:
-            return refusal(answer)
-        return ServerUnreachable(f"Nobody answers at {self.url} ({type(error).__name__}): is the server running?")
+    def failure(self, response: httpx.Response | None, error: httpx.TransportError | None) -> ClientError:
+        """Return the error to be raised after the last attempt."""
+        if response is not None:
+            return refusal(response)
+        return ServerUnreachable(f"No response from {self.url} ({type(error).__name__}): is the server running?")
 
 
 def submission_of(
@@ -97,6 +98,6 @@ def partial_path(target: str | os.PathLike[str]) -> Path:
 
 
 def texts(params: Mapping[str, object]) -> dict[str, str | list[str]]:
-    """Parameters of an address; those that are lists are given several times, those that are None not at all."""
+    """Return query parameters as text; a list is repeated, None is left out."""
     given = {name: value for name, value in params.items() if value is not None}
     return {name: [*map(str, value)] if isinstance(value, list) else str(value) for name, value in given.items()}

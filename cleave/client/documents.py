@@ -1,4 +1,4 @@
-"""What a server says, as values."""
+"""The documents of the API as values."""
 
 from collections.abc import Mapping
 from dataclasses import dataclass
@@ -22,7 +22,7 @@ class JobError:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Job:
-    """A job as the server described it at some moment."""
+    """The state of a job at the time of the response."""
 
     id: str
     status: Status
@@ -36,7 +36,7 @@ class Job:
     max_segments: int | None
     automatic_segments: int | None
     error: JobError | None
-    document: Mapping[str, Any]  # all that the server said
+    document: Mapping[str, Any]  # the complete JSON document
 
     @property
     def has_ended(self) -> bool:
@@ -45,7 +45,7 @@ class Job:
 
 @dataclass(frozen=True, slots=True)
 class Segmentation:
-    """Labels of a job at a number of segments."""
+    """The labels of a job at a number of segments."""
 
     job: Job
     segments: int

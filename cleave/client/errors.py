@@ -1,8 +1,8 @@
-"""What can go wrong between a client and a server.
+"""The errors of the client.
 
 ClientError
- |- ServerUnreachable   nobody answers: start the server, or look at the URL
- |- RequestRefused      the server says no; ``code`` and the message say why
+ |- ServerUnreachable   no response: start the server, or check the URL
+ |- RequestRefused      the server has refused the request; ``code`` and the message give the reason
  `- JobEnded            the job has no result: it failed or was canceled
 """
 
@@ -10,15 +10,15 @@ from cleave.client.documents import Job
 
 
 class ClientError(Exception):
-    """Any of them."""
+    """Base class of the errors of the client."""
 
 
 class ServerUnreachable(ClientError):  # noqa: N818
-    """No answer came, also not after a few tries."""
+    """The server did not answer, even after several attempts."""
 
 
 class RequestRefused(ClientError):  # noqa: N818
-    """The server answered with a problem (RFC 9457)."""
+    """The server answered with a problem document (RFC 9457)."""
 
     def __init__(self, status: int, code: str, detail: str, retry_after_s: float | None = None) -> None:
         super().__init__(detail)
@@ -28,7 +28,7 @@ class RequestRefused(ClientError):  # noqa: N818
 
 
 class JobEnded(ClientError):  # noqa: N818
-    """There is no result, and there will be none."""
+    """The job has ended without a result."""
 
     def __init__(self, job: Job) -> None:
         reason = job.error.message if job.error else "it was canceled."

@@ -1,4 +1,4 @@
-"""What a client does, without saying how bytes travel: each flow asks for calls and is sent their answers."""
+"""The operations of the client without I/O: each is a generator that yields requests and is sent the responses."""
 
 import json
 import secrets
@@ -13,22 +13,22 @@ import numpy as np
 from cleave.client.documents import Job, Segmentation, job_from
 from cleave.client.errors import JobEnded, RequestRefused
 
-POLL_S = 20.0  # how long the server may hold back an answer
-_PAGE = 100
+POLL_S = 20.0  # of one long poll: well below the 60 s after which nginx, by default, ends a request
+_PAGE = 100  # jobs; the server allows up to 200
 
 Value = TypeVar("Value")
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Call:
-    """One request; sending it twice does what sending it once does."""
+    """One idempotent request."""
 
     method: str
     path: str
     params: Mapping[str, str] = field(default_factory=dict)
     headers: Mapping[str, str] = field(default_factory=dict)
     body: Path | bytes | None = None
-    patience_s: float = 0.0  # that the server was asked to hold back the answer
+    wait_s: float = 0.0  # for which the server was asked to hold back the response
 
 
 Flow: TypeAlias = Generator[Call, httpx.Response, Value]
@@ -36,7 +36,7 @@ Flow: TypeAlias = Generator[Call, httpx.Response, Value]
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Submission:
-    """A mesh and what is wanted."""
+    """A mesh and the options of its job."""
 
     mesh: Path | bytes
     file_name: str | None = None
@@ -66,7 +66,7 @@ class Submission:
                 **({"Cache-Control": "no-cache"} if self.recompute else {}),
             },
             body=self.mesh,
-            patience_s=wait_s,
+            wait_s=wait_s,
         )
 
 
@@ -75,13 +75,13 @@ def submit(submission: Submission) -> Flow[Job]:
 
 
 def level_of(segments: int | None, granularity: float | None) -> dict[str, str]:
-    """How the server is told how fine the segments are to be."""
+    """Return the query parameters for a number of segments or a granularity."""
     wanted = {"segments": segments, "granularity": granularity}
     return {name: str(value) for name, value in wanted.items() if value is not None}
 
 
 def segment(submission: Submission, level: Mapping[str, str]) -> Flow[Segmentation]:
-    """Submit and wait: one round trip where the server is quick enough."""
+    """Submit a mesh and wait for its labels, in one round trip if the job ends within the first poll."""
     document = (yield submission.call(POLL_S, level)).json()
     job = job_from(document)
     if document.get("labels") is not None:
@@ -92,12 +92,12 @@ def segment(submission: Submission, level: Mapping[str, str]) -> Flow[Segmentati
 
 def get(job_id: str, wait_s: float = 0.0) -> Flow[Job]:
     params = {"wait": f"{wait_s:g}"} if wait_s else {}
-    answer = yield Call(method="GET", path=f"/v1/jobs/{job_id}", params=params, patience_s=wait_s)
-    return job_from(answer.json())
+    response = yield Call(method="GET", path=f"/v1/jobs/{job_id}", params=params, wait_s=wait_s)
+    return job_from(response.json())
 
 
 def wait(job_id: str) -> Flow[Job]:
-    """Wait for the end of a job, however long that takes."""
+    """Wait until a job has ended, without a time limit."""
     while True:
         job = yield from get(job_id, POLL_S)
         if job.has_ended:
@@ -108,11 +108,11 @@ def labels(job: Job, level: Mapping[str, str]) -> Flow[Segmentation]:
     if job.has_ended and job.status != "succeeded":
         raise JobEnded(job)
     params = {"format": "raw", **level}
-    answer = yield Call(method="GET", path=f"/v1/jobs/{job.id}/labels", params=params)
+    response = yield Call(method="GET", path=f"/v1/jobs/{job.id}/labels", params=params)
     if not job.has_ended:
         job = yield from get(job.id)
-    of_faces = np.frombuffer(answer.content, dtype="<i4").astype(np.int32)
-    return Segmentation(job, int(of_faces.max()) + 1, of_faces)  # there is no mesh without faces, no empty segment
+    of_faces = np.frombuffer(response.content, dtype="<i4").astype(np.int32)
+    return Segmentation(job, int(of_faces.max()) + 1, of_faces)  # a mesh has faces, and no segment is empty
 
 
 def hierarchy(job_id: str) -> Flow[dict[str, Any]]:
@@ -121,7 +121,7 @@ def hierarchy(job_id: str) -> Flow[dict[str, Any]]:
 
 
 def page(status: str | None, cursor: str | None) -> Flow[tuple[list[Job], str | None]]:
-    """Some jobs, newest first, and where the following begin."""
+    """Return a page of jobs, newest first, and the cursor of the next page."""
     wanted = {"limit": str(_PAGE), "status": status, "cursor": cursor}
     params = {key: value for key, value in wanted.items() if value is not None}
     document = (yield Call(method="GET", path="/v1/jobs", params=params)).json()
@@ -136,13 +136,13 @@ def delete(job_id: str) -> Flow[None]:
     yield Call(method="DELETE", path=f"/v1/jobs/{job_id}")
 
 
-def refusal(answer: httpx.Response) -> RequestRefused:
-    """The problem in an answer that has been read."""
-    retry = answer.headers.get("Retry-After", "")
+def refusal(response: httpx.Response) -> RequestRefused:
+    """Return the problem in a response that has been read."""
+    retry = response.headers.get("Retry-After", "")
     retry_s = float(retry) if retry.isdigit() else None
     try:
-        problem = answer.json()
-        return RequestRefused(answer.status_code, str(problem["code"]), str(problem["detail"]), retry_s)
+        problem = response.json()
+        return RequestRefused(response.status_code, str(problem["code"]), str(problem["detail"]), retry_s)
     except (ValueError, KeyError, TypeError):
-        sentence = f"The answer was {answer.status_code} {answer.reason_phrase}: is this a Cleave server?"
-        return RequestRefused(answer.status_code, "not_understood", sentence, retry_s)
+        sentence = f"The response was {response.status_code} {response.reason_phrase}: is this a Cleave server?"
+        return RequestRefused(response.status_code, "not_understood", sentence, retry_s)

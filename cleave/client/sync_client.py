@@ -1,4 +1,4 @@
-"""The client for programs that wait."""
+"""The synchronous client."""
 
 import os
 import time
@@ -15,19 +15,19 @@ from cleave.client.flows import Call, Flow, Value
 
 
 class Client:
-    """A client that waits for its answers.
+    """A client of a Cleave server.
 
     Parameters
     ----------
     url : of the server.
-    api_key : where the server requires one.
-    timeout_s : longest silence of the server, beyond what it was asked to wait.
-    retries : how often a request is sent again where nobody answers or the server is busy; no job is made twice by it.
+    api_key : required by servers with API keys.
+    timeout_s : timeout of a request, in addition to the time for which the server was asked to wait.
+    retries : how often a request is repeated if the server does not answer or is busy; no job is created twice by that.
 
     Raises
     ------
     ServerUnreachable, RequestRefused, JobEnded
-        Every method: see :mod:`cleave.client.errors`.
+        By every method, see :mod:`cleave.client.errors`.
     """
 
     def __init__(
@@ -63,7 +63,7 @@ class Client:
         idempotency_key: str | None = None,
         recompute: bool = False,
     ) -> Job:
-        """Submit a mesh and return at once."""
+        """Submit a mesh and return its job at once."""
         return self._run(flows.submit(submission_of(mesh, parameters, format, webhook, idempotency_key, recompute)))
 
     def segment(
@@ -75,20 +75,26 @@ class Client:
         parameters: Mapping[str, object] | None = None,
         format: str | None = None,  # noqa: A002
     ) -> Segmentation:
-        """Submit a mesh and wait for its labels: at a number of segments, or a granularity from 0 to 1, or neither."""
+        """Submit a mesh and wait for its labels.
+
+        Parameters
+        ----------
+        segments : number of segments; None for the automatic number.
+        granularity : 0 (coarse) to 1 (fine), in place of a number of segments.
+        """
         submission = submission_of(mesh, parameters, format, None, None, False)
         return self._run(flows.segment(submission, flows.level_of(segments, granularity)))
 
     def job(self, job_id: str, *, wait_s: float = 0.0) -> Job:
-        """How a job is; the answer comes when it has ended, or after ``wait_s``."""
+        """Return a job; with ``wait_s`` the server answers when the job has ended, or after that time."""
         return self._run(flows.get(job_id, wait_s))
 
     def wait(self, job_id: str) -> Job:
-        """Wait for the end of a job."""
+        """Wait until a job has ended."""
         return self._run(flows.wait(job_id))
 
     def jobs(self, status: Status | None = None) -> Iterator[Job]:
-        """All jobs, newest first."""
+        """Iterate over all jobs, newest first."""
         cursor: str | None = None
         while True:
             jobs, cursor = self._run(flows.page(status, cursor))
@@ -97,24 +103,24 @@ class Client:
                 return
 
     def labels(self, job: Job, segments: int | None = None, *, granularity: float | None = None) -> Segmentation:
-        """The labels of a job that has succeeded."""
+        """Return the labels of a job that has succeeded."""
         return self._run(flows.labels(job, flows.level_of(segments, granularity)))
 
     def hierarchy(self, job_id: str) -> dict[str, Any]:
-        """The tree of cuts."""
+        """Return the tree of cuts as the API documents it."""
         return self._run(flows.hierarchy(job_id))
 
     def download(self, job_id: str, result: str, target: str | os.PathLike[str], **params: object) -> None:
-        """Save a result, such as ``model.glb``; the file is there whole or not at all."""
+        """Save a result, such as ``model.glb``, in a file, which is written completely or not at all."""
         path = f"/v1/jobs/{job_id}/{result}"
         partial = partial_path(target)
         try:
-            with self._http.stream("GET", path, params=texts(params), timeout=self._connection.timeout_s) as answer:
-                if answer.is_error:
-                    answer.read()
-                    raise flows.refusal(answer)
+            with self._http.stream("GET", path, params=texts(params), timeout=self._connection.timeout_s) as response:
+                if response.is_error:
+                    response.read()
+                    raise flows.refusal(response)
                 with partial.open("wb") as file:
-                    for chunk in answer.iter_bytes(CHUNK_BYTES):
+                    for chunk in response.iter_bytes(CHUNK_BYTES):
                         file.write(chunk)
         except httpx.TransportError as error:
             raise self._connection.failure(None, error) from error
@@ -141,15 +147,15 @@ class Client:
     def _send(self, call: Call) -> httpx.Response:
         attempt = 0
         while True:
-            answer, failure = None, None
+            response, failure = None, None
             try:
-                answer = self._http.send(self._connection.request(self._http, call, chunks(call.body)))
-                if not answer.is_error:
-                    return answer
+                response = self._http.send(self._connection.request(self._http, call, chunks(call.body)))
+                if not response.is_error:
+                    return response
             except httpx.TransportError as error:
                 failure = error
-            pause_s = self._connection.pause_s(attempt, answer)
+            pause_s = self._connection.pause_s(attempt, response)
             if pause_s is None:
-                raise self._connection.failure(answer, failure)
+                raise self._connection.failure(response, failure)
             attempt += 1
             time.sleep(pause_s)

@@ -53,9 +53,9 @@ async def job_events(context: Context, job: Job, last_id: int) -> AsyncIterator[
         elif time.monotonic() - sent_at > _KEEP_ALIVE_S:
             sent_at = time.monotonic()
             yield ": still here\n\n"
-        if document.finished_at is not None or not await run_in_threadpool(context.store.job, job.id):
+        if document.finished_at is not None or not await run_in_threadpool(context.store.records.job, job.id):
             return
-        await asyncio.sleep(max(_POLL_S, 2 * context.store.look_s))
+        await asyncio.sleep(max(_POLL_S, 2 * context.store.objects.poll_interval_s))
 
 
 def has_last_event(document: JobDocument, last_id: int) -> bool:

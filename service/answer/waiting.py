@@ -16,10 +16,11 @@ _PAUSE_FRACTION = 1 / 100
 async def wait_for_end(store: JobStore, job_id: str, at_most_s: float) -> bool:
     """Wait until a job has ended or the time is over; return whether it has ended."""
     began_at = time.monotonic()
-    while not (store.has_ended(job_id) if store.is_local else await run_in_threadpool(store.has_ended, job_id)):
+    has_ended, interval_s = store.records.has_ended, store.objects.poll_interval_s
+    while not (await run_in_threadpool(has_ended, job_id) if interval_s > 0 else has_ended(job_id)):
         waited_s = time.monotonic() - began_at
         if waited_s >= at_most_s:
             return False
-        pause_s = max(min(max(waited_s * _PAUSE_FRACTION, _SHORTEST_PAUSE_S), _LONGEST_PAUSE_S), store.look_s)
+        pause_s = max(min(max(waited_s * _PAUSE_FRACTION, _SHORTEST_PAUSE_S), _LONGEST_PAUSE_S), interval_s)
         await asyncio.sleep(min(pause_s, at_most_s - waited_s))
     return True

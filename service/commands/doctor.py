@@ -9,8 +9,8 @@ from service.doctor.machine_checks import check_machine
 from service.doctor.queue_checks import check_queue
 from service.doctor.store_checks import check_store
 from service.host.queue_server import embedded_queue_server
-from worker.jobs.queue.queue import QueueError, connect_impatiently
-from worker.jobs.queue.workers import living_workers_here
+from worker.jobs.queue.connection import QueueError, connect
+from worker.jobs.queue.workers import live_workers_here
 
 Say = Callable[[str], None]
 
@@ -25,8 +25,8 @@ def examine(settings: Settings, host: str, *, in_json: bool, say: Say) -> int:
 def check_workers(settings: Settings, say: Say) -> int:
     """Tell whether workers of this machine are alive; the exit status is 1 where none is."""
     try:
-        with connect_impatiently(_queue_url(settings)) as connection:
-            alive = living_workers_here(connection)
+        with connect(_queue_url(settings)) as connection:
+            alive = live_workers_here(connection)
     except QueueError as error:
         say(f"The queue server does not answer: {error}.")
         return 1

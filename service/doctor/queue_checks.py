@@ -8,7 +8,8 @@ from urllib.parse import SplitResult, urlsplit, urlunsplit
 from redis import Redis
 
 from service.doctor.findings import Finding, error, ok, warning
-from worker.jobs.queue.queue import JobQueue, QueueError, connect_impatiently
+from worker.jobs.queue.connection import QueueError, connect
+from worker.jobs.queue.workers import worker_counts
 from worker.jobs.size_class import SizeClass
 
 _OLDEST_VERSION = (6, 2)  # that moves entries from list to list atomically
@@ -18,11 +19,11 @@ _LOOPBACK = ("", "localhost", "127.0.0.1", "::1")
 
 def check_queue(url: str) -> list[Finding]:
     """The server of a URL, its settings and its workers."""
-    with connect_impatiently(url) as connection:
+    with connect(url) as connection:
         try:
             info: dict[str, Any] = connection.info()
             clock = connection.time()
-            counts = JobQueue(connection).worker_counts()
+            counts = worker_counts(connection)
         except QueueError as problem:
             return [
                 error(
@@ -114,7 +115,7 @@ def _lets_strangers_in(parts: SplitResult) -> bool:
     """Whether the server answers somebody without a password."""
     without = urlunsplit(parts._replace(netloc=parts.netloc.rpartition("@")[2]))
     try:
-        with connect_impatiently(without) as stranger:
+        with connect(without) as stranger:
             return bool(stranger.ping())
     except QueueError:
         return False

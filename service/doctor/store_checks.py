@@ -10,7 +10,7 @@ from pathlib import Path
 from cleave.settings import InvalidSettings, Settings
 from service.doctor.findings import Finding, error, ok, warning
 from service.doctor.queue_checks import check_clock
-from worker.jobs.objects.seam import ObjectStorage
+from worker.jobs.objects.interface import ObjectStorage
 from worker.jobs.store.opening import open_store
 
 _PROBES = "probe"

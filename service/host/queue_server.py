@@ -12,7 +12,7 @@ from pathlib import Path
 
 from redis.exceptions import RedisError
 
-from worker.jobs.queue.queue import connect_impatiently
+from worker.jobs.queue.connection import connect
 
 _LONGEST_SOCKET_PATH = 100  # bytes; the kernel's limit is 107 on Linux and 103 on macOS
 _ORPHAN_PATIENCE_S = 10.0
@@ -38,7 +38,7 @@ class QueueServer:
 
     def is_answering(self) -> bool:
         try:
-            with connect_impatiently(self.url) as connection:
+            with connect(self.url) as connection:
                 return bool(connection.ping())
         except RedisError:
             return False
@@ -92,7 +92,7 @@ def stop_orphan(server: QueueServer) -> None:
     """End a server of an earlier supervisor that still has the files open."""
     if not server.is_answering():
         return
-    with connect_impatiently(server.url) as connection:
+    with connect(server.url) as connection:
         connection.shutdown(nosave=True)
     gives_up_at = time.monotonic() + _ORPHAN_PATIENCE_S
     while server.is_answering():

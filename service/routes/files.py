@@ -46,11 +46,11 @@ def get_result_file(
     headers = {"ETag": entity_tag(f"{job.id}/result.cleave".encode()), "Cache-Control": FOR_EVER}
     if is_current(request, headers["ETag"]):
         return Response(status_code=304, headers=headers)
-    url = context.store.result_url(job.id, _URL_VALID_S) if redirect else None
+    url = context.store.results.presigned_url(job.id, _URL_VALID_S) if redirect else None
     if url is not None:
         return Response(status_code=307, headers={"Location": url, "Cache-Control": "no-store"})
     headers["Content-Disposition"] = f'attachment; filename="{job.id}.cleave"'
-    return _streamed(context.store.open_result(job.id), headers)
+    return _streamed(context.store.results.open(job.id), headers)
 
 
 def _streamed(file: BinaryIO, headers: dict[str, str]) -> StreamingResponse:

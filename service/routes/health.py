@@ -8,7 +8,8 @@ from service.context import Context, ContextOf
 from service.documents import Health, Readiness
 from service.guard.callers import CallerOf
 from service.problems import documented
-from worker.jobs.queue.queue import QueueError
+from worker.jobs.queue.connection import QueueError
+from worker.jobs.queue.workers import worker_counts
 from worker.jobs.size_class import SizeClass
 
 router = APIRouter(tags=["health"])
@@ -61,7 +62,7 @@ def _readiness(context: Context) -> Readiness:
 
 def _worker_counts(context: Context) -> dict[SizeClass, int] | None:
     try:
-        return context.queue.worker_counts()
+        return worker_counts(context.queue.connection)
     except QueueError:
         return None
 

@@ -47,7 +47,7 @@ async def submit_batch(request: Request, context: Context, caller: Caller, optio
         jobs = await _existing_jobs(request, context, caller)
     elif media_type(request) in (FORM_TYPE, *_ZIP_TYPES):
         with ExitStack() as uploads:
-            form = await _receive(request, context, lambda: uploads.enter_context(context.store.begin_upload()))
+            form = await _receive(request, context, lambda: uploads.enter_context(context.store.spool.begin_upload()))
             wanted, count = options.job_request(form), len(form.meshes)
             rate_limits = await run_in_threadpool(check_limits, context, caller, count, declared_length(request))
             jobs = await run_in_threadpool(_accept_all, context, caller, form, wanted)
@@ -62,7 +62,7 @@ async def _receive(request: Request, context: Context, begin_upload: Callable[[]
     settings = context.settings
     if media_type(request) == FORM_TYPE:
         return await receive_form(request, settings, begin_upload, settings.max_batch_bytes, settings.max_batch_jobs)
-    with context.store.begin_upload() as packed:
+    with context.store.spool.begin_upload() as packed:
         async for chunk in body_chunks(request, settings):
             await run_in_threadpool(write_capped, packed, chunk, settings.max_batch_bytes)
         packed.close()

@@ -11,7 +11,7 @@ from service.problems import Problem
 from service.submit.form import ReceivedMesh
 from service.submit.request import file_label, mesh_format
 from worker.jobs.job import Job, new_job_id, now
-from worker.jobs.queue.queue import QueueError
+from worker.jobs.queue.connection import QueueError
 from worker.jobs.store.acceptance import JobExists
 from worker.jobs.store.computed import fingerprint
 
@@ -47,11 +47,11 @@ def accept_job(context: Context, caller: Caller, mesh: ReceivedMesh, wanted: Job
         If the mesh is empty, or the Idempotency-Key belongs to another request or a deleted job.
     """
     job = _new_job(context, caller, mesh, wanted)
-    if wanted.may_reuse and not (wanted.idempotency_key and context.store.job(job.id)):
+    if wanted.may_reuse and not (wanted.idempotency_key and context.store.records.job(job.id)):
         known = context.store.computed_before(job)
         if known is not None:
             return Receipt(known, is_new=False)
-    if wanted.idempotency_key and context.store.was_deleted(job.id, caller.owner):
+    if wanted.idempotency_key and context.store.deletions.was_deleted(job.id, caller.owner):
         raise Problem("idempotency_key_spent")
     try:
         context.store.accept(job, mesh.upload)
@@ -99,7 +99,7 @@ def _job_id(context: Context, caller: Caller, idempotency_key: str | None) -> st
 
 
 def _existing(context: Context, job: Job) -> Receipt:
-    first = context.store.job(job.id)
+    first = context.store.records.job(job.id)
     if first is None or fingerprint(first) != fingerprint(job):
         raise Problem("idempotency_key_reused")
     return Receipt(first, is_new=False)

@@ -17,7 +17,7 @@ def check_limits(context: Context, caller: Caller, jobs: int, declared_bytes: in
         If that exceeds a limit of the caller or of the installation.
     """
     settings = context.settings
-    total, own = context.store.count_unfinished(caller.owner)
+    total, own = context.store.pending.count(caller.owner)
     policies = [f'"jobs";q={settings.key_max_queued_jobs}']
     remaining = [f'"jobs";r={max(0, settings.key_max_queued_jobs - own - jobs)}']
     refusals: list[tuple[bool, str, str, int]] = [

@@ -45,7 +45,7 @@ async def submit_mesh(request: Request, context: Context, caller: Caller, option
     rate_limits = await run_in_threadpool(check_limits, context, caller, 1, declared_length(request))
     with ExitStack() as uploads:
         form = await receive_mesh(
-            request, context.settings, lambda: uploads.enter_context(context.store.begin_upload())
+            request, context.settings, lambda: uploads.enter_context(context.store.spool.begin_upload())
         )
         wanted = options.job_request(form, mesh_format)
         receipt = await run_in_threadpool(_accept, context, caller, form.meshes[0], wanted)

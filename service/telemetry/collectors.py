@@ -13,8 +13,10 @@ from prometheus_client.registry import Collector
 from redis import Redis
 
 from worker.jobs.job import now
-from worker.jobs.queue.counters import BOUNDS_S, Durations, Tallies, durations
-from worker.jobs.queue.queue import JobQueue, QueueError
+from worker.jobs.queue.connection import QueueError
+from worker.jobs.queue.counters import BOUNDS_S, Durations, JobCounters, durations
+from worker.jobs.queue.queue import JobQueue
+from worker.jobs.queue.workers import worker_counts
 from worker.jobs.size_class import SizeClass
 from worker.jobs.store.store import JobStore
 
@@ -32,7 +34,7 @@ class StoreCollector(Collector):
 
     def collect(self) -> Iterator[Metric]:
         try:
-            count, oldest_s = self._store.count_unfinished(None)[0], self._store.oldest_s(time.time())
+            count, oldest_s = self._store.pending.count(None)[0], self._store.pending.oldest_s(time.time())
         except OSError:
             self._on_error()
             yield _gauge("cleave_store_up", "Whether the store answers.", 0)
@@ -50,7 +52,8 @@ class QueueCollector(Collector):
 
     def collect(self) -> Iterator[Metric]:
         try:
-            waiting, ages, workers = self._queue.lengths(), self._queue.ages_s(now()), self._queue.worker_counts()
+            waiting, ages = self._queue.lengths(), self._queue.ages_s(now())
+            workers = worker_counts(self._queue.connection)
             running = self._queue.activities(self._queue.running())
         except QueueError:
             yield _gauge("cleave_queue_up", "Whether the queue server answers.", 0)
@@ -67,7 +70,7 @@ class TallyCollector(Collector):
     """What the workers and the janitor have counted."""
 
     def __init__(self, connection: Redis, own_store_errors: Callable[[], int]) -> None:
-        self._tallies = Tallies(connection)
+        self._tallies = JobCounters(connection)
         self._own_store_errors = own_store_errors
 
     def collect(self) -> Iterator[Metric]:

@@ -9,7 +9,7 @@ import pytest
 from bench.commands.soak import render
 from bench.soak.campaign import SoakReport, longest_pause_s
 from bench.soak.faults import EMPTIED_QUEUE_SERVER, QUEUE_SERVER, schedule
-from worker.jobs.job import Attempt
+from worker.jobs.attempts import Attempt
 
 NOON = datetime(2026, 1, 1, 12, tzinfo=UTC)
 

@@ -1,4 +1,4 @@
-"""The service for its client: an application on a real server, whose jobs a thread of the tests does."""
+"""A service for the client: an application on a real server, whose jobs a thread runs."""
 
 from collections.abc import Iterator
 from pathlib import Path
@@ -19,6 +19,6 @@ def settings(tmp_path: Path, queue_url: str, connection: Redis) -> Settings:
 
 @pytest.fixture
 def url(settings: Settings, store: JobStore) -> Iterator[str]:
-    """The URL of a service that works."""
+    """The URL of a running service."""
     with working(store, settings), serving(settings) as http:
         yield str(http.base_url)

@@ -1,4 +1,4 @@
-"""The client: both kinds do the same, what the server refuses is an error with its code, and patience has an end."""
+"""The clients: both do the same, refusals are errors with a code, and retries are limited."""
 
 import asyncio
 from collections.abc import Callable
@@ -31,7 +31,7 @@ def test_a_mesh_becomes_labels_in_one_call(url: str, mesh: Path) -> None:
         assert client.segment(mesh.read_bytes(), format="off").segments == automatic.segments
 
 
-def test_a_granularity_stands_in_place_of_a_number(url: str, mesh: Path) -> None:
+def test_a_granularity_can_replace_a_number_of_segments(url: str, mesh: Path) -> None:
     with Client(url) as client:
         parts = client.segment(mesh, granularity=1.0)
         assert parts.segments == parts.job.max_segments == len(set(parts.labels.tolist()))
@@ -61,8 +61,8 @@ def test_a_job_can_be_followed_fetched_and_deleted(url: str, mesh: Path, tmp_pat
     assert {path.name for path in tmp_path.iterdir() if path.is_file()} == {"ball.off", "parts.obj", "parts.glb"}
 
 
-def test_asyncio_does_the_same(url: str, mesh: Path, tmp_path: Path) -> None:
-    async def story() -> None:
+def test_the_asyncio_client_does_the_same(url: str, mesh: Path, tmp_path: Path) -> None:
+    async def run() -> None:
         async with AsyncClient(url) as client:
             parts, job = await asyncio.gather(client.segment(mesh, segments=4), client.submit(mesh))
             job = await client.wait(job.id)
@@ -76,7 +76,7 @@ def test_asyncio_does_the_same(url: str, mesh: Path, tmp_path: Path) -> None:
             with pytest.raises(RequestRefused):
                 await client.cancel(job.id)
 
-    asyncio.run(story())
+    asyncio.run(run())
 
 
 def test_a_job_without_a_result_says_why(url: str) -> None:
@@ -86,7 +86,7 @@ def test_a_job_without_a_result_says_why(url: str) -> None:
 
 
 def busy(times: int, status: int = 503) -> tuple[Callable[[httpx.Request], httpx.Response], list[httpx.Request]]:
-    """A server that is busy for some time and then says that there is no such job."""
+    """A server that is busy a number of times and then answers that there is no such job."""
     seen: list[httpx.Request] = []
 
     def answer(request: httpx.Request) -> httpx.Response:
@@ -99,7 +99,7 @@ def busy(times: int, status: int = 503) -> tuple[Callable[[httpx.Request], httpx
 
 
 @pytest.mark.parametrize(("times", "tries", "code"), [(0, 1, "job_not_found"), (2, 3, "job_not_found"), (9, 3, "busy")])
-def test_a_busy_server_is_asked_again_a_few_times(mesh: Path, times: int, tries: int, code: str) -> None:
+def test_a_request_to_a_busy_server_is_repeated_a_few_times(mesh: Path, times: int, tries: int, code: str) -> None:
     answer, seen = busy(times)
     with Client(retries=2, transport=httpx.MockTransport(answer)) as client, pytest.raises(RequestRefused) as refused:
         client.submit(mesh)
@@ -108,13 +108,13 @@ def test_a_busy_server_is_asked_again_a_few_times(mesh: Path, times: int, tries:
     assert len({request.headers["Idempotency-Key"] for request in seen}) == 1
 
 
-def test_a_server_that_is_none_of_ours_is_said_so() -> None:
+def test_the_response_of_another_server_is_reported_as_such() -> None:
     transport = httpx.MockTransport(lambda _: httpx.Response(404, text="<html>"))
     with Client(transport=transport) as client, pytest.raises(RequestRefused, match="is this a Cleave server"):
         client.job("1")
 
 
-def test_nobody_at_the_other_end_is_an_error_of_its_own() -> None:
+def test_an_unreachable_server_has_its_own_error() -> None:
     with Client("http://127.0.0.1:1", retries=1) as client, pytest.raises(ServerUnreachable, match="is the server"):
         client.job("1")
 

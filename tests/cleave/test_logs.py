@@ -1,4 +1,4 @@
-"""The log: every line says what it is about, and none can be forged."""
+"""The log: every line contains its job and trace, and messages cannot forge lines."""
 
 import json
 import logging
@@ -31,11 +31,11 @@ def trace() -> Trace:
 
 @contextmanager
 def logging_as(formatter: logging.Formatter) -> Iterator[list[str]]:
-    """The lines that are logged meanwhile."""
+    """Yield the lines that are logged in this context."""
     handler = Lines(formatter)
     log.addHandler(handler)
     log.setLevel(logging.INFO)
-    log.propagate = False  # reports of tests cannot hold every character that a line may
+    log.propagate = False  # reports of tests cannot contain every character that a line may
     try:
         yield handler.lines
     finally:
@@ -49,7 +49,7 @@ def lines(request: pytest.FixtureRequest) -> Iterator[list[str]]:
         yield lines
 
 
-def test_a_line_says_which_job_and_which_trace_it_is_about(lines: list[str], trace: Trace) -> None:
+def test_a_line_contains_its_job_and_trace(lines: list[str], trace: Trace) -> None:
     with about("a" * 32, trace.traceparent()):
         log.info("inside")
     log.info("outside")
@@ -58,7 +58,7 @@ def test_a_line_says_which_job_and_which_trace_it_is_about(lines: list[str], tra
     assert "a" * 32 not in lines[1]
 
 
-def test_the_job_of_a_request_is_noted_in_its_course(lines: list[str], trace: Trace) -> None:
+def test_the_job_can_be_set_during_a_request(lines: list[str], trace: Trace) -> None:
     note_job("ignored")
     with about(trace=trace) as subject:
         note_job("b" * 32)
@@ -67,7 +67,7 @@ def test_the_job_of_a_request_is_noted_in_its_course(lines: list[str], trace: Tr
     assert subject.job_id == "b" * 32
 
 
-def test_a_forked_work_horse_logs_about_the_same(trace: Trace) -> None:
+def test_a_forked_work_horse_logs_the_same_job_and_trace(trace: Trace) -> None:
     reading, writing = os.pipe()
     with about("c" * 32, trace):
         pid = os.fork()
@@ -96,7 +96,7 @@ def test_a_json_line_is_one_line_whatever_is_logged() -> None:
     assert "ValueError" in second["exception"]
 
 
-def test_nobody_is_asked_about_outside_of_a_subject(trace: Trace) -> None:
+def test_without_a_context_there_is_no_trace(trace: Trace) -> None:
     assert current_traceparent() is None
     with about(trace=trace):
         assert current_traceparent() == trace.traceparent()

@@ -1,4 +1,4 @@
-"""The settings: one value from the environment, checked where it enters."""
+"""The settings: read from the environment and validated."""
 
 from pathlib import Path
 
@@ -37,7 +37,7 @@ def test_the_data_folder_does_not_depend_on_the_working_folder(monkeypatch: pyte
         ("CLEAVE_JOB_TIMEOUT_S", "-1"),
     ],
 )
-def test_a_value_that_cannot_be_used_is_refused_by_the_name_of_its_variable(
+def test_an_invalid_value_is_refused_with_the_name_of_its_variable(
     monkeypatch: pytest.MonkeyPatch, name: str, value: str
 ) -> None:
     monkeypatch.setenv(name, value)

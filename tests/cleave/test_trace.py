@@ -1,4 +1,4 @@
-"""Trace contexts: what is valid is continued, what is not is begun anew."""
+"""Trace contexts: a valid header is continued, an invalid one is ignored."""
 
 import pytest
 
@@ -38,6 +38,6 @@ def test_an_invalid_header_is_no_trace(header: str | None) -> None:
     assert parse_traceparent(header) is None
 
 
-def test_traces_are_told_apart() -> None:
+def test_new_traces_are_distinct_and_valid() -> None:
     assert new_trace().trace_id != new_trace().trace_id
     assert parse_traceparent(new_trace().traceparent()) is not None

@@ -11,7 +11,7 @@ from redis import Redis
 from helpers.jobs import accepted
 from service.telemetry.metrics import Metrics
 from worker.jobs.job import Failed, Succeeded, now
-from worker.jobs.queue.counters import Tallies
+from worker.jobs.queue.counters import JobCounters
 from worker.jobs.queue.queue import JobQueue
 from worker.jobs.store.store import JobStore
 
@@ -25,7 +25,7 @@ QUERIES += [rule["expr"] for rule in RULES]
 @pytest.fixture
 def labels_of(store: JobStore, queue: JobQueue, connection: Redis) -> dict[str, set[str]]:
     """The metrics of an installation in which everything has happened once, and their labels."""
-    job, tallies = accepted(store, b"mesh"), Tallies(connection)
+    job, tallies = accepted(store, b"mesh"), JobCounters(connection)
     queue.take(job.id, "worker", lease_s=30)
     done = Succeeded(finished_at=now(), faces=1, vertices=3, max_segments=1, automatic_segments=1)
     tallies.job_ended(job, done, {"cut": 1.0})

@@ -15,7 +15,7 @@ from helpers.hosts import Host, Network, can_make_hosts
 from helpers.jobs import LONG, sphere
 from helpers.waiting import wait_until
 from service.host.queue_server import find_server_binary
-from worker.jobs.queue.workers import living_workers
+from worker.jobs.queue.workers import live_workers
 from worker.jobs.store.opening import open_url
 from worker.jobs.store.store import JobStore
 
@@ -69,7 +69,7 @@ def site(monkeypatch: pytest.MonkeyPatch) -> Iterator[Site]:
         url = f"http://{service.address}:8000"
         wait_until(lambda: is_answered(f"{url}/healthz"))
         with Redis.from_url(redis_url) as connection:
-            wait_until(lambda: len(living_workers(connection)) == len(workers))
+            wait_until(lambda: len(live_workers(connection)) == len(workers))
         yield Site(url, redis_url, store_url, workers)
 
 
@@ -119,16 +119,16 @@ def test_a_host_that_is_cut_off_in_mid_job_costs_no_job_and_heals(
     wait_until(lambda: statuses(site, paths) == {"succeeded": len(paths)})  # the others, without it
     cut_off.plug_in()
     with Redis.from_url(site.redis_url) as connection:
-        wait_until(lambda: len(living_workers(connection)) == len(site.workers))
+        wait_until(lambda: len(live_workers(connection)) == len(site.workers))
     others += [submit(site, sphere(40)) for _ in range(3)]
     wait_until(lambda: statuses(site, others) == {"succeeded": len(others)})
     store = open_url(site.store_url, tmp_path_factory.mktemp("data"), 0)
-    assert [attempt.number for attempt in store.attempts(id_of(interrupted))] == [1, 2]
-    assert {len(store.attempts(id_of(path))) for path in others} == {1}
+    assert [attempt.number for attempt in store.records.attempts(id_of(interrupted))] == [1, 2]
+    assert {len(store.records.attempts(id_of(path))) for path in others} == {1}
     assert len({result_bytes(store, path) for path in others}) == 1
-    assert store.unfinished() == {}
+    assert store.pending.all() == {}
 
 
 def result_bytes(store: JobStore, path: str) -> bytes:
-    with store.open_result(id_of(path)) as result:
+    with store.results.open(id_of(path)) as result:
         return result.read()

@@ -1,4 +1,4 @@
-"""An S3 server for the tests, as a process of its own."""
+"""An S3 server for the tests, in a separate process."""
 
 import os
 import socket
@@ -17,7 +17,7 @@ _BUCKET = "cleave-test"
 
 @contextmanager
 def s3_server() -> Iterator[tuple[str, "subprocess.Popen[bytes]"]]:
-    """The URL of a bucket on a server of its own, and the process of the server."""
+    """Start an S3 server; yield the URL of a bucket and the process of the server."""
     with socket.create_server(("127.0.0.1", 0)) as free:
         port = free.getsockname()[1]
     process = subprocess.Popen(
@@ -37,7 +37,7 @@ def s3_server() -> Iterator[tuple[str, "subprocess.Popen[bytes]"]]:
 
 
 def below(url: str, name: str) -> str:
-    """The URL of a part of a bucket."""
+    """Return the URL of a bucket with a name added to its prefix."""
     path, question_mark, query = url.partition("?")
     return f"{path}/{name}{question_mark}{query}"
 

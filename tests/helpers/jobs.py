@@ -1,4 +1,4 @@
-"""Jobs in a store, as the service leaves them there."""
+"""Meshes and jobs for the tests of store, queue and workers."""
 
 import io
 
@@ -13,7 +13,7 @@ LONG = {"clusters": 20_000, "max_segments": 400}  # with sphere(100), seconds of
 
 
 def sphere(rows: int, bumps: float = 0.25) -> bytes:
-    """An OFF file of a closed bumpy surface with 4 rows (rows - 1) faces."""
+    """Return an OFF file of a closed bumpy surface with 4 rows (rows - 1) faces."""
     columns = 2 * rows
     polar, azimuth = np.meshgrid(
         np.pi * np.arange(1, rows) / rows, 2 * np.pi * np.arange(columns) / columns, indexing="ij"
@@ -40,8 +40,8 @@ def sphere(rows: int, bumps: float = 0.25) -> bytes:
 
 
 def accepted(store: JobStore, mesh: bytes, **parameters: object) -> Job:
-    """A job in the store, as the service leaves it there."""
-    with store.begin_upload() as upload:
+    """Put a job in a store, as the service does when it accepts a request."""
+    with store.spool.begin_upload() as upload:
         upload.write(mesh)
         job = Job(
             id=new_job_id(),

@@ -1,4 +1,4 @@
-"""The application on a real server in a thread of the tests, and somebody who does its jobs in another."""
+"""The application on a real server in a thread of the tests, and a thread that runs its jobs."""
 
 import socket
 import threading
@@ -17,8 +17,8 @@ from worker.process.perform import perform
 
 @contextmanager
 def serving(settings: Settings) -> Iterator[httpx.Client]:
-    """A client of an application that runs in a thread of this process."""
-    # By its descriptor, as in service.host.http_server: asyncio sends at once only where it knows the protocol.
+    """Serve an application from a thread; yield a client of it."""
+    # From a descriptor, as in service.host.http_server: asyncio sets TCP_NODELAY only if the protocol is known.
     listening = socket.socket(fileno=socket.create_server(("127.0.0.1", 0)).detach())
     server = uvicorn.Server(server_config(create_app(settings)))
     thread = threading.Thread(target=server.run, kwargs={"sockets": [listening]})
@@ -34,12 +34,12 @@ def serving(settings: Settings) -> Iterator[httpx.Client]:
 
 @contextmanager
 def working(store: JobStore, settings: Settings) -> Iterator[None]:
-    """Somebody does what is submitted."""
+    """Run the jobs of a store in a thread."""
     stop = threading.Event()
 
     def work() -> None:
         while not stop.wait(0.01):
-            for job_id in store.unfinished():
+            for job_id in store.pending.all():
                 perform(store, settings, job_id, lambda *_: None)
 
     thread = threading.Thread(target=work)

@@ -21,7 +21,7 @@ from service.doctor.machine_checks import check_machine
 from service.doctor.queue_checks import check_queue
 from service.doctor.store_checks import check_store
 from service.host.queue_server import find_server_binary
-from worker.jobs.objects.seam import ObjectInfo
+from worker.jobs.objects.interface import ObjectInfo
 from worker.jobs.queue.queue import QUEUE_NAMES
 
 StartServer = Callable[..., str]

@@ -9,7 +9,7 @@ import pytest
 
 from cleave.settings import Settings
 from helpers.servers import serving
-from worker.jobs.store.store import JobStore
+from worker.jobs.store.records import Records
 
 POLICY = ("form-action 'self'", "base-uri 'none'", "frame-ancestors 'none'")
 
@@ -54,7 +54,7 @@ def test_an_error_that_nobody_expects_has_them_too(client: httpx.Client, monkeyp
     def fail(*_: object) -> None:
         raise ZeroDivisionError
 
-    monkeypatch.setattr(JobStore, "job", fail)
+    monkeypatch.setattr(Records, "job", fail)
     answer = client.get(f"/v1/jobs/{'0' * 32}")
     assert (answer.status_code, answer.json()["code"]) == (500, "internal_error")
     check(answer)

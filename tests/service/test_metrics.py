@@ -9,8 +9,9 @@ from cleave.settings import Settings
 from helpers.api import samples, submit
 from helpers.jobs import SMALL
 from worker.jobs.job import now
-from worker.jobs.queue.counters import Tallies
+from worker.jobs.queue.counters import JobCounters
 from worker.jobs.queue.queue import JobQueue, Progress
+from worker.jobs.store.pending import PendingJobs
 from worker.jobs.store.store import JobStore
 from worker.process.perform import perform
 
@@ -38,7 +39,7 @@ def test_what_workers_have_done_is_told_by_every_service(
     job_id = submit(client).rpartition("/")[2]
     work = perform(store, settings, job_id, lambda *_: None)
     assert work is not None
-    tallies = Tallies(queue.connection)
+    tallies = JobCounters(queue.connection)
     tallies.job_ended(work.job, work.outcome, work.stage_seconds)
     tallies.attempt_lost("worker_lost")
     tallies.job_recovered()
@@ -64,7 +65,7 @@ def test_a_store_that_fails_is_told_and_the_rest_still_is(
     def fail(*_: object) -> None:
         raise OSError(5, "Input/output error")
 
-    monkeypatch.setattr(JobStore, "count_unfinished", fail)
+    monkeypatch.setattr(PendingJobs, "count", fail)
     monkeypatch.setattr(JobStore, "check_writable", fail)
     client.get("/readyz")
     found = samples(client)

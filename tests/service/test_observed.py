@@ -14,6 +14,7 @@ from helpers.api import UNKNOWN, submit
 from helpers.jobs import sphere
 from helpers.waiting import wait_until
 from worker.jobs.queue.queue import JobQueue
+from worker.jobs.store.records import Records
 from worker.jobs.store.store import JobStore
 
 PARENT = "00-4bf92f3577b34da6a3ce929d0e0e4736-00f067aa0ba902b7-01"
@@ -48,7 +49,7 @@ def test_the_trace_of_a_client_goes_into_the_job_the_answer_and_the_log(
     answer = client.post("/v1/jobs", content=sphere(12), headers={"traceparent": PARENT, "Content-Type": "model/off"})
     job_id = answer.json()["id"]
     answered = parse_traceparent(answer.headers["traceparent"])
-    job = store.job(job_id)
+    job = store.records.job(job_id)
     assert answered is not None
     assert job is not None
     assert answered.trace_id == TRACE_ID
@@ -80,7 +81,7 @@ def test_an_internal_error_is_answered_counted_and_logged_under_the_trace(
     def fail(*_: object) -> None:
         raise ZeroDivisionError("secret")
 
-    monkeypatch.setattr(JobStore, "job", fail)
+    monkeypatch.setattr(Records, "job", fail)
     answer = client.get(UNKNOWN, headers={"traceparent": PARENT})
     assert answer.status_code == 500
     assert answer.json()["code"] == "internal_error"

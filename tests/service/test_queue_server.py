@@ -49,7 +49,7 @@ def test_the_server_keeps_its_queue_over_a_kill_and_listens_on_no_network(tmp_pa
     for number in range(2):
         with subprocess.Popen(server.command) as process:
             wait_until(server.is_answering)
-            with queue_server.connect_impatiently(server.url, timeout_s=10) as connection:
+            with queue_server.connect(server.url, timeout_s=10) as connection:
                 assert connection.llen("list") == number
                 connection.rpush("list", "entry")
                 settings = connection.config_get()

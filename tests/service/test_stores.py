@@ -42,7 +42,7 @@ def finished(client: httpx.Client, store: JobStore, settings: Settings) -> str:
 def test_the_stored_file_is_given_as_it_is(client: httpx.Client, store: JobStore, settings: Settings) -> None:
     path = finished(client, store, settings)
     answer = client.get(f"{path}/result.cleave", params={"redirect": "true"})
-    with store.open_result(path.rpartition("/")[2]) as file:
+    with store.results.open(path.rpartition("/")[2]) as file:
         assert answer.content == file.read()
     assert read_result(io.BytesIO(answer.content)).hierarchy.max_segments > 1
     again = client.get(f"{path}/result.cleave", headers={"If-None-Match": answer.headers["ETag"]})

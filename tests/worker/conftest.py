@@ -1,9 +1,9 @@
-"""The store in every place where it can be, and the worker process."""
+"""A store on every kind of storage, and worker and janitor processes."""
 
 import os
 import subprocess
 import sys
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from pathlib import Path
 
 import pytest
@@ -17,12 +17,12 @@ from worker.jobs.size_class import SizeClass
 from worker.jobs.store.opening import open_folder, open_url
 from worker.jobs.store.store import JobStore
 
-PLACES = ("local", "memory", "s3")
+STORAGES = ("local", "memory", "s3")
 
 
-@pytest.fixture(params=PLACES)
-def placed(request: pytest.FixtureRequest, tmp_path: Path) -> Iterator[JobStore]:
-    """An empty store: in a folder, in the memory of the process, and in a bucket."""
+@pytest.fixture(params=STORAGES)
+def any_store(request: pytest.FixtureRequest, tmp_path: Path) -> Iterator[JobStore]:
+    """An empty store: in a folder, in the memory of the process, or in a bucket."""
     match request.param:
         case "local":
             yield open_folder(tmp_path / "data")
@@ -34,7 +34,7 @@ def placed(request: pytest.FixtureRequest, tmp_path: Path) -> Iterator[JobStore]
 
 @pytest.fixture
 def start_worker(tmp_path: Path, queue_url: str, connection: Redis) -> Iterator[StartWorker]:
-    """Start worker processes with settings of the environment; they are dead after the test."""
+    """Start worker processes with given settings; they are killed after the test."""
     del connection  # an empty queue
     started: list[subprocess.Popen[bytes]] = []
 
@@ -49,6 +49,21 @@ def start_worker(tmp_path: Path, queue_url: str, connection: Redis) -> Iterator[
         )
         started.append(process)
         return process
+
+    yield start
+    for process in started:
+        process.kill()
+        process.wait()
+
+
+@pytest.fixture
+def start_janitor(tmp_path: Path, queue_url: str) -> Iterator[Callable[[], None]]:
+    """Start a janitor process; it is killed after the test."""
+    started: list[subprocess.Popen[bytes]] = []
+
+    def start() -> None:
+        settings = {"CLEAVE_DATA_DIR": str(tmp_path / "data"), "CLEAVE_REDIS_URL": queue_url}
+        started.append(subprocess.Popen([sys.executable, "-m", "worker.janitor"], env=os.environ | settings))
 
     yield start
     for process in started:

@@ -1,1 +1,1 @@
-"""The process that puts back lost jobs and deletes what is not kept."""
+"""The process that enqueues lost jobs again and deletes jobs that have expired."""

@@ -1,4 +1,4 @@
-"""The process that compares the store with the queue and puts back what the queue has lost."""
+"""The janitor process: it compares the store with the queue and enqueues jobs that the queue has lost."""
 
 import logging
 import os
@@ -9,59 +9,64 @@ from cleave.logs import about, configure_logging
 from cleave.settings import Settings, load_settings
 from worker.janitor.retention import Housekeeping
 from worker.jobs.admission import may_wait_outside
-from worker.jobs.job import Job, exhausted
-from worker.jobs.queue.counters import Tallies
-from worker.jobs.queue.queue import JobQueue, QueueError, connect_impatiently
+from worker.jobs.attempts import exhausted
+from worker.jobs.job import Job
+from worker.jobs.queue.connection import QueueError, connect
+from worker.jobs.queue.counters import JobCounters
+from worker.jobs.queue.locks import Locks
+from worker.jobs.queue.queue import JobQueue
+from worker.jobs.queue.workers import forget_dead_workers
 from worker.jobs.size_class import size_class
 from worker.jobs.store.opening import open_store
 from worker.jobs.store.store import JobStore, UnknownJob
 
 log = logging.getLogger("cleave.janitor")
 
-# A job between the queue and its lease, or between the store and the queue, is in neither for a moment, and a running
-# one has no lease for a second or two after Redis was wiped. Only what stays away for longer is lost.
+# A job is missing from the queue for a moment between its acceptance and its entry, and between its entry and lease.
+# After Redis has lost its data, a running job has no lease for a second or two. A job that is missing longer is lost.
 MISSING_S = 5.0
-_LEADER_INTERVALS = 3  # that a leader may be late before another takes over
+_LEADER_INTERVALS = 3  # sweeps that a leader may miss before another janitor takes over; set by hand
 
 
 class Janitor:
-    """One look at everything per sweep; between sweeps it only remembers since when a job has been missing."""
+    """Compares store and queue at every sweep; in between it only keeps the time since which each job is missing."""
 
     def __init__(self, store: JobStore, queue: JobQueue, settings: Settings) -> None:
         self._store = store
         self._queue = queue
-        self._tallies = Tallies(queue.connection)
+        self._locks = Locks(queue.connection)
+        self._counters = JobCounters(queue.connection)
         self._settings = settings
         self._housekeeping = Housekeeping(store, settings)
-        # That of its supervisor: a janitor that was started again after its death leads on at once.
+        # The process id of the supervisor, so that a restarted janitor is the leader at once.
         self._name = f"{socket.gethostname()}.{os.getppid()}"
         self._missing_since: dict[str, float] = {}
 
     def sweep(self, at_s: float) -> None:
-        """Put back every unfinished job that neither waits nor runs, and end those that have had all their attempts.
+        """Enqueue every unfinished job that neither waits nor runs, or fail it if it has had all its attempts.
 
-        ``at_s`` is the time in seconds on any clock that only goes forward.
+        ``at_s`` is the time in seconds on a monotonic clock.
         """
         self._housekeeping.sweep_machine()
-        if not self._queue.lead(self._name, _LEADER_INTERVALS * self._settings.janitor_interval_s):
+        if not self._locks.lead(self._name, _LEADER_INTERVALS * self._settings.janitor_interval_s):
             self._missing_since.clear()
             return
-        for job_id in reversed(self._lost(at_s)):  # each goes to the front, the oldest last
-            job = self._store.job(job_id)
+        for job_id in reversed(self._lost(at_s)):  # each is put at the front, the oldest last
+            job = self._store.records.job(job_id)
             if job is not None:
                 with about(job_id, job.traceparent):
                     self._recover(job)
-        self._queue.forget_dead_workers()
+        forget_dead_workers(self._queue)
         self._housekeeping.sweep(at_s)
 
-    def note_trouble(self, error: Exception) -> None:
-        """After a time without knowledge of the queue nothing is known to be missing."""
+    def sweep_failed(self, error: Exception) -> None:
+        """Count an error of the store, and forget which jobs are missing, as the queue or the store was not read."""
         if isinstance(error, OSError):
-            self._tallies.store_failed("janitor")
+            self._counters.store_failed("janitor")
         self._missing_since.clear()
 
     def _lost(self, at_s: float) -> list[str]:
-        unfinished = self._store.unfinished()
+        unfinished = self._store.pending.all()
         held = self._queue.held(unfinished)
         outside = may_wait_outside(unfinished, held, self._settings.key_max_running_jobs)
         missing = [job_id for job_id in unfinished if job_id not in held and job_id not in outside]
@@ -69,10 +74,10 @@ class Janitor:
         return [job_id for job_id in missing if at_s - self._missing_since[job_id] >= MISSING_S]
 
     def _recover(self, job: Job) -> None:
-        failed = exhausted(self._store.attempts(job.id), self._settings.max_attempts)
+        failed = exhausted(self._store.records.attempts(job.id), self._settings.max_attempts)
         if failed is None:
             log.warning("job %s was lost by the queue and waits again", job.id)
-            self._tallies.job_recovered()
+            self._counters.job_recovered()
             self._queue.requeue(job.id, size_class(job, self._settings.large_job_bytes), at_front=True)
             return
         log.error("job %s failed: %s", job.id, failed.code)
@@ -80,7 +85,7 @@ class Janitor:
             self._store.finish(job.id, failed)
         except UnknownJob:
             return
-        self._tallies.job_given_up(failed.code)
+        self._counters.job_given_up(failed.code)
         self._queue.forget(job.id)
 
 
@@ -88,23 +93,23 @@ def main() -> None:
     settings = load_settings()
     configure_logging(settings.log_level, settings.log_format, "janitor")
     assert settings.redis_url, "the parent process sets CLEAVE_REDIS_URL"
-    queue = JobQueue(connect_impatiently(settings.redis_url))
+    queue = JobQueue(connect(settings.redis_url))
     janitor = Janitor(open_store(settings), queue, settings)
-    trouble = ""
+    last_error = ""
     while True:
-        trouble = sweep_or_tell(janitor, trouble)
+        last_error = sweep_or_log(janitor, last_error)
         time.sleep(settings.janitor_interval_s)
 
 
-def sweep_or_tell(janitor: Janitor, trouble: str) -> str:
-    """Sweep once; what keeps it from that is told when it changes, not at every sweep, and returned."""
+def sweep_or_log(janitor: Janitor, last_error: str) -> str:
+    """Sweep once; an error is logged if it differs from that of the last sweep, and returned."""
     try:
         janitor.sweep(time.monotonic())
     except (QueueError, OSError) as error:
-        janitor.note_trouble(error)
-        if str(error) != trouble:
-            log.warning("lost jobs are not looked for at the moment: %s", error)
+        janitor.sweep_failed(error)
+        if str(error) != last_error:
+            log.warning("lost jobs cannot be searched for at the moment: %s", error)
         return str(error)
-    if trouble:
-        log.warning("lost jobs are looked for again")
+    if last_error:
+        log.warning("lost jobs are searched for again")
     return ""

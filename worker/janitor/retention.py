@@ -1,4 +1,4 @@
-"""What an installation does not keep: jobs beyond its limits, and what is left of those that came to nothing."""
+"""Retention: removes jobs above the limits on age and size, and the remains of uploads and deletions."""
 
 import logging
 import time
@@ -6,27 +6,27 @@ from collections.abc import Iterable
 from dataclasses import dataclass
 
 from cleave.settings import Settings
-from worker.jobs.objects.seam import ObjectInfo
+from worker.jobs.objects.interface import ObjectInfo
 from worker.jobs.store.layout import JOBS, MANIFEST, RECORD
 from worker.jobs.store.store import JobStore, UnknownJob
 
 log = logging.getLogger("cleave.janitor")
 
-_PAUSE_S = 30.0  # between two looks at everything in a folder
-_REMOTE_PAUSE_S = 300.0  # in a bucket, where a look costs something
-_GRACE_S = 60.0  # in which a client that waits for a job sees its end, beside the longest wait
-_UPLOAD_UNTOUCHED_S = 3600.0
-_DELETION_S = 60.0  # no deletion takes so long
-_DELETED_S = 30 * 24 * 3600.0  # for so long clients are told that a job was there
+_PAUSE_S = 30.0  # between two listings of all objects, in a folder
+_PAUSE_POLLS = 600  # poll intervals of the storage: 300 s in a bucket, in which a listing costs time and money
+_GRACE_S = 60.0  # for a client that waits for a job to see its end, beside CLEAVE_MAX_WAIT_S; set by hand
+_UPLOAD_UNTOUCHED_S = 3600.0  # far longer than CLEAVE_UPLOAD_IDLE_S (30 s), after which an upload is ended
+_DELETION_S = 60.0  # longer than any deletion takes; set by hand
+_DELETED_S = 30 * 24 * 3600.0  # for so long the API answers 410 for a deleted job, and 404 afterwards
 
 
 @dataclass(slots=True)
 class StoredJob:
-    """What a job takes up."""
+    """The size and age of a stored job."""
 
     id: str
     size_bytes: int = 0
-    ended_at: float | None = None  # seconds since 1970; None: it has no outcome
+    ended_at: float | None = None  # seconds since 1970; None if it has no outcome
     is_accepted: bool = False
 
     def add(self, one: ObjectInfo) -> None:
@@ -37,34 +37,34 @@ class StoredJob:
 
 
 class Housekeeping:
-    """Now and then a look at everything; in between nothing."""
+    """Removes what is not kept, at intervals, as that needs a list of all objects."""
 
     def __init__(self, store: JobStore, settings: Settings) -> None:
         self._store = store
         self._settings = settings
-        self._pause_s = _PAUSE_S if store.is_local else _REMOTE_PAUSE_S
+        self._pause_s = max(_PAUSE_S, _PAUSE_POLLS * store.objects.poll_interval_s)
         self._next_at = float("-inf")
 
     def sweep_machine(self) -> None:
-        """Tidy up on this machine, which nobody else does."""
-        self._store.remove_abandoned_uploads(_UPLOAD_UNTOUCHED_S)
+        """Remove abandoned uploads on this machine, which no other machine can do."""
+        self._store.spool.remove_abandoned(_UPLOAD_UNTOUCHED_S)
 
     def sweep(self, at_s: float) -> None:
-        """Tidy up in the store, unless that was done lately; ``at_s`` is the time on a clock that only goes forward."""
+        """Remove what the store need not keep, if the interval is over; ``at_s`` is the time on a monotonic clock."""
         if at_s < self._next_at:
             return
         self._next_at = at_s + self._pause_s
         self._store.finish_deletions(_DELETION_S)
-        self._store.forget_deleted(_DELETED_S)
+        self._store.deletions.forget(_DELETED_S)
         remove_surplus(self._store, self._settings, time.time())
 
 
 def remove_surplus(store: JobStore, settings: Settings, at_s: float) -> None:
-    """Delete the jobs that the settings do not keep at a time in seconds since 1970."""
+    """Delete the jobs that the settings do not keep, at a time in seconds since 1970."""
     if settings.retention_s is None and settings.retention_bytes is None:
         return
-    untold = store.outbox.job_ids()
-    for job_id in surplus(stored_jobs(store), untold, settings, at_s):
+    undelivered = store.outbox.job_ids()
+    for job_id in surplus(stored_jobs(store), undelivered, settings, at_s):
         try:
             store.delete(job_id)
         except UnknownJob:
@@ -73,7 +73,7 @@ def remove_surplus(store: JobStore, settings: Settings, at_s: float) -> None:
 
 
 def stored_jobs(store: JobStore) -> list[StoredJob]:
-    """What is stored of every job."""
+    """Return the size and age of every stored job."""
     jobs: dict[str, StoredJob] = {}
     for one in store.objects.list_below(JOBS):
         job_id = one.key.split("/")[1]
@@ -81,26 +81,26 @@ def stored_jobs(store: JobStore) -> list[StoredJob]:
     return list(jobs.values())
 
 
-def surplus(jobs: Iterable[StoredJob], untold: set[str], settings: Settings, at_s: float) -> list[str]:
-    """The ids of the jobs that go, those that ended first before the others.
+def surplus(jobs: Iterable[StoredJob], undelivered: set[str], settings: Settings, at_s: float) -> list[str]:
+    """Return the ids of the jobs to be removed, in the order of their ends.
 
-    Nobody loses what they could not have seen: a job stays that has no outcome, that ended a moment ago, or of which a
-    webhook is still to be told.
+    A job is kept if it has no outcome, if it ended so recently that its client may not have seen the end, or if its
+    webhook is not delivered yet.
     """
     stored = list(jobs)
     seen_by = at_s - _GRACE_S - settings.max_wait_s
     ended = sorted(
         (job.ended_at, job.id, job.size_bytes)
         for job in stored
-        if job.is_accepted and job.ended_at is not None and job.ended_at < seen_by and job.id not in untold
+        if job.is_accepted and job.ended_at is not None and job.ended_at < seen_by and job.id not in undelivered
     )
     oldest = float("-inf") if settings.retention_s is None else at_s - settings.retention_s
     excess_bytes = 0
     if settings.retention_bytes is not None:
         excess_bytes = sum(job.size_bytes for job in stored) - settings.retention_bytes
-    doomed = []
+    surplus_ids = []
     for ended_at, job_id, size_bytes in ended:
         if ended_at < oldest or excess_bytes > 0:
-            doomed.append(job_id)
+            surplus_ids.append(job_id)
             excess_bytes -= size_bytes
-    return doomed
+    return surplus_ids

@@ -1,1 +1,1 @@
-"""What a job is, where it is stored and how it is queued."""
+"""Jobs, the store that keeps them, and the queue in which they wait."""

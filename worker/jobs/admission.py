@@ -1,4 +1,4 @@
-"""How many jobs of an owner are in the queue or run at a time: the others wait in the store, in the order they came."""
+"""The limit on an owner's jobs in the queue: the others wait in the store, in the order of their submission."""
 
 from cleave.settings import Settings
 from worker.jobs.job import Job
@@ -8,9 +8,9 @@ from worker.jobs.store.store import JobStore
 
 
 def admit(store: JobStore, queue: JobQueue, settings: Settings, owner: str | None, new: Job | None = None) -> None:
-    """Let jobs of an owner into the queue as far as there is room: after a job has come, and after one has ended.
+    """Enqueue jobs of an owner up to ``key_max_running_jobs``; to be called after a job is accepted and after one ends.
 
-    Where there is no limit only the new job is looked at. Two callers at once may let in one too many.
+    Without a limit only the new job is enqueued. Two concurrent calls may enqueue one job more than the limit.
     """
     if settings.key_max_running_jobs is not None:
         admitted = _next_of(store, queue, owner, settings.key_max_running_jobs)
@@ -21,16 +21,23 @@ def admit(store: JobStore, queue: JobQueue, settings: Settings, owner: str | Non
 
 
 def _next_of(store: JobStore, queue: JobQueue, owner: str | None, most: int) -> list[Job]:
-    """The oldest of an owner's jobs that are outside, as many as there is room for."""
-    unfinished = store.unfinished_of(owner)
+    """Return the oldest jobs of an owner that are not in the queue, as many as the limit allows."""
+    unfinished = store.pending.of(owner)
     held = queue.held(unfinished)
     outside = [job_id for job_id in unfinished if job_id not in held]
-    jobs = (store.job(job_id) for job_id in outside[: max(0, most - len(held))])
+    jobs = (store.records.job(job_id) for job_id in outside[: max(0, most - len(held))])
     return [job for job in jobs if job is not None]
 
 
 def may_wait_outside(owner_of: dict[str, str | None], held: set[str], most: int | None) -> set[str]:
-    """Those of the unfinished jobs, oldest first, that the queue need not hold: their owners have enough there."""
+    """Return the unfinished jobs that may be absent from the queue, because their owners have reached the limit.
+
+    Parameters
+    ----------
+    owner_of : the owners of all unfinished jobs, oldest job first.
+    held : the jobs that are in the queue or run.
+    most : jobs of an owner in the queue at a time; None for no limit.
+    """
     if most is None:
         return set()
     room: dict[str | None, int] = {}

@@ -1,4 +1,4 @@
-"""Small jobs and large ones, which wait apart, so that a mesh of a million faces holds up none of ten thousand."""
+"""Size classes of jobs, which have separate queues so that small jobs do not wait for large ones."""
 
 from enum import StrEnum
 
@@ -11,5 +11,5 @@ class SizeClass(StrEnum):
 
 
 def size_class(job: Job, large_job_bytes: int) -> SizeClass:
-    """Where a job waits: told from its record alone, as nobody has looked into the mesh when it is accepted."""
+    """Return the size class of a job from the size of its file, as the mesh is not read before the job runs."""
     return SizeClass.LARGE if job.size_bytes >= large_job_bytes else SizeClass.SMALL

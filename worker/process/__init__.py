@@ -1,1 +1,1 @@
-"""The worker process and the child process that runs one job."""
+"""The worker process, and the work-horse: its child process that runs one job."""

@@ -1,4 +1,4 @@
-"""The lease by which a worker holds a job."""
+"""Renewal of the lease of a running job."""
 
 import logging
 from collections.abc import Callable, Iterator
@@ -7,18 +7,19 @@ from threading import Event, Thread
 
 from redis.client import Pipeline
 
-from worker.jobs.queue.queue import JobQueue, QueueError
+from worker.jobs.queue.connection import QueueError
+from worker.jobs.queue.queue import JobQueue
 
 log = logging.getLogger("cleave.worker")
 
-_RENEW_S = 1.0
+_RENEW_S = 1.0  # a third of the shortest lease that the settings allow
 
 
 class LeaseKeeper:
-    """Renews leases, and gives a sign of life of the worker with it; an absent Redis is waited out."""
+    """Renews leases and sends heartbeats of the worker; errors of Redis are logged and ignored."""
 
     def __init__(self, queue: JobQueue, worker: str, lease_s: float, heartbeat: Callable[[Pipeline], None]) -> None:
-        """``queue`` must not wait for Redis for long."""
+        """``queue`` needs a connection with a short timeout."""
         self._queue = queue
         self._worker = worker
         self._lease_s = lease_s
@@ -35,7 +36,7 @@ class LeaseKeeper:
 
     @contextmanager
     def kept(self, job_id: str) -> Iterator[None]:
-        """Renew a lease from a thread while the caller waits for something else."""
+        """Renew a lease from a thread until the context exits."""
         has_ended = Event()
 
         def renew() -> None:

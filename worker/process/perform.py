@@ -1,4 +1,4 @@
-"""The work itself: a mesh from the store becomes a result file in the store, and the job gets its outcome."""
+"""Runs a job: segments its mesh, and writes the result file and the outcome to the store."""
 
 import logging
 from dataclasses import asdict, dataclass
@@ -9,14 +9,14 @@ from segcore.io import ReadLimits
 from segcore.io.result import write_result
 from worker.jobs.job import Failed, Job, Outcome, Succeeded, now
 from worker.jobs.store.store import JobStore, UnknownJob
-from worker.process.stage_clock import OnProgress, StageClock
+from worker.process.progress import OnProgress, StageClock
 
 log = logging.getLogger("cleave.work_horse")
 
 
 @dataclass(frozen=True, slots=True)
 class Work:
-    """What was done for a job that had no outcome before."""
+    """A job that this run has given its outcome, and the durations of the stages."""
 
     job: Job
     outcome: Outcome
@@ -24,15 +24,15 @@ class Work:
 
 
 def perform(store: JobStore, settings: Settings, job_id: str, on_progress: OnProgress) -> Work | None:
-    """Bring a job to its outcome; None where it has another one or was deleted."""
-    job = store.job(job_id)
-    if job is None or store.outcome(job_id) is not None:
+    """Give a job its outcome; return None if it has one already or was deleted."""
+    job = store.records.job(job_id)
+    if job is None or store.records.outcome(job_id) is not None:
         return None
     clock = StageClock(on_progress)
     try:
         outcome = segment_stored_mesh(store, job, read_limits(settings), clock)
         if store.finish(job_id, outcome).finished_at != outcome.finished_at:
-            log.info("the job had ended meanwhile: the outcome of this run is dropped")
+            log.info("the job has ended meanwhile: the outcome of this run is dropped")
             return None
     except UnknownJob:
         return None
@@ -44,7 +44,7 @@ def perform(store: JobStore, settings: Settings, job_id: str, on_progress: OnPro
 
 
 def segment_stored_mesh(store: JobStore, job: Job, limits: ReadLimits, clock: StageClock) -> Outcome:
-    """Read, segment, write the result file: what was expected to go wrong is a value, the rest is raised."""
+    """Segment the mesh of a job and write its result file; expected errors are returned as Failed."""
     try:
         clock("reading", 0.0)
         with store.open_mesh(job.id) as source:
@@ -59,7 +59,7 @@ def segment_stored_mesh(store: JobStore, job: Job, limits: ReadLimits, clock: St
             finished_at=now(), code="input_lost", message="The mesh is no longer in the store: send it again."
         )
     clock.begin("storing")
-    store.write_result(job.id, lambda target: write_result(target, mesh, hierarchy))
+    store.results.write(job.id, lambda target: write_result(target, mesh, hierarchy))
     return Succeeded(
         finished_at=now(),
         faces=len(mesh.faces),

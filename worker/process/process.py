@@ -1,4 +1,4 @@
-"""The process that takes jobs from the queue and runs each in a child process, the work-horse."""
+"""The worker process: it takes jobs from the queue and runs each in a child process, the work-horse."""
 
 import logging
 import os
@@ -6,7 +6,6 @@ import secrets
 import signal
 import socket
 import sys
-from contextlib import AbstractContextManager, ExitStack, nullcontext
 from functools import partial
 from types import FrameType
 from typing import Any
@@ -22,41 +21,42 @@ from cleave.logs import about, configure_logging, rename_process
 from cleave.parent_death import die_with_parent
 from cleave.settings import Settings, load_settings
 from cleave.trace import Trace, parse_traceparent
-from worker.jobs.job import Attempt
-from worker.jobs.queue.counters import Tallies
-from worker.jobs.queue.entries import is_allowed
-from worker.jobs.queue.queue import JobQueue, connect_impatiently, connect_patiently
+from worker.jobs.attempts import Attempt
+from worker.jobs.queue.connection import connect, connect_with_retries
+from worker.jobs.queue.counters import JobCounters
+from worker.jobs.queue.entries import is_valid
+from worker.jobs.queue.queue import JobQueue
+from worker.jobs.queue.workers import HEARTBEAT_TTL_S
 from worker.jobs.size_class import SizeClass
 from worker.jobs.store.opening import open_store
 from worker.jobs.store.store import JobStore, UnknownJob
-from worker.process.desk import Desk, desk_for
 from worker.process.lease import LeaseKeeper
 from worker.process.ledger import Ledger
 from worker.process.perform import perform
 from worker.process.progress import ProgressReporter
+from worker.process.staging import StagedJob, stage
 from worker.process.watch import Watch
 from worker.process.work_horse import Ending, ending_of, exit_status, limit_resources, out_of_memory_kills
 
 log = logging.getLogger("cleave.worker")
 
-_REGISTERED_S = 30  # how long a worker counts as alive after its last sign of life
-_STORE_PAUSE_S = 2.0  # after the store was full or did not answer
-_DEQUEUE_TTL_S = 20  # rq blocks for 15 s less, and gives a sign of life in between
+_STORE_PAUSE_S = 2.0  # before the next job if the store is full or does not answer; set by hand
+_DEQUEUE_TTL_S = 20  # rq waits 15 s less than this for an entry, then sends a heartbeat and waits again
 
 
 class JobWorker(Worker):  # type: ignore[misc]  # rq is not analysed
-    """An rq worker for which the store, not Redis, says what has become of a job.
+    """An rq worker that reads the state of jobs from the store instead of Redis.
 
-    rq's part is the registration, the dequeue with its intermediate list, the fork and the warm shutdown. The
-    work-horse writes its outcome to the store and needs no Redis; this process renews the lease meanwhile, and stops a
-    work-horse that overruns, or whose job got an outcome elsewhere, or that would hold up a shutdown. It takes no
-    commands from Redis, and the one function that it runs is not looked up by the name in the entry.
+    It uses rq for the registration, the dequeue through an intermediate list, the fork and the warm shutdown. The
+    work-horse writes its outcome to the store and needs no Redis. Meanwhile this process renews the lease, and kills
+    the work-horse if it exceeds its time, if its job gets an outcome elsewhere, or on shutdown. It takes no commands
+    from Redis, and it does not import the function that an entry names.
     """
 
-    max_connection_wait_time = 2.0
+    max_connection_wait_time = 2.0  # rq's longest pause between two attempts to reach Redis
 
     def __init__(self, store: JobStore, queue: JobQueue, leases: JobQueue, settings: Settings, size: SizeClass) -> None:
-        """``queue`` may wait for Redis as long as it takes, ``leases`` must not."""
+        """``queue`` needs a connection that retries for minutes, ``leases`` one with a short timeout."""
         super().__init__(
             [queue.entries[size]],
             name=f"{socket.gethostname()}.{os.getpid()}.{secrets.token_hex(4)}",
@@ -68,27 +68,27 @@ class JobWorker(Worker):  # type: ignore[misc]  # rq is not analysed
         self._store = store
         self._queue = queue
         self._leases = leases
-        self._tallies = Tallies(leases.connection)
+        self._counters = JobCounters(leases.connection)
         self._settings = settings
-        self._desk: Desk | None = None  # of the job that runs
+        self._staged: StagedJob | None = None  # the job that runs
         self._lease = LeaseKeeper(leases, self.name, settings.lease_s, partial(self.heartbeat, None))
-        self._ledger = Ledger(store, queue, self._tallies, settings, size, self.name)
+        self._ledger = Ledger(store, queue, self._counters, settings, size, self.name)
         self._watch = Watch(settings)
-        self._horse_is_gone = -1  # a descriptor that becomes readable
+        self._horse_exit = -1  # a descriptor that becomes readable when the work-horse has ended
 
-    # What rq calls.
+    # Methods that rq calls.
 
     def execute_job(self, job: Entry, queue: Any) -> None:
         self.set_state(WorkerStatus.BUSY)
-        if not is_allowed(job):
-            log.warning("an entry of the queue that is not a job of this installation was dropped: %r", job.id)
+        if not is_valid(job):
+            log.warning("an entry of the queue that this version does not know was dropped: %r", job.id)
             self._queue.forget(job.id)
         elif self._queue.take(job.id, self.name, self._settings.lease_s):
             self._run_or_hand_back(job, queue)
         self.set_state(WorkerStatus.IDLE)
 
     def fork_work_horse(self, job: Entry, queue: Any) -> None:
-        self._horse_is_gone, held_by_the_horse = os.pipe()
+        self._horse_exit, held_by_the_horse = os.pipe()
         super().fork_work_horse(job, queue)
         os.close(held_by_the_horse)
 
@@ -99,7 +99,7 @@ class JobWorker(Worker):  # type: ignore[misc]  # rq is not analysed
         os._exit(exit_status(lambda: self._perform(job.id)))
 
     def setup_work_horse_signals(self) -> None:
-        """A signal to the whole group is for the worker to decide about; its death is the end of the work-horse."""
+        """Ignore signals to the process group, which the worker handles, and die with the worker."""
         signal.signal(signal.SIGINT, signal.SIG_IGN)
         signal.signal(signal.SIGTERM, signal.SIG_IGN)
         die_with_parent(self.pid)
@@ -111,23 +111,23 @@ class JobWorker(Worker):  # type: ignore[misc]  # rq is not analysed
         self._watch.stop_within(0.0)
 
     def set_shutdown_requested_date(self) -> None:
-        """Nothing: a signal handler does not wait for Redis."""
+        """Do nothing, as rq writes to Redis here, which a signal handler must not wait for."""
 
     def heartbeat(self, timeout: int | None = None, pipeline: Any = None) -> None:  # noqa: ARG002
-        super().heartbeat(_REGISTERED_S, pipeline)
-        register(self, pipeline)  # Redis may have been wiped since the last time
+        super().heartbeat(HEARTBEAT_TTL_S, pipeline)
+        register(self, pipeline)  # again, as Redis may have lost its data
 
     @property
     def should_run_maintenance_tasks(self) -> bool:
-        return False  # the janitor's
+        return False  # the janitor does this
 
     def subscribe(self) -> None:
-        """No commands from Redis."""
+        """Do nothing: no commands are taken from Redis."""
 
-    # One job.
+    # Running one job.
 
     def _run_or_hand_back(self, entry: Entry, queue: Any) -> None:
-        """Do a job, or, where the store does not let it be done, leave it to another worker or for later."""
+        """Run a job, or requeue it if the store fails."""
         with about(entry.id) as subject:
             try:
                 subject.trace = self._trace(entry.id)
@@ -136,42 +136,35 @@ class JobWorker(Worker):  # type: ignore[misc]  # rq is not analysed
                     self._attempt(entry, queue, attempt)
                 self._ledger.settle(entry.id)
             except OSError as error:
-                log.warning("job %s waits again: %s", entry.id, error)
-                self._tallies.store_failed("worker")
+                log.warning("job %s waits again, as the store failed: %s", entry.id, error)
+                self._counters.store_failed("worker")
                 self._watch.pause(_STORE_PAUSE_S)
                 self._ledger.hand_back(entry.id)
 
     def _trace(self, job_id: str) -> Trace | None:
-        job = self._store.job(job_id)
+        job = self._store.records.job(job_id)
         return parse_traceparent(job.traceparent) if job else None
 
     def _attempt(self, entry: Entry, queue: Any, attempt: Attempt) -> None:
         log.info("job %s: attempt %d", entry.id, attempt.number)
         try:
-            with ExitStack() as stack:
-                with self._while_the_store_answers(entry.id):
-                    self._desk = stack.enter_context(desk_for(self._store, entry.id))
+            with stage(self._store, entry.id, partial(self._lease.kept, entry.id)) as self._staged:
                 ending = self._run_work_horse(entry, queue)
-                with self._while_the_store_answers(entry.id):
-                    self._desk.publish()
+                self._staged.publish()
             self._ledger.end(entry.id, attempt, ending)
         except UnknownJob:
             log.info("job %s was deleted", entry.id)
-        except OSError:  # through no fault of the job
+        except OSError:  # not the fault of the job
             self._ledger.uncount(entry.id, attempt)
             raise
-
-    def _while_the_store_answers(self, job_id: str) -> AbstractContextManager[None]:
-        """A bucket may take its time; a folder of this machine does not."""
-        return nullcontext() if self._store.is_local else self._lease.kept(job_id)
 
     def _run_work_horse(self, entry: Entry, queue: Any) -> Ending:
         kills_before = out_of_memory_kills()
         self.fork_work_horse(entry, queue)
         stopped_for = self._watch.wait(
             self.horse_pid,
-            self._horse_is_gone,
-            has_ended=partial(self._store.has_ended, entry.id),
+            self._horse_exit,
+            has_ended=partial(self._store.records.has_ended, entry.id),
             on_tick=partial(self._lease.renew, entry.id),
         )
         _, status, usage = self.wait_for_horse()
@@ -180,22 +173,22 @@ class JobWorker(Worker):  # type: ignore[misc]  # rq is not analysed
         return stopped_for or ending_of(status, kills_before)
 
     def _perform(self, job_id: str) -> None:
-        """The work, in the work-horse."""
-        assert self._desk, "it was laid out before the fork"
-        work = perform(self._desk.store, self._settings, job_id, ProgressReporter(self._leases, job_id))
+        """Run the job; called in the work-horse."""
+        assert self._staged, "the job is staged before the fork"
+        work = perform(self._staged.store, self._settings, job_id, ProgressReporter(self._leases, job_id))
         if work is not None:
-            self._tallies.job_ended(work.job, work.outcome, work.stage_seconds)
+            self._counters.job_ended(work.job, work.outcome, work.stage_seconds)
 
 
 def main() -> None:
-    """Work for the queue whose size class is the first argument."""
+    """Run a worker for the queue of the size class that is the first argument."""
     size = SizeClass(sys.argv[1])
     settings = load_settings()
     configure_logging(settings.log_level, settings.log_format, "worker")
     assert settings.redis_url, "the parent process sets CLEAVE_REDIS_URL"
-    log.info("loading the kernels; the first time they are compiled, which takes up to a minute")
+    log.info("loading the kernels; at the first start they are compiled, which takes up to a minute")
     segcore.warm_up()
     log.info("ready for %s jobs", size)
-    queue = JobQueue(connect_patiently(settings.redis_url))
-    leases = JobQueue(connect_impatiently(settings.redis_url))
+    queue = JobQueue(connect_with_retries(settings.redis_url))
+    leases = JobQueue(connect(settings.redis_url))
     JobWorker(open_store(settings), queue, leases, settings, size).work(logging_level="WARNING")

@@ -1,4 +1,4 @@
-"""The eye on a work-horse: it is let run, and stopped for a reason."""
+"""Waits for a job's child process, the work-horse, and kills it on timeout, cancel or shutdown."""
 
 import os
 import select
@@ -12,47 +12,48 @@ from cleave.settings import Settings
 
 StopReason: TypeAlias = Literal["ended elsewhere", "timed_out", "shutdown"]
 
-_TICK_S = 1.0  # how often a running job is looked at
+_TICK_S = 1.0  # between two checks: a cancel or a timeout takes effect within this time
 
 
 class Watch:
-    """Waits for the end of work-horses. A signal handler may say by when the one that runs has to be stopped."""
+    """Waits for the work-horses of a worker; a signal handler can set the time at which the current one is killed."""
 
     def __init__(self, settings: Settings) -> None:
         self._settings = settings
         self._stop_by = float("inf")  # on the monotonic clock
 
     def stop_within(self, grace_s: float) -> None:
+        """Kill the current work-horse if it still runs after a time."""
         self._stop_by = time.monotonic() + grace_s
 
     def pause(self, seconds: float) -> None:
-        """Do nothing for a time, or until a stop is due."""
+        """Sleep for a time, or until the time set by stop_within."""
         time.sleep(max(0.0, min(seconds, self._stop_by - time.monotonic())))
 
     def wait(
-        self, work_horse: int, gone: int, has_ended: Callable[[], bool], on_tick: Callable[[], None]
+        self, work_horse: int, exited: int, has_ended: Callable[[], bool], on_tick: Callable[[], None]
     ) -> StopReason | None:
-        """Wait until a work-horse is gone; why it had to be stopped, None where it ended by itself.
+        """Wait until a work-horse has ended; return why it was killed, None if it ended by itself.
 
         Parameters
         ----------
         work_horse : its process id.
-        gone : a descriptor that becomes readable with its end; it is closed.
-        has_ended : whether its job has an outcome, or is no longer there.
+        exited : a descriptor that becomes readable when it has ended; it is closed.
+        has_ended : returns whether its job has an outcome or no longer exists.
         on_tick : called about once a second.
         """
         overruns_at = time.monotonic() + self._settings.job_timeout_s
         stopped_for: StopReason | None = None
-        while not select.select([gone], [], [], _TICK_S)[0]:
+        while not select.select([exited], [], [], _TICK_S)[0]:
             on_tick()
             stopped_for = stopped_for or self._reason_to_stop(has_ended, overruns_at)
             if stopped_for:
-                os.kill(work_horse, signal.SIGKILL)  # nothing less ends one that is busy in compiled code
-        os.close(gone)
+                os.kill(work_horse, signal.SIGKILL)  # compiled code does not react to other signals
+        os.close(exited)
         return stopped_for
 
     def _reason_to_stop(self, has_ended: Callable[[], bool], overruns_at: float) -> StopReason | None:
-        with suppress(OSError):  # a store that does not answer now may do so when the work is done
+        with suppress(OSError):  # the store may answer again before the job ends
             if has_ended():
                 return "ended elsewhere"
         if time.monotonic() > overruns_at:

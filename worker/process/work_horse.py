@@ -1,4 +1,4 @@
-"""What a work-horse may use, and what its end says to the process that waits for it."""
+"""The work-horse: its resource limits, its exit status, and what its parent reads from that."""
 
 import errno
 import logging
@@ -10,17 +10,18 @@ from pathlib import Path
 from typing import Literal, TypeAlias
 
 from cleave.settings import Settings
-from worker.jobs.job import Cause
+from worker.jobs.attempts import Cause
 from worker.jobs.objects.durable import is_disk_full
 
 log = logging.getLogger("cleave.work_horse")
 
-EXIT_OUT_OF_MEMORY = 71
-EXIT_FILE_TOO_LARGE = 73
+# The statuses of sysexits.h that come closest: system error, cannot create output, temporary failure.
+EXIT_OUT_OF_MEMORY = os.EX_OSERR
+EXIT_FILE_TOO_LARGE = os.EX_CANTCREAT
 EXIT_CANNOT_STORE = os.EX_TEMPFAIL
-_CPU_MARGIN_S = 5
+_CPU_MARGIN_S = 5  # from SIGXCPU to SIGKILL; set by hand
 
-# How a run ends without an outcome: what becomes an attempt with a cause, and what is not counted.
+# How a run ends without an outcome: a cause is recorded in the attempt, the others are not counted as attempts.
 Ending: TypeAlias = Cause | Literal["ended elsewhere", "shutdown", "cannot store"]
 _ENDINGS: dict[int, Ending] = {
     EXIT_OUT_OF_MEMORY: "out_of_memory",
@@ -30,29 +31,29 @@ _ENDINGS: dict[int, Ending] = {
 
 
 def exit_status(work: Callable[[], None]) -> int:
-    """Run the work of a work-horse; what its parent can tell from the exit status."""
+    """Run the job in a work-horse; return the exit status, from which its parent reads why it ended."""
     try:
         work()
     except MemoryError:
-        log.error("the job needs more memory than it may have")
+        log.error("the job needs more memory than the limit")
         return EXIT_OUT_OF_MEMORY
     except OSError as error:
         if is_disk_full(error):
             log.error("the disk is full")
             return EXIT_CANNOT_STORE
         if error.errno == errno.EFBIG:
-            log.error("the job writes a larger file than it may")
+            log.error("the job writes a larger file than the limit")
             return EXIT_FILE_TOO_LARGE
-        log.exception("the job stopped at an error of the system")
+        log.exception("the job stopped at a system error")
         return os.EX_SOFTWARE
     except Exception:
-        log.exception("the job stopped at an error that it does not expect")
+        log.exception("the job stopped at an unexpected error")
         return os.EX_SOFTWARE
     return os.EX_OK
 
 
 def ending_of(status: int, kills_before: int) -> Ending:
-    """Why a work-horse ended without an outcome, from its wait status and the kernel's count of kills for memory."""
+    """Return why a work-horse ended without an outcome, from its wait status and the kernel's out-of-memory kills."""
     if os.WIFEXITED(status):
         return _ENDINGS.get(os.WEXITSTATUS(status), "internal_error")
     match os.WTERMSIG(status):
@@ -64,7 +65,7 @@ def ending_of(status: int, kills_before: int) -> Ending:
 
 
 def out_of_memory_kills() -> int:
-    """How many processes of this machine the kernel has killed for want of memory; 0 where it does not say."""
+    """Return how many processes the kernel has killed for lack of memory; 0 if it does not report that."""
     try:
         lines = Path("/proc/vmstat").read_text().splitlines()
     except OSError:
@@ -73,16 +74,16 @@ def out_of_memory_kills() -> int:
 
 
 def limit_resources(settings: Settings) -> None:
-    """Bound what this process may use, for good: what a hostile mesh does, it does to its own job alone."""
+    """Limit the resources of this process irrevocably, so that a hostile mesh affects its own job alone."""
     _limit(resource.RLIMIT_AS, settings.job_memory_bytes)
     _limit(resource.RLIMIT_FSIZE, settings.job_file_bytes)
-    _limit(resource.RLIMIT_CORE, 0)  # meshes do not end up in files that nobody knows of
-    # At the lower limit comes SIGXCPU, which says why; at the higher one SIGKILL.
+    _limit(resource.RLIMIT_CORE, 0)  # no core files with the contents of meshes
+    # SIGXCPU at the lower limit tells the parent why the process ended; at the higher one the kernel sends SIGKILL.
     _limit(resource.RLIMIT_CPU, settings.job_cpu_s, settings.job_cpu_s + _CPU_MARGIN_S)
 
 
 def _limit(kind: int, soft: int, hard: int | None = None) -> None:
-    """Lower a limit, as far as it is not lower already."""
+    """Lower a limit, unless it is lower already."""
     _, allowed = resource.getrlimit(kind)
     most = soft if hard is None else hard
     if allowed == resource.RLIM_INFINITY or most <= allowed:

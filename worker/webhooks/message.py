@@ -1,4 +1,4 @@
-"""One webhook: where it may go, how it is signed (Standard Webhooks 1.0), how it is sent."""
+"""A webhook message: allowed targets, signature (Standard Webhooks 1.0), sending."""
 
 import base64
 import hmac
@@ -12,16 +12,16 @@ import httpx
 
 from worker.jobs.job import Job, Outcome
 
-_TIMEOUT_S = 10.0
-SECRET_PREFIX = "whsec_"  # nosec B105  # every secret of Standard Webhooks begins so
+_TIMEOUT_S = 10.0  # to connect, and between two parts of the answer; set by hand
+SECRET_PREFIX = "whsec_"  # nosec B105  # of all secrets in Standard Webhooks
 
 
 class Undeliverable(Exception):  # noqa: N818
-    """The message did not get there; the text says why."""
+    """The message could not be delivered, for the reason in the text."""
 
 
 def objection_to(url: str, private_targets: bool) -> str | None:
-    """What can be seen to be wrong with the URL of a webhook before anything is sent, in a sentence."""
+    """Return what is wrong with the URL of a webhook, in a sentence; None if nothing can be seen before it is used."""
     try:
         parts = urlsplit(url)
         host, _ = parts.hostname, parts.port
@@ -36,7 +36,7 @@ def objection_to(url: str, private_targets: bool) -> str | None:
 
 
 def webhook_body(job: Job, outcome: Outcome) -> bytes:
-    """A thin message: who wants to know more asks for the job."""
+    """Return the body of the message, which has the id and the status; receivers fetch the rest from the API."""
     message = {
         "type": f"job.{outcome.status}",
         "timestamp": outcome.finished_at.isoformat().replace("+00:00", "Z"),
@@ -51,20 +51,20 @@ def signature(secret: bytes, message_id: str, timestamp: int, body: bytes) -> st
 
 
 def shown_secret(secret: bytes) -> str:
-    """A secret as receivers are given it."""
+    """Return a secret in the form in which receivers get it."""
     return SECRET_PREFIX + base64.b64encode(secret).decode()
 
 
 def send(url: str, message_id: str, secret: bytes, body: bytes, at: datetime, private_targets: bool) -> None:
     """Post a message once.
 
-    The name is resolved here and the address that was looked at is the one that is connected to, so that a name cannot
-    lead elsewhere the second time. Redirects are not followed.
+    The host name is resolved once, and the request goes to the address that was checked, so that a second resolution
+    cannot lead elsewhere. Redirects are not followed.
 
     Raises
     ------
     Undeliverable
-        Where it may not go there, or the answer is not a success.
+        If the address is not allowed, or the response is not a success.
     """
     parts = urlsplit(url)
     address = _public_address(str(parts.hostname), parts.port or {"https": 443}.get(parts.scheme, 80), private_targets)
@@ -83,10 +83,10 @@ def send(url: str, message_id: str, secret: bytes, body: bytes, at: datetime, pr
             httpx.Client(timeout=_TIMEOUT_S, trust_env=False) as client,
             client.stream(
                 "POST", target, content=body, headers=headers, extensions={"sni_hostname": str(parts.hostname)}
-            ) as answer,
+            ) as response,
         ):
-            if not answer.is_success:
-                raise Undeliverable(f"the answer was {answer.status_code}")
+            if not response.is_success:
+                raise Undeliverable(f"the response was {response.status_code}")
     except httpx.HTTPError as error:
         raise Undeliverable(type(error).__name__) from error
 
@@ -95,16 +95,16 @@ def _public_address(host: str, port: int, private_targets: bool) -> str:
     try:
         found = socket.getaddrinfo(host, port, type=socket.SOCK_STREAM)
     except (OSError, UnicodeError) as error:
-        raise Undeliverable("the name cannot be resolved") from error
+        raise Undeliverable("the host name cannot be resolved") from error
     addresses = [str(entry[4][0]) for entry in found]
     for address in addresses:
         if not private_targets and not _may_be_public(address.partition("%")[0]):
-            raise Undeliverable("the name leads to an address that is not public")
+            raise Undeliverable("the host name resolves to an address that is not public")
     return addresses[0]
 
 
 def _may_be_public(host: str) -> bool:
-    """Whether a name or an address can be one of the public network; of a name nothing is known yet."""
+    """Whether a host can be public: False for addresses that are not global, True for names."""
     try:
         address = ipaddress.ip_address(host)
     except ValueError:

@@ -28,7 +28,7 @@ def test_the_first_splits_give_the_level(client: httpx.Client, job: str) -> None
 def test_a_cut_that_is_no_level_parts_faces_where_its_splits_do(
     client: httpx.Client, job: str, store: JobStore
 ) -> None:
-    with store.open_result(job.rpartition("/")[2]) as file:
+    with store.results.open(job.rpartition("/")[2]) as file:
         hierarchy = read_result(file).hierarchy
     last = next(s for s in range(2, hierarchy.max_segments - 1) if hierarchy.split_node[s] in (1, 2))
     document = client.get(f"{job}/labels", params={"splits": f"{last},0"}).json()
@@ -68,7 +68,7 @@ def test_splits_and_a_level_together_are_refused(client: httpx.Client, job: str,
 def test_a_granularity_is_the_number_of_segments_that_the_hierarchy_says(
     client: httpx.Client, job: str, store: JobStore, granularity: float
 ) -> None:
-    with store.open_result(job.rpartition("/")[2]) as file:
+    with store.results.open(job.rpartition("/")[2]) as file:
         segments = read_result(file).hierarchy.segments_at(granularity)
     for form in FORMS:
         answer = client.get(f"{job}/{form}", params={"granularity": granularity})

@@ -12,11 +12,12 @@ from worker.jobs.store.store import JobStore
 class Clock:
     """Time that passes only while somebody sleeps, and a store in which a job ends at some time."""
 
-    is_local, look_s = True, 0.0
+    poll_interval_s = 0.0
 
     def __init__(self, ends_at: float) -> None:
         self.now, self.looks = 0.0, 0
         self._ends_at = ends_at
+        self.records = self.objects = self
 
     def monotonic(self) -> float:
         return self.now

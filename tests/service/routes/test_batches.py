@@ -33,7 +33,7 @@ def post_zip(client: httpx.Client, data: bytes) -> httpx.Response:
 
 
 def work(store: JobStore, settings: Settings) -> None:
-    for job_id in store.unfinished():
+    for job_id in store.pending.all():
         perform(store, settings, job_id, lambda *_: None)
 
 

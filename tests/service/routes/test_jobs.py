@@ -11,6 +11,7 @@ from helpers.api import FACES, UNKNOWN, problem, submit, traces
 from helpers.jobs import SMALL, sphere
 from segcore.io.result import read_result
 from worker.jobs.queue.queue import JobQueue, Progress
+from worker.jobs.store.records import Records
 from worker.jobs.store.store import JobStore
 
 
@@ -54,7 +55,7 @@ def test_labels_are_those_of_the_stored_hierarchy_at_every_number_of_segments(
     client: httpx.Client, store: JobStore, finished_job: Callable[..., str]
 ) -> None:
     path = finished_job()
-    with store.open_result(path.rpartition("/")[2]) as file:
+    with store.results.open(path.rpartition("/")[2]) as file:
         hierarchy = read_result(file).hierarchy
     for segments in (1, 2, hierarchy.max_segments):
         document = client.get(f"{path}/labels", params={"segments": segments}).json()
@@ -209,7 +210,7 @@ def test_what_is_accepted_while_the_queue_goes_down_stays_accepted(
 
     monkeypatch.setattr(JobQueue, "enqueue", fail)
     path = submit(client)
-    assert list(store.unfinished()) == [path.rpartition("/")[2]]
+    assert list(store.pending.all()) == [path.rpartition("/")[2]]
     assert queue.entries[SMALL].get_job_ids() == []
 
 
@@ -229,7 +230,7 @@ def test_an_internal_error_tells_no_secrets(client: httpx.Client, monkeypatch: p
     def fail(*_: object) -> None:
         raise ZeroDivisionError("secret")
 
-    monkeypatch.setattr(JobStore, "job", fail)
+    monkeypatch.setattr(Records, "job", fail)
     answer = client.get(UNKNOWN)
     problem(answer, 500, "internal_error")
     assert "secret" not in answer.text

@@ -17,11 +17,12 @@ from helpers.api import problem
 from helpers.jobs import sphere
 from helpers.servers import serving
 from worker.jobs.job import now
+from worker.jobs.queue.locks import Locks
 from worker.jobs.queue.queue import JobQueue
 from worker.jobs.store.opening import open_folder
 from worker.jobs.store.store import JobStore
 from worker.process.perform import perform
-from worker.webhooks.delivery import BACK_OFF_S, Courier
+from worker.webhooks.delivery import BACK_OFF_S, WebhookSender
 from worker.webhooks.message import Undeliverable, objection_to, send
 
 
@@ -67,8 +68,8 @@ def inside(settings: Settings) -> Settings:
 
 
 @pytest.fixture
-def courier(store: JobStore, queue: JobQueue, inside: Settings) -> Courier:
-    return Courier(store, store.outbox, queue, store.secret, inside, "courier")
+def sender(store: JobStore, queue: JobQueue, inside: Settings) -> WebhookSender:
+    return WebhookSender(store, Locks(queue.connection), inside, "sender")
 
 
 @pytest.fixture
@@ -85,13 +86,13 @@ def finished_with_webhook(inside: Settings, store: JobStore) -> Callable[[str], 
 
 
 def test_a_webhook_is_told_once_and_can_verify_who_told_it(
-    courier: Courier, finished_with_webhook: Callable[[str], tuple[str, str]]
+    sender: WebhookSender, finished_with_webhook: Callable[[str], tuple[str, str]]
 ) -> None:
     with receiving() as receiver:
         job_id, secret = finished_with_webhook(receiver.url)
         at_s = now().timestamp()
-        courier.round(at_s)
-        courier.round(at_s)
+        sender.send_due(at_s)
+        sender.send_due(at_s)
     ((headers, body),) = receiver.received
     message = Webhook(secret).verify(body, headers)
     assert (message["type"], message["data"]["id"]) == ("job.succeeded", job_id)
@@ -101,39 +102,39 @@ def test_a_webhook_is_told_once_and_can_verify_who_told_it(
 
 
 def test_a_webhook_that_fails_is_tried_again_later_and_later_with_the_same_id(
-    courier: Courier, finished_with_webhook: Callable[[str], tuple[str, str]]
+    sender: WebhookSender, finished_with_webhook: Callable[[str], tuple[str, str]]
 ) -> None:
     with receiving(500, 302) as receiver:
         finished_with_webhook(receiver.url)
         at_s = now().timestamp()
         for due_s in (0.0, BACK_OFF_S[0], BACK_OFF_S[0] + BACK_OFF_S[1]):
-            courier.round(at_s + due_s)
-            courier.round(at_s + due_s + 1)
+            sender.send_due(at_s + due_s)
+            sender.send_due(at_s + due_s + 1)
     assert len(receiver.received) == 3
     assert len({headers["webhook-id"] for headers, _ in receiver.received}) == 1
     assert len({headers["webhook-timestamp"] for headers, _ in receiver.received}) == 3
-    assert courier.outbox.letters() == {}
+    assert sender.store.outbox.deliveries() == {}
 
 
 def test_a_webhook_that_always_fails_is_given_up(
-    courier: Courier, finished_with_webhook: Callable[[str], tuple[str, str]]
+    sender: WebhookSender, finished_with_webhook: Callable[[str], tuple[str, str]]
 ) -> None:
     job_id, _ = finished_with_webhook("http://127.0.0.1:1/nobody")
     at_s = now().timestamp()
     for pause_s in (0.0, *BACK_OFF_S):
-        assert job_id in courier.outbox.letters()
+        assert job_id in sender.store.outbox.deliveries()
         at_s += pause_s
-        courier.round(at_s)
-    assert courier.outbox.letters() == {}
+        sender.send_due(at_s)
+    assert sender.store.outbox.deliveries() == {}
 
 
-def test_nothing_is_told_before_the_end(courier: Courier, inside: Settings) -> None:
+def test_nothing_is_told_before_the_end(sender: WebhookSender, inside: Settings) -> None:
     with receiving() as receiver, serving(inside) as client:
         answer = client.post("/v1/jobs", params={"webhook": receiver.url}, content=b"abc")
-        courier.round(now().timestamp())
+        sender.send_due(now().timestamp())
         assert receiver.received == []
         client.post(f"{answer.headers['Location']}/cancel")
-        courier.round(now().timestamp())
+        sender.send_due(now().timestamp())
     assert b"job.canceled" in receiver.received[0][1]
 
 
@@ -173,8 +174,8 @@ def test_a_name_that_leads_inwards_is_not_followed(monkeypatch: pytest.MonkeyPat
         send("http://harmless.example/", "msg_1", b"secret", b"{}", now(), private_targets=False)
 
 
-def test_what_is_sent_is_kept_until_it_has_arrived(tmp_path: Path, courier: Courier, inside: Settings) -> None:
-    """A courier that dies in the middle leaves the letter."""
+def test_what_is_sent_is_kept_until_it_has_arrived(tmp_path: Path, sender: WebhookSender, inside: Settings) -> None:
+    """A sender that dies in the middle does not lose the message."""
     with serving(inside) as client:
         client.post("/v1/jobs", params={"webhook": "http://127.0.0.1:1/"}, content=b"abc")
-    assert len(open_folder(tmp_path / "data").outbox.letters()) == len(courier.outbox.letters()) == 1
+    assert len(open_folder(tmp_path / "data").outbox.deliveries()) == len(sender.store.outbox.deliveries()) == 1

@@ -43,7 +43,7 @@ def post(client: httpx.Client, body: bytes | Iterator[bytes], content_type: str 
 def test_a_form_means_the_same_however_it_is_cut_up(store: JobStore, step: int) -> None:
     content = b"\r\n--" + bytes(range(256)) + f"\r\n--{BOUNDARY[:-1]}\r\n".encode() * 3
     body = form(part("parameters", b'{"seed": 1}'), part("mesh", content, '; filename="hand.OFF"'))
-    with store.begin_upload() as upload:
+    with store.spool.begin_upload() as upload:
         reader = FormReader(BOUNDARY.encode(), lambda: upload, 10_000)
         for start in range(0, len(body), step):
             reader.feed(body[start : start + step])
@@ -63,7 +63,7 @@ def test_a_form_means_the_same_however_it_is_cut_up(store: JobStore, step: int) 
     )
 )
 def test_whatever_is_sent_is_a_form_or_a_problem(store: JobStore, pieces: list[bytes]) -> None:
-    with store.begin_upload() as upload:
+    with store.spool.begin_upload() as upload:
         reader = FormReader(BOUNDARY.encode(), lambda: upload, 10_000)
         with suppress(Problem):
             for piece in [form(part("mesh", b"abc"))[:40], *pieces]:
@@ -141,7 +141,7 @@ def test_a_client_that_goes_away_leaves_nothing(store: JobStore, tmp_path: Path)
     request = request_of([part("mesh", b"half of a mesh")], content_type=CONTENT_TYPE, transfer_encoding="chunked")
 
     async def receive() -> None:
-        with store.begin_upload() as upload:
+        with store.spool.begin_upload() as upload:
             await receive_mesh(request, LIMITED, lambda: upload)
 
     with pytest.raises(ClientDisconnect):
@@ -154,7 +154,7 @@ def test_a_declared_length_is_refused_before_the_body_is_read(store: JobStore, l
     request = request_of([], content_type=CONTENT_TYPE, content_length=length)
 
     async def receive() -> None:
-        with store.begin_upload() as upload:
+        with store.spool.begin_upload() as upload:
             await receive_mesh(request, LIMITED, lambda: upload)
 
     with pytest.raises(Problem, match="larger than"):
@@ -281,7 +281,7 @@ def test_a_request_without_a_body_is_told_so(store: JobStore) -> None:
     request = request_of([], content_type=CONTENT_TYPE)
 
     async def receive() -> None:
-        with store.begin_upload() as upload:
+        with store.spool.begin_upload() as upload:
             await receive_mesh(request, LIMITED, lambda: upload)
 
     with pytest.raises(Problem, match="no body") as refused:
@@ -302,7 +302,7 @@ def slow_request(pause_s: float) -> Request:
 @pytest.mark.parametrize("pause_s", [60.0, 0.01])
 def test_a_client_that_sends_hardly_anything_is_given_up(store: JobStore, tmp_path: Path, pause_s: float) -> None:
     async def receive() -> None:
-        with store.begin_upload() as upload:
+        with store.spool.begin_upload() as upload:
             await receive_mesh(slow_request(pause_s), LIMITED, lambda: upload)
 
     with pytest.raises(Problem, match="slow") as refused:

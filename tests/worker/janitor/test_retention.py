@@ -1,4 +1,4 @@
-"""What is not kept for ever: old jobs and large stores, but nothing that somebody still waits for."""
+"""Retention: old jobs and jobs above the size limit are removed, except those that a client still waits for."""
 
 import time
 from dataclasses import replace
@@ -24,13 +24,13 @@ def ids(*jobs: StoredJob) -> list[str]:
     return [one.id for one in jobs]
 
 
-def test_what_is_older_than_kept_goes_oldest_first() -> None:
+def test_jobs_above_the_age_limit_are_removed_oldest_first() -> None:
     young, old, older = job(1), job(3), job(5)
     settings = Settings(retention_s=2 * DAY_S)
     assert surplus([young, old, older], set(), settings, NOW_S) == ids(older, old)
 
 
-def test_what_ended_first_goes_until_the_rest_is_small_enough() -> None:
+def test_the_first_jobs_to_end_are_removed_until_the_rest_is_below_the_size_limit() -> None:
     jobs = [job(age, 100) for age in (4, 3, 2, 1)]
     assert surplus(jobs, set(), Settings(retention_bytes=400), NOW_S) == []
     assert surplus(jobs, set(), Settings(retention_bytes=399), NOW_S) == ids(jobs[0])
@@ -38,53 +38,53 @@ def test_what_ended_first_goes_until_the_rest_is_small_enough() -> None:
     assert surplus(jobs, set(), Settings(retention_bytes=0), NOW_S) == ids(*jobs)
 
 
-def test_nobody_loses_what_they_could_not_have_seen() -> None:
+def test_jobs_whose_end_was_not_reported_yet_are_kept() -> None:
     settings = Settings(retention_s=0, retention_bytes=0, max_wait_s=60)
-    unfinished, just_ended, untold = job(None, 10**9), job(100 / DAY_S), job(9)
+    unfinished, just_ended, undelivered = job(None, 10**9), job(100 / DAY_S), job(9)
     arriving = replace(job(None), is_accepted=False)
-    assert surplus([unfinished, just_ended, untold, arriving], {untold.id}, settings, NOW_S) == []
+    assert surplus([unfinished, just_ended, undelivered, arriving], {undelivered.id}, settings, NOW_S) == []
 
 
-def test_unfinished_jobs_count_but_stay() -> None:
+def test_unfinished_jobs_count_towards_the_size_but_are_kept() -> None:
     unfinished, ended = job(None, 10**9), job(2)
     assert surplus([unfinished, ended], set(), Settings(retention_bytes=100), NOW_S) == ids(ended)
 
 
 def ended_job(store: JobStore) -> Job:
     one = accepted(store, b"mesh bytes")
-    store.write_result(one.id, lambda target: target.write(b"result"))
+    store.results.write(one.id, lambda target: target.write(b"result"))
     store.finish(one.id, Succeeded(finished_at=now(), faces=4, vertices=4, max_segments=3, automatic_segments=2))
     return one
 
 
-def test_a_sweep_deletes_what_ended_and_keeps_what_did_not(placed: JobStore) -> None:
-    ended, waiting = ended_job(placed), accepted(placed, b"mesh")
+def test_a_sweep_deletes_ended_jobs_and_keeps_unfinished_ones(any_store: JobStore) -> None:
+    ended, waiting = ended_job(any_store), accepted(any_store, b"mesh")
     for settings in (Settings(), Settings(retention_s=2 * DAY_S)):
-        remove_surplus(placed, settings, time.time() + DAY_S)
-        assert placed.job(ended.id) == ended
-    remove_surplus(placed, Settings(retention_s=DAY_S / 2), time.time() + DAY_S)
-    assert placed.job(ended.id) is None
-    assert placed.was_deleted(ended.id, None)
-    assert placed.job(waiting.id) == waiting
-    assert [one.id for one in stored_jobs(placed)] == [waiting.id]
+        remove_surplus(any_store, settings, time.time() + DAY_S)
+        assert any_store.records.job(ended.id) == ended
+    remove_surplus(any_store, Settings(retention_s=DAY_S / 2), time.time() + DAY_S)
+    assert any_store.records.job(ended.id) is None
+    assert any_store.deletions.was_deleted(ended.id, None)
+    assert any_store.records.job(waiting.id) == waiting
+    assert [one.id for one in stored_jobs(any_store)] == [waiting.id]
 
 
-def test_a_sweep_counts_every_byte_of_a_job(placed: JobStore) -> None:
-    ended = ended_job(placed)
-    (stored,) = stored_jobs(placed)
+def test_a_sweep_counts_every_byte_of_a_job(any_store: JobStore) -> None:
+    ended = ended_job(any_store)
+    (stored,) = stored_jobs(any_store)
     assert stored.size_bytes > len(b"mesh bytes") + len(b"result")
-    remove_surplus(placed, Settings(retention_bytes=stored.size_bytes), time.time() + DAY_S)
-    assert placed.job(ended.id) == ended
-    remove_surplus(placed, Settings(retention_bytes=stored.size_bytes - 1), time.time() + DAY_S)
-    assert placed.job(ended.id) is None
+    remove_surplus(any_store, Settings(retention_bytes=stored.size_bytes), time.time() + DAY_S)
+    assert any_store.records.job(ended.id) == ended
+    remove_surplus(any_store, Settings(retention_bytes=stored.size_bytes - 1), time.time() + DAY_S)
+    assert any_store.records.job(ended.id) is None
 
 
-def test_everything_is_looked_at_now_and_then_only(
+def test_the_objects_are_listed_every_half_minute_only(
     store: JobStore, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    looks: list[float] = []
-    monkeypatch.setattr("worker.janitor.retention.remove_surplus", lambda *_: looks.append(0))
+    sweeps: list[float] = []
+    monkeypatch.setattr("worker.janitor.retention.remove_surplus", lambda *_: sweeps.append(0))
     housekeeping = Housekeeping(store, Settings(data_dir=tmp_path))
     for at_s in (0.0, 1.0, 29.0, 31.0, 32.0):
         housekeeping.sweep(at_s)
-    assert len(looks) == 2
+    assert len(sweeps) == 2

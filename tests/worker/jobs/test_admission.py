@@ -1,4 +1,4 @@
-"""An owner's jobs enter the queue as far as there is room, in their order, and nobody else's wait for them."""
+"""Admission: an owner's jobs are enqueued in order up to the limit, and do not delay jobs of others."""
 
 from collections.abc import Callable
 from dataclasses import replace
@@ -19,7 +19,7 @@ def submitted(store: JobStore) -> Callable[[str], Job]:
     def submit(owner: str) -> Job:
         template = accepted(store, b"mesh")
         store.delete(template.id)
-        with store.begin_upload() as upload:
+        with store.spool.begin_upload() as upload:
             job = replace(template, id=new_job_id(), owner=owner, created_at=now())
             store.accept(job, upload)
         return job
@@ -32,7 +32,7 @@ def waiting(queue: JobQueue) -> list[str]:
     return ids
 
 
-def test_an_owner_has_no_more_in_the_queue_than_allowed(
+def test_an_owner_has_no_more_jobs_in_the_queue_than_allowed(
     store: JobStore, queue: JobQueue, submitted: Callable[[str], Job]
 ) -> None:
     two_each = Settings(key_max_running_jobs=2)
@@ -48,21 +48,25 @@ def test_an_owner_has_no_more_in_the_queue_than_allowed(
     assert waiting(queue) == [mine[1].id, theirs.id, mine[2].id]
 
 
-def test_without_a_limit_every_job_enters(store: JobStore, queue: JobQueue, submitted: Callable[[str], Job]) -> None:
+def test_without_a_limit_every_job_is_enqueued(
+    store: JobStore, queue: JobQueue, submitted: Callable[[str], Job]
+) -> None:
     jobs = [submitted("me") for _ in range(3)]
     for job in jobs:
         admit(store, queue, Settings(), "me", job)
     assert waiting(queue) == [job.id for job in jobs]
 
 
-def test_running_jobs_take_up_room(store: JobStore, queue: JobQueue, submitted: Callable[[str], Job]) -> None:
+def test_running_jobs_count_towards_the_limit(
+    store: JobStore, queue: JobQueue, submitted: Callable[[str], Job]
+) -> None:
     first, second = submitted("me"), submitted("me")
     queue.take(first.id, "worker", lease_s=30)
     admit(store, queue, Settings(key_max_running_jobs=1), "me", second)
     assert waiting(queue) == []
 
 
-def test_the_janitor_leaves_jobs_outside_and_brings_back_lost_ones(
+def test_the_janitor_enqueues_lost_jobs_up_to_the_limit(
     store: JobStore, queue: JobQueue, submitted: Callable[[str], Job], settings: Settings
 ) -> None:
     jobs = [submitted("me") for _ in range(3)]
@@ -78,7 +82,7 @@ def settings(store: JobStore) -> Settings:
     return Settings(key_max_running_jobs=1)
 
 
-def test_outside_are_the_youngest() -> None:
+def test_the_youngest_jobs_may_wait_outside() -> None:
     owners: dict[str, str | None] = {"a1": "a", "b1": "b", "a2": "a", "a3": "a", "n": None}
     assert may_wait_outside(owners, set(), 1) == {"a2", "a3"}
     assert may_wait_outside(owners, {"a2"}, 1) == {"a1", "a3"}

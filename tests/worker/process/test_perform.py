@@ -1,4 +1,4 @@
-"""The work of a job, without a queue: a mesh in the store becomes a result, or a reason why there is none."""
+"""Running a job without a queue: the outcome is a result, or a failure with a reason."""
 
 import gzip
 import json
@@ -28,14 +28,14 @@ def settings(tmp_path: Path) -> Settings:
     return Settings(data_dir=tmp_path / "data", max_faces=10_000)
 
 
-def test_a_mesh_becomes_the_result_that_segcore_gives(store: JobStore, settings: Settings, tmp_path: Path) -> None:
+def test_the_result_is_that_of_segcore(store: JobStore, settings: Settings, tmp_path: Path) -> None:
     mesh_file = tmp_path / "mesh.off"
     mesh_file.write_bytes(sphere(20))
     job = accepted(store, mesh_file.read_bytes(), max_segments=9)
     perform(store, settings, job.id, ignore)
-    outcome = store.outcome(job.id)
+    outcome = store.records.outcome(job.id)
     assert isinstance(outcome, Succeeded)
-    with store.open_result(job.id) as file:
+    with store.results.open(job.id) as file:
         result = read_result(file)
     expected = segcore.segment(segcore.read_mesh(mesh_file), segcore.SegmentationParameters(max_segments=9))
     assert (result.hierarchy.labels(5) == expected.labels(5)).all()
@@ -46,10 +46,10 @@ def test_a_mesh_becomes_the_result_that_segcore_gives(store: JobStore, settings:
     assert json.loads(json.dumps(asdict(report))) == outcome.report
 
 
-def test_what_the_file_says_beside_the_shape_is_kept(store: JobStore, settings: Settings) -> None:
+def test_the_appearance_in_the_file_is_kept(store: JobStore, settings: Settings) -> None:
     job = accepted(store, b"NOFF\n3 1 0\n0 0 0 0 0 1\n1 0 0 0 0 1\n0 1 0 0 0 1\n3 0 1 2\n")
     perform(store, settings, job.id, ignore)
-    with store.open_result(job.id) as file:
+    with store.results.open(job.id) as file:
         appearance = read_result(file).mesh.appearance
     assert appearance is not None
     assert appearance.normals.tolist() == [[0, 0, 1]] * 3
@@ -60,12 +60,12 @@ def test_a_second_run_writes_the_same_bytes(store: JobStore, settings: Settings)
     for _ in range(2):
         job = accepted(store, sphere(12))
         perform(store, settings, job.id, ignore)
-        with store.open_result(job.id) as file:
+        with store.results.open(job.id) as file:
             contents.append(file.read())
     assert contents[0] == contents[1]
 
 
-def test_progress_goes_from_nothing_to_all_and_never_back(store: JobStore, settings: Settings) -> None:
+def test_progress_increases_from_0_to_1(store: JobStore, settings: Settings) -> None:
     seen: list[tuple[str, float]] = []
     perform(store, settings, accepted(store, sphere(12)).id, lambda stage, fraction: seen.append((stage, fraction)))
     fractions = [fraction for _, fraction in seen]
@@ -84,12 +84,12 @@ def test_progress_goes_from_nothing_to_all_and_never_back(store: JobStore, setti
         (TETRAHEDRON, {"max_segments": 0}, "invalid_parameters"),
     ],
 )
-def test_what_is_wrong_with_the_input_is_said_at_the_first_attempt(
+def test_an_invalid_input_fails_at_the_first_attempt_with_a_reason(
     store: JobStore, settings: Settings, mesh: bytes, parameters: dict[str, object], code: str
 ) -> None:
     job = accepted(store, mesh, **parameters)
     perform(store, settings, job.id, ignore)
-    outcome = store.outcome(job.id)
+    outcome = store.records.outcome(job.id)
     assert isinstance(outcome, Failed)
     assert outcome.code == code
     assert outcome.message.endswith(".")
@@ -102,7 +102,7 @@ def test_a_mesh_that_the_store_lost_is_a_failure_with_a_reason(
     job = accepted(store, TETRAHEDRON)
     (tmp_path / "data" / "jobs" / job.id / f"mesh-{job.sha256}").unlink()
     perform(store, settings, job.id, ignore)
-    outcome = store.outcome(job.id)
+    outcome = store.records.outcome(job.id)
     assert isinstance(outcome, Failed)
     assert outcome.code == "input_lost"
 
@@ -111,16 +111,16 @@ def test_a_job_with_an_outcome_is_not_run_again(store: JobStore, settings: Setti
     job = accepted(store, TETRAHEDRON)
     store.finish(job.id, Canceled(finished_at=now()))
     perform(store, settings, job.id, lambda *_: pytest.fail("it was run"))
-    assert isinstance(store.outcome(job.id), Canceled)
+    assert isinstance(store.records.outcome(job.id), Canceled)
 
 
-def test_a_job_that_is_deleted_meanwhile_ends_without_an_error(store: JobStore, settings: Settings) -> None:
+def test_a_job_that_is_deleted_while_it_runs_ends_without_an_error(store: JobStore, settings: Settings) -> None:
     job = accepted(store, TETRAHEDRON)
     perform(store, settings, job.id, lambda stage, _: store.delete(job.id) if stage == "reading" else None)
-    assert store.job(job.id) is None
+    assert store.records.job(job.id) is None
 
 
-def test_an_error_that_nobody_expects_is_not_an_outcome(store: JobStore, settings: Settings) -> None:
+def test_an_unexpected_error_is_not_an_outcome(store: JobStore, settings: Settings) -> None:
     job = accepted(store, TETRAHEDRON)
 
     def fail(stage: str, fraction: float) -> None:
@@ -128,14 +128,14 @@ def test_an_error_that_nobody_expects_is_not_an_outcome(store: JobStore, setting
 
     with pytest.raises(ZeroDivisionError):
         perform(store, settings, job.id, fail)
-    assert store.outcome(job.id) is None
+    assert store.records.outcome(job.id) is None
 
 
 @pytest.mark.parametrize("limit", ["max_uncompressed_bytes", "max_faces", "max_vertices"])
-def test_every_limit_of_the_settings_is_one_of_the_reader(store: JobStore, settings: Settings, limit: str) -> None:
+def test_every_limit_of_the_settings_is_applied_by_the_reader(store: JobStore, settings: Settings, limit: str) -> None:
     job = accepted(store, gzip.compress(sphere(12)))
     perform(store, settings.model_copy(update={limit: 100}), job.id, ignore)
-    outcome = store.outcome(job.id)
+    outcome = store.records.outcome(job.id)
     assert isinstance(outcome, Failed)
     assert outcome.code == "limit_exceeded"
     assert f"{limit} = 100" in outcome.message

@@ -1,4 +1,4 @@
-"""The end of a work-horse: what it says, and what is read from it."""
+"""The work-horse: its exit status, what is read from it, and its limits."""
 
 import errno
 import os
@@ -22,7 +22,7 @@ def fail(error: BaseException) -> None:
     raise error
 
 
-def test_the_exit_status_tells_success_want_of_memory_and_errors_apart() -> None:
+def test_the_exit_status_distinguishes_success_lack_of_memory_and_other_errors() -> None:
     assert exit_status(lambda: None) == os.EX_OK
     assert exit_status(lambda: fail(MemoryError())) == EXIT_OUT_OF_MEMORY
     assert exit_status(lambda: fail(OSError(errno.EFBIG, "File too large"))) == EXIT_FILE_TOO_LARGE
@@ -48,7 +48,7 @@ def test_the_ending_is_read_from_the_wait_status(status: int, cause: str) -> Non
     assert ending_of(int(status), kills_before=out_of_memory_kills()) == cause
 
 
-def test_a_kill_while_the_kernel_killed_for_memory_is_put_down_to_memory() -> None:
+def test_a_kill_counts_as_out_of_memory_if_the_kernel_has_killed_for_memory() -> None:
     assert ending_of(signal.SIGKILL, kills_before=out_of_memory_kills() - 1) == "out_of_memory"
     assert ending_of(signal.SIGSEGV, kills_before=out_of_memory_kills() - 1) == "worker_lost"
 
@@ -56,9 +56,9 @@ def test_a_kill_while_the_kernel_killed_for_memory_is_put_down_to_memory() -> No
 def test_a_work_horse_cannot_lift_its_limits_and_leaves_no_core() -> None:
     source = """
 import resource
-from worker.settings import Settings
-from worker.work_horse import limit_resources
-resource.setrlimit(resource.RLIMIT_FSIZE, (1000, 1000))  # an operator's own is never raised
+from cleave.settings import Settings
+from worker.process.work_horse import limit_resources
+resource.setrlimit(resource.RLIMIT_FSIZE, (1000, 1000))  # a lower limit of the operator is never raised
 limit_resources(Settings(job_memory_bytes=2**33, job_cpu_s=77, job_file_bytes=2000))
 for name in ("AS", "CPU", "FSIZE", "CORE"):
     print(*resource.getrlimit(getattr(resource, "RLIMIT_" + name)))

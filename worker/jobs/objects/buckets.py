@@ -1,4 +1,4 @@
-"""Where a bucket is and how it is spoken to, from the URL of the store."""
+"""Opens a bucket from the URL of the store: its address, credentials, timeouts and retries."""
 
 from collections.abc import Callable
 from dataclasses import dataclass
@@ -18,36 +18,36 @@ if TYPE_CHECKING:
 _SCHEMES = ("s3", "gs", "az", "memory")
 _OPTIONS = {"s3": ("endpoint", "public_endpoint", "region"), "az": ("endpoint", "public_endpoint")}
 
-# A caller of the API is told within two seconds that the store does not answer: a read is tried twice, and a write
-# once, since nobody knows what has become of one that got no answer. A connection that fails at once is tried again.
+# The API reports within two seconds that the store does not answer. Within this time a read is tried twice. A write is
+# tried once, as a write without an answer may have been done. A connection that is refused is tried again.
 _READ_S, _WRITE_S, _CONNECT_S = 0.8, 1.6, 0.7
 _RETRIES_S, _FIRST_PAUSE = 1.0, timedelta(milliseconds=50)
-# Files are as long as they are; what counts is that something goes on.
+# A transfer takes as long as its file is large, but it fails if no byte arrives for some seconds. Set by hand.
 _TRANSFER_S, _SILENCE_S, _TRANSFER_RETRIES_S = 3600.0, 10.0, 30.0
 
 
 @dataclass(frozen=True, slots=True)
 class Bucket:
-    """One bucket, or a part of it, through clients with different patience."""
+    """A bucket, or the part of it under a prefix, through clients with different timeouts."""
 
     reads: "ObjectStore"  # of small objects
     writes: "ObjectStore"  # of small objects
     transfers: "ObjectStore"  # of files
-    signer: S3Store | GCSStore | AzureStore | None  # of addresses for others; None where there can be none
+    signer: S3Store | GCSStore | AzureStore | None  # of URLs for clients; None if the storage has none
 
     def sign(self, key: str, valid: timedelta) -> str | None:
         return None if self.signer is None else obstore.sign(self.signer, "GET", key, valid)
 
 
 def open_bucket(url: str) -> Bucket:
-    """The bucket of a URL such as ``s3://bucket/prefix?endpoint=https://host:9000``.
+    """Open the bucket of a URL such as ``s3://bucket/prefix?endpoint=https://host:9000``.
 
-    Credentials come from the environment (``AWS_ACCESS_KEY_ID`` and the like) or from the machine, as is usual there.
+    Credentials come from the environment (``AWS_ACCESS_KEY_ID`` and the like) or from the role of the machine.
 
     Raises
     ------
     InvalidSettings
-        Where the URL is none of a bucket.
+        If the URL is not that of a bucket.
     """
     parts = urlsplit(url)
     options = dict(parse_qsl(parts.query))
@@ -57,9 +57,7 @@ def open_bucket(url: str) -> Bucket:
         )
     known = _OPTIONS.get(parts.scheme, ())
     if not set(options) <= set(known):
-        raise InvalidSettings(
-            f"CLEAVE_STORE_URL: after its question mark {parts.scheme}:// takes {', '.join(known) or 'nothing'}."
-        )
+        raise InvalidSettings(f"CLEAVE_STORE_URL: the options of {parts.scheme}:// are {', '.join(known) or 'none'}.")
     if parts.scheme == "memory":
         memory = MemoryStore()
         return Bucket(memory, memory, memory, None)
@@ -67,7 +65,7 @@ def open_bucket(url: str) -> Bucket:
 
     def client(timeout_s: float, silence_s: float, retries_s: float, **changed: str) -> Any:
         given = options | changed
-        patience: ClientConfig = {
+        timeouts: ClientConfig = {
             "connect_timeout": timedelta(seconds=_CONNECT_S),
             "timeout": timedelta(seconds=timeout_s),
             "read_timeout": timedelta(seconds=silence_s),
@@ -78,7 +76,7 @@ def open_bucket(url: str) -> Bucket:
             "retry_timeout": timedelta(seconds=retries_s),
             "backoff": {"init_backoff": _FIRST_PAUSE, "max_backoff": timedelta(seconds=2), "base": 2},
         }
-        return _store(parts.scheme, parts.netloc, parts.path.strip("/"), given, patience, retries)
+        return _store(parts.scheme, parts.netloc, parts.path.strip("/"), given, timeouts, retries)
 
     try:
         reads = client(_READ_S, _READ_S, _RETRIES_S)
@@ -93,8 +91,8 @@ def open_bucket(url: str) -> Bucket:
 
 
 def _store(
-    scheme: str, name: str, prefix: str, options: dict[str, str], patience: "ClientConfig", retries: "RetryConfig"
+    scheme: str, name: str, prefix: str, options: dict[str, str], timeouts: "ClientConfig", retries: "RetryConfig"
 ) -> "ObjectStore":
-    common: dict[str, Any] = {"prefix": prefix or None, "client_options": patience, "retry_config": retries}
+    common: dict[str, Any] = {"prefix": prefix or None, "client_options": timeouts, "retry_config": retries}
     stores: dict[str, Callable[..., ObjectStore]] = {"s3": S3Store, "gs": GCSStore, "az": AzureStore}
     return stores[scheme](name, config=options, **common)

@@ -1,4 +1,4 @@
-"""Files that are whole or absent after a crash, whatever was running."""
+"""Durable writes: after a crash a file is complete or absent."""
 
 import errno
 import os
@@ -15,9 +15,9 @@ def is_disk_full(error: OSError) -> bool:
 
 
 def replace_file(path: Path, write: Callable[[BinaryIO], object], *, durable: bool = True) -> None:
-    """Write a file so that its name never shows anything but the old bytes or all of the new ones.
+    """Write or replace a file so that a reader sees either the old bytes or all of the new ones.
 
-    Where it need not be ``durable`` a crash of the machine may leave an empty file.
+    If it is not ``durable``, the file may be empty after a crash of the machine.
     """
     temporary = _write_temporary(path, write, durable=durable)
     try:
@@ -30,7 +30,7 @@ def replace_file(path: Path, write: Callable[[BinaryIO], object], *, durable: bo
 
 
 def create_file(path: Path, data: bytes) -> bool:
-    """Write a file whole, or leave the one that is there: True for the single writer that came first."""
+    """Write a file unless it exists; return True for the one writer that has created it."""
     temporary = _write_temporary(path, lambda target: target.write(data))
     try:
         os.link(temporary, path)
@@ -48,7 +48,7 @@ def sync_file(file: BinaryIO) -> None:
 
 
 def sync_path(path: Path) -> None:
-    """Make a file durable that somebody has written and closed."""
+    """Make a file durable that has been written and closed."""
     with path.open("rb") as file:
         os.fsync(file.fileno())
 

@@ -1,4 +1,4 @@
-"""Files that were fetched from another machine lately, as many of them as fit into a given size."""
+"""A cache of downloaded files in a folder, with a limit on their size."""
 
 import os
 import secrets
@@ -9,11 +9,11 @@ from contextlib import suppress
 from pathlib import Path
 from typing import BinaryIO
 
-_UNUSED_S = 3600.0  # after so long a file goes, also one of a job that somebody else has deleted
+_UNUSED_S = 3600.0  # an unused file is removed then, as its job may have been deleted elsewhere; set by hand
 
 
 class FileCache:
-    """Files that never change, in a folder that processes of this machine share; losing it costs only time."""
+    """Files that never change, by name; the processes of a machine share the folder."""
 
     def __init__(self, folder: Path, max_bytes: int) -> None:
         self._folder = folder
@@ -21,7 +21,7 @@ class FileCache:
         folder.mkdir(mode=0o700, parents=True, exist_ok=True)
 
     def open(self, name: str, fetch: Callable[[], BinaryIO]) -> BinaryIO:
-        """A file, fetched where it is not there."""
+        """Open a file, after downloading it with a function if it is not in the cache."""
         path = self._folder / name
         with suppress(FileNotFoundError):
             file = path.open("rb")
@@ -43,13 +43,13 @@ class FileCache:
             with temporary.open("xb") as copy:
                 shutil.copyfileobj(file, copy)
             temporary.replace(path)
-        except OSError:  # a full disk is no reason not to answer
+        except OSError:  # on a full disk the file is not cached
             temporary.unlink(missing_ok=True)
         file.seek(0)
         return file
 
     def _make_room(self, size_bytes: int) -> None:
-        """Remove what was not used for long, and then what was used least recently."""
+        """Remove the files that have been unused for an hour, and then the least recently used ones."""
         files = sorted(_statuses(self._folder), key=lambda one: one[1].st_mtime)
         held_bytes = sum(status.st_size for _, status in files) + size_bytes
         oldest = time.time() - _UNUSED_S

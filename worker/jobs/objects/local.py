@@ -1,4 +1,4 @@
-"""Objects as files in a folder, which processes, and machines that mount it, may share."""
+"""Object storage in a folder, which the processes of a machine share, or machines that mount it."""
 
 import errno
 import heapq
@@ -11,16 +11,16 @@ from pathlib import Path
 from typing import BinaryIO
 
 from worker.jobs.objects.durable import TEMPORARY_SUFFIX, create_file, replace_file, sync_folder, sync_path
-from worker.jobs.objects.seam import Item, ObjectInfo, Value
+from worker.jobs.objects.interface import Item, ObjectInfo, Value
 
-_TRIES = 10  # to write into a folder that others remove because it is empty
+_TRIES = 10  # to write into a folder that other processes remove while it is empty; set by hand
 
 
 class LocalObjects:
-    """The files below a folder; the file system must have hard links."""
+    """The files below a folder; the file system must support hard links."""
 
-    is_local = True
-    look_s = 0.0
+    survives_fork = True
+    poll_interval_s = 0.0
 
     def __init__(self, folder: Path) -> None:
         self._folder = folder
@@ -33,7 +33,7 @@ class LocalObjects:
         path = self._path(key)
         if data:
             self._in_folder(path.parent, lambda: replace_file(path, lambda file: file.write(data), durable=durable))
-        else:  # an empty file cannot be torn
+        else:  # an empty file cannot be incomplete
             self._in_folder(path.parent, path.touch)
             sync_folder(path.parent)
 
@@ -65,7 +65,7 @@ class LocalObjects:
         path = self._path(key)
         with suppress(FileNotFoundError, NotADirectoryError):
             path.unlink()
-        if key.count("/") > 1:  # one folder of many: it goes with what was in it
+        if key.count("/") > 1:  # the folder of a job or an owner is removed with its last object
             with suppress(OSError):
                 path.parent.rmdir()
 
@@ -94,7 +94,7 @@ class LocalObjects:
         return self._folder / key
 
     def _in_folder(self, folder: Path, write: Callable[[], Value]) -> Value:
-        """Write into a folder that is made where it is not there, and that may vanish meanwhile."""
+        """Write into a folder, which is created if needed, and again if another process removes it meanwhile."""
         for _ in range(_TRIES):
             _make_folder(folder)
             with suppress(FileNotFoundError):
@@ -104,7 +104,7 @@ class LocalObjects:
 
 
 def _make_folder(folder: Path) -> None:
-    """Make a folder, and those above it, durable."""
+    """Create a folder, and those above it, durably."""
     if folder.is_dir():
         return
     _make_folder(folder.parent)

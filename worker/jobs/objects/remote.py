@@ -1,4 +1,4 @@
-"""Objects in a bucket of S3, Google Cloud Storage or Azure, or in the memory of this process."""
+"""Object storage in a bucket of S3, Google Cloud Storage or Azure, or in the memory of this process."""
 
 import secrets
 import tempfile
@@ -12,45 +12,42 @@ from typing import BinaryIO, cast
 from obstore.exceptions import AlreadyExistsError, BaseError
 
 from worker.jobs.objects.buckets import Bucket
-from worker.jobs.objects.seam import Item, ObjectInfo, StoreError, Value
+from worker.jobs.objects.interface import Item, ObjectInfo, StoreError, Value
 
-_AT_A_TIME = 16
-_PIECE_BYTES = 4 * 2**20
-_LISTED_AT_A_TIME = 1000
+_THREADS = 16  # concurrent requests of ``each``; set by hand
+_PIECE_BYTES = 4 * 2**20  # of a download, in memory; set by hand
+_PAGE_KEYS = 1000  # the most that S3 lists in one request
 
 
 class RemoteObjects:
-    """The objects of a bucket, through clients that give up before a caller of the API does.
+    """The objects of a bucket. After a fork the child process cannot use it, as its connections live in threads."""
 
-    A process that has used it cannot go on using it after a fork: its connections live in threads.
-    """
-
-    is_local = False
-    look_s = 0.5
+    survives_fork = False
+    poll_interval_s = 0.5  # a request costs time and money; set by hand
 
     def __init__(self, bucket: Bucket, spool: Path) -> None:
-        """``spool`` is a folder of this machine for what is being downloaded."""
+        """``spool`` is a folder of this machine for downloads."""
         self._bucket = bucket
         self._spool = spool
         self._pool: ThreadPoolExecutor | None = None
-        self._creates_once = False  # whether that was seen
+        self._creates_once = False  # whether check_writable has found so
         spool.mkdir(mode=0o700, parents=True, exist_ok=True)
 
     def create(self, key: str, data: bytes) -> bool:
         try:
-            with _translated_errors(), _a_bucket_that_is_there():
+            with _translated_errors(), _missing_bucket_reported():
                 self._bucket.writes.put(key, data, mode="create", use_multipart=False)
         except AlreadyExistsError:
-            return self.get(key) == data  # a request whose answer was lost is sent again, and finds its own object
+            return self.get(key) == data  # if an answer was lost, the request is repeated and finds its own object
         return True
 
     def put(self, key: str, data: bytes, *, durable: bool = True) -> None:  # noqa: ARG002
-        with _translated_errors(), _a_bucket_that_is_there():
+        with _translated_errors(), _missing_bucket_reported():
             self._bucket.writes.put(key, data, use_multipart=False)
 
     def put_file(self, key: str, path: Path) -> None:
-        path.stat()  # a file that is not there is another matter than a bucket that is not
-        with _translated_errors(), _a_bucket_that_is_there():
+        path.stat()  # a FileNotFoundError below then means that there is no bucket
+        with _translated_errors(), _missing_bucket_reported():
             self._bucket.transfers.put(key, path)
 
     def get(self, key: str) -> bytes | None:
@@ -89,9 +86,9 @@ class RemoteObjects:
         return self._list(folder)
 
     def each(self, work: Callable[[Item], Value], items: Iterable[Item]) -> list[Value]:
-        """As promised; the work must not call ``each`` itself, or all threads may wait for each other."""
+        """Use threads; ``work`` must not call ``each`` itself, which could deadlock."""
         if self._pool is None:
-            self._pool = ThreadPoolExecutor(_AT_A_TIME, "store")
+            self._pool = ThreadPoolExecutor(_THREADS, "store")
         return list(self._pool.map(work, items))
 
     def presigned_url(self, key: str, valid_s: float) -> str | None:
@@ -101,14 +98,14 @@ class RemoteObjects:
         probe = f"probe/{secrets.token_hex(16)}"
         if self.create(probe, b"first") and not self._creates_once:
             if self.create(probe, b"second"):
-                raise StoreError("The store creates an object twice: use one that has conditional writes.")
+                raise StoreError("The store created an object twice: use a store that supports conditional writes.")
             self._creates_once = True
         self.delete(probe)
 
     def _list(self, folder: str, after: str = "", limit: int | None = None) -> list[ObjectInfo]:
         found: list[ObjectInfo] = []
-        with _translated_errors(), _a_bucket_that_is_there():
-            for part in self._bucket.reads.list(folder, offset=after or None, chunk_size=limit or _LISTED_AT_A_TIME):
+        with _translated_errors(), _missing_bucket_reported():
+            for part in self._bucket.reads.list(folder, offset=after or None, chunk_size=limit or _PAGE_KEYS):
                 found += [ObjectInfo(one["path"], one["size"], one["last_modified"].timestamp()) for one in part]
                 if limit is not None and len(found) >= limit:
                     break
@@ -116,16 +113,16 @@ class RemoteObjects:
 
 
 @contextmanager
-def _a_bucket_that_is_there() -> Iterator[None]:
+def _missing_bucket_reported() -> Iterator[None]:
     try:
         yield
     except FileNotFoundError as error:
-        raise StoreError("There is no such bucket: make it, or mend CLEAVE_STORE_URL.") from error
+        raise StoreError("There is no such bucket: create it, or correct CLEAVE_STORE_URL.") from error
 
 
 @contextmanager
 def _translated_errors() -> Iterator[None]:
-    """Whatever a client of a bucket raises becomes one of the errors that the seam knows."""
+    """Convert the errors of the bucket's clients to those of the interface."""
     try:
         yield
     except (FileNotFoundError, AlreadyExistsError, StoreError):

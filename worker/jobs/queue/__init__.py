@@ -1,1 +1,1 @@
-"""The queue of jobs in Redis, and what else is kept there."""
+"""The queue of jobs in Redis, and the counters, locks, quotas and worker registrations there."""

@@ -1,7 +1,7 @@
-"""What the workers and the janitor have done, counted in Redis, from where every service tells it to Prometheus.
+"""Counters of finished jobs, lost attempts and durations in Redis, which every service exports to Prometheus.
 
-One hash; a counter is a field. Whoever adds does not wait and does not fail: where Redis is gone a count is lost, and
-where it was wiped all begin again at 0, which counters of Prometheus may.
+They are the fields of one hash. Counting never fails: if Redis does not answer, a count is lost, and if Redis loses its
+data, all counters restart at 0, which Prometheus expects of counters.
 """
 
 import logging
@@ -11,34 +11,37 @@ from dataclasses import dataclass
 
 from redis import Redis
 
-from worker.jobs.job import Cause, Job, Outcome, Succeeded
-from worker.jobs.queue.queue import QueueError, text_of
+from worker.jobs.attempts import Cause
+from worker.jobs.job import Job, Outcome, Succeeded
+from worker.jobs.queue.connection import QueueError, text_of
 
-log = logging.getLogger("cleave.tallies")
+log = logging.getLogger("cleave.counters")
 
+# Upper bounds of the histograms, about two to a decade: from the fastest stages to CLEAVE_JOB_TIMEOUT_S (3600 s). They
+# are part of the metrics, so other bounds would break dashboards.
 BOUNDS_S = (0.01, 0.03, 0.1, 0.3, 1.0, 3.0, 10.0, 30.0, 100.0, 300.0, 1000.0, 3000.0)
 
-_KEY = "cleave:tallies"
+_KEY = "cleave:tallies"  # the name in installations that are in use
 _SEPARATOR = "|"
 _SUM = "sum"
 
 
 @dataclass(frozen=True, slots=True)
 class Durations:
-    """A histogram: how many durations were at most as long as each bound, and all of them together."""
+    """A histogram of durations."""
 
-    counts: tuple[float, ...]  # (len(BOUNDS_S) + 1,), of which the last counts those beyond all bounds; not cumulative
+    counts: tuple[float, ...]  # (len(BOUNDS_S) + 1,) durations per bound, not cumulative; the last are above all bounds
     sum_s: float
 
 
-class Tallies:
-    """Counters that the processes of an installation share: a name and the values of its labels."""
+class JobCounters:
+    """Counters that all processes of an installation share, each named by a tuple of a name and label values."""
 
     def __init__(self, connection: Redis) -> None:
         self._connection = connection
 
     def job_ended(self, job: Job, outcome: Outcome, stage_seconds: Mapping[str, float]) -> None:
-        """A work-horse has given a job its outcome."""
+        """Count a job to which a work-horse has given its outcome."""
         code = "" if isinstance(outcome, Succeeded) else getattr(outcome, "code", "")
         amounts: dict[tuple[str, ...], float] = {("finished", outcome.status, code): 1.0}
         if isinstance(outcome, Succeeded):
@@ -49,32 +52,32 @@ class Tallies:
         self._add(amounts)
 
     def job_given_up(self, code: str) -> None:
-        """A job has had all its attempts."""
+        """Count a job that failed after all its attempts."""
         self._add({("finished", "failed", code): 1.0})
 
     def job_canceled(self) -> None:
-        """A client no longer wants a job that had not ended."""
+        """Count a job that was canceled before its end."""
         self._add({("finished", "canceled", ""): 1.0})
 
     def attempt_lost(self, cause: Cause) -> None:
-        """A run of a job ended without an outcome."""
+        """Count a run of a job that ended without an outcome."""
         self._add({("lost", cause): 1.0})
 
     def job_recovered(self) -> None:
-        """The janitor has put a job back that the queue had lost."""
+        """Count a job that the queue had lost and the janitor has enqueued again."""
         self._add({("recovered",): 1.0})
 
     def store_failed(self, process: str) -> None:
-        """A process could not read or write the store."""
+        """Count a failed read or write of the store by a process."""
         self._add({("store_errors", process): 1.0})
 
     def counts(self) -> dict[tuple[str, ...], float]:
-        """Every counter that is not 0.
+        """Return every counter that is not 0.
 
         Raises
         ------
         QueueError
-            Where Redis does not answer.
+            If Redis does not answer.
         """
         fields = self._connection.hgetall(_KEY).items()
         return {tuple(text_of(name).split(_SEPARATOR)): float(value) for name, value in fields}
@@ -90,7 +93,7 @@ class Tallies:
 
 
 def durations(counts: Mapping[tuple[str, ...], float], name: tuple[str, ...]) -> Durations:
-    """A histogram out of the counters."""
+    """Return a histogram from the counters."""
     inside = tuple(counts.get((*name, str(bound)), 0.0) for bound in range(len(BOUNDS_S) + 1))
     return Durations(inside, counts.get((*name, _SUM), 0.0))
 

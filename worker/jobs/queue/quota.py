@@ -1,11 +1,11 @@
-"""Bytes that an owner has uploaded in the current hour, counted in Redis: who loses the count gives some bytes away."""
+"""Upload quotas: the bytes that each owner has uploaded in the current hour, counted in Redis."""
 
 import time
 from dataclasses import dataclass
 
 from redis import Redis
 
-WINDOW_S = 3600
+WINDOW_S = 3600  # of the setting key_upload_bytes_per_hour
 
 
 @dataclass(frozen=True, slots=True)
@@ -15,6 +15,8 @@ class Uploaded:
 
 
 class UploadQuota:
+    """The uploaded bytes of all owners; if Redis loses its data, they count from 0 again."""
+
     def __init__(self, connection: Redis) -> None:
         self._connection = connection
 

@@ -1,4 +1,4 @@
-"""Batches: jobs that somebody wants to ask about together."""
+"""Batches: jobs that were submitted together and are reported together."""
 
 from dataclasses import dataclass
 from datetime import datetime
@@ -6,15 +6,15 @@ from datetime import datetime
 from pydantic import TypeAdapter
 
 from worker.jobs.job import is_job_id
-from worker.jobs.objects.seam import ObjectStorage
+from worker.jobs.objects.interface import ObjectStorage
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Batch:
-    id: str  # of the form of a job's
+    id: str  # like that of a job
     owner: str | None
     created_at: datetime  # UTC
-    job_ids: list[str]  # in the order in which they were sent
+    job_ids: list[str]  # in the order of submission
 
 
 _BATCH = TypeAdapter(Batch)

@@ -1,24 +1,24 @@
-"""Which job has computed what: the same mesh with the same parameters need not be segmented twice."""
+"""Index of jobs by their input, so that the same mesh with the same parameters is segmented once."""
 
 import hashlib
 import json
 
 from worker.jobs.job import Job, is_job_id
-from worker.jobs.objects.seam import ObjectStorage
+from worker.jobs.objects.interface import ObjectStorage
 from worker.jobs.store.layout import NOBODY
 
 
 class ComputedIndex:
-    """A hint, no more: the job may have failed, or be gone."""
+    """Finds an earlier job with the same input; that job may have failed or been deleted."""
 
     def __init__(self, objects: ObjectStorage) -> None:
         self._objects = objects
 
-    def note(self, job: Job) -> None:
-        self._objects.put(_key(job), job.id.encode(), durable=False)  # a hint may be lost
+    def add(self, job: Job) -> None:
+        self._objects.put(_key(job), job.id.encode(), durable=False)  # a lost entry costs only time
 
     def find(self, job: Job) -> str | None:
-        """The id of a job of the same owner that was given the same to do."""
+        """Return the id of a job of the same owner with the same input."""
         job_id = (self._objects.get(_key(job)) or b"").decode()
         return job_id if is_job_id(job_id) else None
 
@@ -28,7 +28,7 @@ class ComputedIndex:
 
 
 def fingerprint(job: Job) -> str:
-    """Equal for jobs whose results are equal bytes."""
+    """Return a hash that is equal for jobs whose results are equal to the byte."""
     given = [job.sha256, job.mesh_format, job.version, sorted(job.parameters.items())]
     return hashlib.sha256(json.dumps(given).encode()).hexdigest()
 

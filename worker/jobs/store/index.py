@@ -1,22 +1,22 @@
-"""Which jobs there are, newest first, without a look into any of them: an empty object for each, named by its time.
+"""The index of jobs by time, newest first: an empty object for each job, so that a list needs no records.
 
-A bucket lists names in ascending order, and the newest jobs are asked for first. So the names have the digits of the
-time turned around, 0 for 9 and 9 for 0; what others see of them, as cursors, is the time itself.
+A bucket lists names in ascending order, but the newest jobs are listed first. The names therefore contain the time with
+each digit d replaced by 9 - d. Cursors of the API contain the time itself.
 """
 
 import re
 
 from worker.jobs.job import Job
-from worker.jobs.objects.seam import ObjectStorage, name_of
+from worker.jobs.objects.interface import ObjectStorage, name_of
 from worker.jobs.store.layout import NOBODY, entry_name
 
 CURSOR = r"^[0-9]{8}T[0-9]{12}-[0-9a-f]{32}$"
 _FOLDER = "index"
-_TURNED = str.maketrans("0123456789", "9876543210")
+_COMPLEMENT = str.maketrans("0123456789", "9876543210")
 
 
 class JobIndex:
-    """The entries of every owner's jobs; an entry may be there a moment before its job and after it."""
+    """The entries of all owners' jobs; an entry is written before its job is and removed after it."""
 
     def __init__(self, objects: ObjectStorage) -> None:
         self._objects = objects
@@ -31,9 +31,9 @@ class JobIndex:
         self._objects.delete(_key(owner, entry))
 
     def page(self, owner: str | None, before: str | None, limit: int) -> list[str]:
-        """The names of the newest entries that are older than the entry ``before``, newest first."""
+        """Return the names of the newest entries that are older than the entry ``before``, newest first."""
         after = _key(owner, before) if before else ""
-        return [turned(name_of(key)) for key in self._objects.keys_below(_folder(owner), after, limit)]
+        return [complemented(name_of(key)) for key in self._objects.keys_below(_folder(owner), after, limit)]
 
 
 def is_entry_name(text: str) -> bool:
@@ -44,10 +44,10 @@ def job_id_of(entry: str) -> str:
     return entry[-32:]
 
 
-def turned(entry: str) -> str:
-    """The name under which an entry is stored, and the other way round."""
+def complemented(entry: str) -> str:
+    """Return the stored name of an entry, or the entry of a stored name: the function is its own inverse."""
     time, dash, job_id = entry.partition("-")
-    return time.translate(_TURNED) + dash + job_id
+    return time.translate(_COMPLEMENT) + dash + job_id
 
 
 def _folder(owner: str | None) -> str:
@@ -55,4 +55,4 @@ def _folder(owner: str | None) -> str:
 
 
 def _key(owner: str | None, entry: str) -> str:
-    return f"{_folder(owner)}/{turned(entry)}"
+    return f"{_folder(owner)}/{complemented(entry)}"

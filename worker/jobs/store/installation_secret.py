@@ -1,23 +1,23 @@
-"""A secret that an installation makes for itself, from which others are derived."""
+"""The secret of an installation, generated once and kept in the store, from which all others are derived."""
 
 import hmac
 import secrets
 
-from worker.jobs.objects.seam import ObjectStorage, StoreError
+from worker.jobs.objects.interface import ObjectStorage, StoreError
 
 _KEY = "secret"
-_BYTES = 32
+_BYTES = 32  # the output size of SHA-256
 
 
 class InstallationSecret:
-    """The same for every process that shares the store; read when it is first needed."""
+    """The same secret for every process that uses the store; it is read at the first use."""
 
     def __init__(self, objects: ObjectStorage) -> None:
         self._objects = objects
         self._secret: bytes | None = None
 
     def derive(self, *purpose: str) -> bytes:
-        """32 bytes that nobody can tell from random ones who does not know the secret."""
+        """Return the HMAC-SHA256 of a purpose, 32 bytes, under the secret."""
         if self._secret is None:
             self._secret = self._read()
         text = "\0".join(f"{len(part)}:{part}" for part in purpose)
@@ -29,5 +29,5 @@ class InstallationSecret:
             self._objects.create(_KEY, secrets.token_bytes(_BYTES))
             secret = self._objects.get(_KEY)
         if secret is None:
-            raise StoreError("The store does not give back the secret that was put into it.")
+            raise StoreError("The store does not return the secret that was written to it.")
         return secret

@@ -1,4 +1,4 @@
-"""Names of objects in data folders of earlier versions, brought up to date when a store is opened."""
+"""Migration of data folders of earlier versions: objects are renamed when a store is opened."""
 
 import json
 import os
@@ -7,19 +7,19 @@ from datetime import datetime
 from pathlib import Path
 
 from worker.jobs.job import is_job_id
-from worker.jobs.store.index import is_entry_name, turned
+from worker.jobs.store.index import complemented, is_entry_name
 from worker.jobs.store.layout import TIME_FORMAT
 
 _ID_LENGTH = 32
-_THIS_MILLENNIUM = "2"  # the first digit of a time that is not turned around, until the year 3000
+_THIS_MILLENNIUM = "2"  # the first digit of a time that is not complemented, until the year 3000
 
 
 def migrate(data_dir: Path) -> None:
-    """Without effect where there is nothing to do; several processes may do it at once."""
+    """Rename the objects that have old names, if any; several processes may do so at once."""
     for folder in _scan(data_dir / "index"):
         for entry in _scan(Path(folder)):
             if entry.name.startswith(_THIS_MILLENNIUM) and is_entry_name(entry.name):
-                _rename(Path(entry), turned(entry.name))
+                _rename(Path(entry), complemented(entry.name))
     for marker in _scan(data_dir / "pending"):
         job_id, owner = marker.name[:_ID_LENGTH], marker.name[_ID_LENGTH:]
         if is_job_id(job_id) and owner[:1] in ("", "."):

@@ -1,4 +1,4 @@
-"""How the store of an installation is opened: in the data folder, or in a bucket where CLEAVE_STORE_URL names one."""
+"""Opens the store of an installation: in the data folder, or in a bucket if CLEAVE_STORE_URL names one."""
 
 from pathlib import Path
 
@@ -14,12 +14,12 @@ _SPOOL, _CACHE = "incoming", "cache"
 
 
 def open_store(settings: Settings) -> JobStore:
-    """The store that the settings name.
+    """Open the store that the settings name.
 
     Raises
     ------
     InvalidSettings
-        Where the URL is none of a store, or what speaks to buckets is not installed.
+        If the URL is not that of a store, or the optional dependency for buckets is not installed.
     """
     if settings.store_url is None:
         return open_folder(settings.data_dir)
@@ -27,14 +27,14 @@ def open_store(settings: Settings) -> JobStore:
 
 
 def open_folder(data_dir: Path) -> JobStore:
-    """The store in a folder, which machines may share."""
+    """Open the store in a folder, which several machines may share."""
     spool = Spool(data_dir / _SPOOL)
     migrate(data_dir)
     return JobStore(LocalObjects(data_dir), spool)
 
 
 def open_url(url: str, data_dir: Path, cache_bytes: int) -> JobStore:
-    """The store in a bucket; ``data_dir`` is for what is on its way to it or was fetched from it."""
+    """Open the store in a bucket; ``data_dir`` is for uploads and for a cache of results."""
     try:
         from worker.jobs.objects.buckets import open_bucket
         from worker.jobs.objects.remote import RemoteObjects

@@ -1,4 +1,4 @@
-"""Messages that are still to be sent: one for each job that has a webhook, from its acceptance to its delivery."""
+"""The outbox: pending deliveries of webhooks, one for each job that has a webhook, from its acceptance on."""
 
 import time
 from dataclasses import dataclass
@@ -6,47 +6,48 @@ from dataclasses import dataclass
 from pydantic import TypeAdapter
 
 from worker.jobs.job import is_job_id
-from worker.jobs.objects.seam import ObjectStorage, name_of
+from worker.jobs.objects.interface import ObjectStorage, name_of
 
 _FOLDER = "outbox"
 
 
 @dataclass(frozen=True, slots=True)
-class Letter:
-    """How far the delivery is."""
+class Delivery:
+    """The state of the delivery of a job's webhook."""
 
     failures: int = 0
-    due_at: float = 0.0  # seconds since 1970
+    due_at: float = 0.0  # of the next attempt, in seconds since 1970
 
 
-_LETTER = TypeAdapter(Letter)
+_DELIVERY = TypeAdapter(Delivery)
 
 
 class Outbox:
     def __init__(self, objects: ObjectStorage) -> None:
         self._objects = objects
 
-    def put(self, job_id: str, letter: Letter) -> None:
-        self._objects.put(_key(job_id), _LETTER.dump_json(letter))
+    def put(self, job_id: str, delivery: Delivery) -> None:
+        self._objects.put(_key(job_id), _DELIVERY.dump_json(delivery))
 
     def job_ids(self) -> set[str]:
-        """The jobs about which somebody is still to be told."""
+        """Return the jobs whose webhooks are not delivered yet."""
         return set(self._names())
 
-    def letters(self, but_of: frozenset[str] | set[str] = frozenset()) -> dict[str, Letter]:
-        """What is still to be sent, by job, without that of some jobs."""
-        names = [name for name in self._names() if name not in but_of]
-        found = dict(zip(names, self._objects.each(self.letter, names), strict=True))
-        return {name: letter for name, letter in found.items() if letter is not None}
+    def deliveries(self, except_for: frozenset[str] | set[str] = frozenset()) -> dict[str, Delivery]:
+        """Return the pending deliveries by job, without those of some jobs."""
+        names = [name for name in self._names() if name not in except_for]
+        found = dict(zip(names, self._objects.each(self.delivery, names), strict=True))
+        return {name: delivery for name, delivery in found.items() if delivery is not None}
 
-    def letter(self, job_id: str) -> Letter | None:
+    def delivery(self, job_id: str) -> Delivery | None:
         text = self._objects.get(_key(job_id))
-        return None if text is None else _LETTER.validate_json(text)
+        return None if text is None else _DELIVERY.validate_json(text)
 
     def remove(self, job_id: str) -> None:
         self._objects.delete(_key(job_id))
 
     def remove_old(self, job_id: str, older_than_s: float) -> None:
+        """Remove a delivery that was last written longer ago than this."""
         oldest = time.time() - older_than_s
         if any(one.name == job_id and one.modified_at < oldest for one in self._objects.list_below(_FOLDER)):
             self.remove(job_id)

@@ -1,4 +1,4 @@
-"""What the store says about a job: its record, its runs, its outcome."""
+"""The records of a job in the store: the job itself, its attempts, its outcome."""
 
 from collections import OrderedDict
 from collections.abc import Callable, Sequence
@@ -7,53 +7,61 @@ from typing import TypeVar
 
 from pydantic import TypeAdapter
 
-from worker.jobs.job import Attempt, Cause, Job, Outcome, is_job_id, now
-from worker.jobs.objects.seam import ObjectStorage, name_of
+from worker.jobs.attempts import Attempt, Cause
+from worker.jobs.job import Job, Outcome, is_job_id, now
+from worker.jobs.objects.interface import ObjectStorage, name_of
 from worker.jobs.store.layout import MANIFEST, RECORD, job_folder, job_key
 
 JOB = TypeAdapter(Job)
 _ATTEMPT = TypeAdapter(Attempt)
 _OUTCOME: TypeAdapter[Outcome] = TypeAdapter(Outcome)
-_REMEMBERED = 10_000  # jobs
+_CACHED_JOBS = 10_000  # about 15 MB: a state with one attempt takes 1.5 kB
 
 Document = TypeVar("Document")
 
 
 class UnknownJob(LookupError):  # noqa: N818
-    """The store has no such job (any more)."""
+    """There is no such job in the store, or no longer."""
 
 
 @dataclass(frozen=True, slots=True)
 class JobState:
-    """How a job is, as far as the store knows."""
+    """The outcome and the attempts of a job."""
 
     outcome: Outcome | None
     attempts: list[Attempt]  # those that count, in order
 
 
 class Records:
-    """The records; whatever writes one raises UnknownJob where the job was deleted, before or meanwhile."""
+    """Reads and writes the records of jobs.
+
+    Every write raises UnknownJob if the job has been deleted, also if that happens during the write. Outcomes never
+    change, so those of a remote storage are cached.
+    """
 
     def __init__(self, objects: ObjectStorage) -> None:
         self._objects = objects
-        # What never changes, where looking costs something.
         self._outcomes: OrderedDict[str, Outcome] = OrderedDict()
         self._ended: OrderedDict[str, JobState] = OrderedDict()
 
     def job(self, job_id: str) -> Job | None:
         return self._read(job_key(job_id, RECORD), JOB) if is_job_id(job_id) else None
 
+    def jobs(self, job_ids: Sequence[str]) -> dict[str, Job | None]:
+        """Return some jobs by their ids; None for those that do not exist."""
+        return dict(zip(job_ids, self._objects.each(self.job, job_ids), strict=True))
+
     def has_job(self, job_id: str) -> bool:
         return self._objects.exists(job_key(job_id, RECORD))
 
     def require(self, job_id: str, undo: Callable[[], None] = lambda: None) -> None:
-        """Raise UnknownJob where a job was deleted, and take back what was written for it meanwhile."""
+        """Raise UnknownJob if a job does not exist, after undoing what was written for it."""
         if not self.has_job(job_id):
             undo()
             raise UnknownJob(job_id)
 
     def create_job(self, job: Job) -> bool:
-        """Whether this is now the job of this id."""
+        """Return True if this is now the job of this id, False if there is another one."""
         return self._objects.create(job_key(job.id, RECORD), JOB.dump_json(job))
 
     def outcome(self, job_id: str) -> Outcome | None:
@@ -66,42 +74,45 @@ class Records:
     def has_outcome(self, job_id: str) -> bool:
         return job_id in self._outcomes or self._objects.exists(job_key(job_id, MANIFEST))
 
-    def finish(self, job_id: str, outcome: Outcome) -> Outcome:
-        """Write the outcome of a job that was there a moment ago, unless there is one; the one that stands."""
+    def has_ended(self, job_id: str) -> bool:
+        """Whether a job has an outcome or no longer exists; cheap enough to be called often."""
+        return self.has_outcome(job_id) or not self.has_job(job_id)
+
+    def write_outcome(self, job_id: str, outcome: Outcome) -> Outcome:
+        """Write the outcome of a job unless there is one; return the one that is stored."""
         self._objects.create(job_key(job_id, MANIFEST), _OUTCOME.dump_json(outcome))
         standing = self.outcome(job_id)
         self.require(job_id, lambda: self._remove_outcome(job_id))
         return standing or outcome
 
     def attempts(self, job_id: str) -> list[Attempt]:
-        """The runs that count, in order."""
+        """Return the runs of a job that count, in order."""
         keys = [key for key in self._objects.keys_below(job_folder(job_id)) if name_of(key).startswith("attempt-")]
         found = (self._read(key, _ATTEMPT) for key in keys)
         return sorted((attempt for attempt in found if attempt), key=lambda attempt: attempt.number)
 
-    def begin_attempt(self, job_id: str, worker: str) -> Attempt:
+    def add_attempt(self, job_id: str, worker: str) -> Attempt:
         self.require(job_id)
         attempt = Attempt(number=len(self.attempts(job_id)) + 1, worker=worker, started_at=now())
         while not self._objects.create(_attempt_key(job_id, attempt), _ATTEMPT.dump_json(attempt)):
             attempt = replace(attempt, number=attempt.number + 1)
-        self.require(job_id, lambda: self.remove_attempt(job_id, attempt))
+        self.require(job_id, lambda: self.withdraw_attempt(job_id, attempt))
         return attempt
 
     def end_attempt(self, job_id: str, attempt: Attempt, cause: Cause) -> None:
+        """Record why a run ended without an outcome."""
         self.require(job_id)
         ended = replace(attempt, ended_at=now(), cause=cause)
         self._objects.put(_attempt_key(job_id, attempt), _ATTEMPT.dump_json(ended))
-        self.require(job_id, lambda: self.remove_attempt(job_id, attempt))
+        self.require(job_id, lambda: self.withdraw_attempt(job_id, attempt))
 
-    def remove_attempt(self, job_id: str, attempt: Attempt) -> None:
+    def withdraw_attempt(self, job_id: str, attempt: Attempt) -> None:
+        """Do not count a run that was stopped for a reason that is not the job's fault."""
         self._objects.delete(_attempt_key(job_id, attempt))
 
     def states(self, job_ids: Sequence[str]) -> dict[str, JobState]:
-        """How some jobs are."""
+        """Return the states of some jobs by their ids."""
         return dict(zip(job_ids, self._objects.each(self._state, job_ids), strict=True))
-
-    def jobs(self, job_ids: Sequence[str]) -> list[Job | None]:
-        return self._objects.each(self.job, job_ids)
 
     def _state(self, job_id: str) -> JobState:
         known = self._ended.get(job_id)
@@ -113,9 +124,9 @@ class Records:
         return state
 
     def _remember(self, known: OrderedDict[str, Document], job_id: str, document: Document) -> None:
-        if not self._objects.is_local:
+        if self._objects.poll_interval_s > 0:
             known[job_id] = document
-            if len(known) > _REMEMBERED:
+            if len(known) > _CACHED_JOBS:
                 known.popitem(last=False)
 
     def _remove_outcome(self, job_id: str) -> None:

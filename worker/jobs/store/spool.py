@@ -1,8 +1,8 @@
-"""Files of this machine that are on their way into the store.
+"""The spool: files of this machine that are written here before they are moved into the store.
 
 <spool>/<random>/mesh          an upload
-<spool>/<id>-<random>.result   what a running job writes
-<spool>/stage-<random>/        a running job that was fetched from another machine, locked while it runs
+<spool>/<id>-<random>.result   the result of a running job
+<spool>/stage-<random>/        the local copy of a running job of a bucket, locked while it runs
 """
 
 import fcntl
@@ -27,17 +27,17 @@ class Spool:
         return MeshUpload(self.folder / new_job_id())
 
     def result_file(self, job_id: str) -> Path:
-        """A new place for the result of a job."""
+        """Return a new path for the result of a job."""
         return self.folder / f"{job_id}-{secrets.token_hex(8)}.result"
 
     def remove_results(self, job_id: str) -> None:
-        """Remove what killed runs of a job were writing."""
+        """Remove the incomplete results of killed runs of a job."""
         for torn in self.folder.glob(f"{job_id}-*.result"):
             torn.unlink(missing_ok=True)
 
     @contextmanager
     def stage(self) -> Iterator[Path]:
-        """A folder that is there as long as this process wants, and no longer than it lives and for an hour."""
+        """Provide a locked folder, which is removed on exit, or by the janitor if the process is killed."""
         folder = self.folder / f"stage-{secrets.token_hex(16)}"
         folder.mkdir(mode=0o700)
         lock = os.open(folder, os.O_RDONLY | os.O_DIRECTORY)
@@ -49,7 +49,7 @@ class Spool:
             shutil.rmtree(folder, ignore_errors=True)
 
     def remove_abandoned(self, untouched_s: float) -> None:
-        """Remove what processes left behind that died while they wrote."""
+        """Remove files that have not been modified for a time, as their processes have died."""
         oldest = time.time() - untouched_s
         for path in self.folder.iterdir():
             if max((_modified_at(one) for one in (path, *path.glob("*"))), default=0.0) < oldest:
@@ -57,7 +57,7 @@ class Spool:
 
 
 def _remove(path: Path) -> None:
-    """Remove a file, or a folder that nobody has locked."""
+    """Remove a file, or a folder that is not locked."""
     if not path.is_dir():
         path.unlink(missing_ok=True)
     elif not _is_locked(path):

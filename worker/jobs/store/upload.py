@@ -1,4 +1,4 @@
-"""A mesh on its way into the store."""
+"""The upload of a mesh file."""
 
 import hashlib
 import shutil
@@ -7,9 +7,9 @@ from pathlib import Path
 
 
 class MeshUpload:
-    """A mesh on its way into the store: hashed as it is written, invisible until it is accepted.
+    """A mesh file that is hashed as it is written, and belongs to no job until JobStore.accept moves it.
 
-    As a context it removes what was written, unless it was accepted.
+    As a context manager it removes the file on exit, unless the file was moved.
     """
 
     def __init__(self, folder: Path) -> None:
@@ -24,7 +24,7 @@ class MeshUpload:
         return self
 
     def __exit__(self, *_: object) -> None:
-        with suppress(OSError):  # what a full disk has kept back
+        with suppress(OSError):  # a full disk may refuse the buffered rest
             self._file.close()
         shutil.rmtree(self.folder, ignore_errors=True)
 
@@ -38,5 +38,5 @@ class MeshUpload:
         return self._digest.hexdigest()
 
     def close(self) -> None:
-        """End the writing; a second time changes nothing."""
+        """Close the file; calling this again has no effect."""
         self._file.close()

@@ -1,4 +1,4 @@
-"""Files from another machine: fetched once as long as there is room, and never too many."""
+"""The file cache: a file is downloaded once, and the size limit is kept."""
 
 import io
 import os
@@ -11,7 +11,7 @@ from worker.jobs.objects.file_cache import FileCache
 
 
 class Bucket:
-    """Where files are fetched from."""
+    """A bucket that records which files are fetched."""
 
     def __init__(self) -> None:
         self.fetched: list[str] = []
@@ -37,7 +37,7 @@ def test_a_file_is_fetched_once(tmp_path: Path) -> None:
     assert bucket.fetched == ["a", "a"]
 
 
-def test_what_was_used_least_recently_makes_room(tmp_path: Path) -> None:
+def test_the_least_recently_used_file_is_removed_first(tmp_path: Path) -> None:
     cache, bucket = FileCache(tmp_path, 25), Bucket()
     for age, name in ((30, "a"), (20, "b")):
         read(cache, bucket, name)
@@ -48,12 +48,12 @@ def test_what_was_used_least_recently_makes_room(tmp_path: Path) -> None:
 
 
 @pytest.mark.parametrize("max_bytes", [0, 9])
-def test_a_file_that_does_not_fit_is_given_all_the_same(tmp_path: Path, max_bytes: int) -> None:
+def test_a_file_above_the_size_limit_is_returned_but_not_cached(tmp_path: Path, max_bytes: int) -> None:
     assert read(FileCache(tmp_path, max_bytes), Bucket(), "a") == b"a" * 10
     assert list(tmp_path.iterdir()) == []
 
 
-def test_what_nobody_used_for_long_goes(tmp_path: Path) -> None:
+def test_a_file_that_was_not_used_for_an_hour_is_removed(tmp_path: Path) -> None:
     cache, bucket = FileCache(tmp_path, 10**6), Bucket()
     read(cache, bucket, "a")
     os.utime(tmp_path / "a", (0, 0))

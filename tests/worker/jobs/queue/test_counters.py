@@ -1,4 +1,4 @@
-"""Tallies: what many processes count together, and nobody waits for."""
+"""JobCounters: what many processes count together, and nobody waits for."""
 
 from datetime import timedelta
 
@@ -6,20 +6,19 @@ from redis import Redis
 
 from helpers.jobs import accepted
 from worker.jobs.job import Failed, Succeeded
-from worker.jobs.queue.counters import BOUNDS_S, Tallies, durations
-from worker.jobs.queue.queue import connect_impatiently
+from worker.jobs.queue.connection import connect
+from worker.jobs.queue.counters import BOUNDS_S, JobCounters, durations
 from worker.jobs.store.store import JobStore
-from worker.process.stage_clock import StageClock
 
 
 def test_jobs_are_counted_by_their_outcome_with_faces_and_durations(connection: Redis, store: JobStore) -> None:
     job = accepted(store, b"mesh")
     end = job.created_at + timedelta(seconds=2)
     done = Succeeded(finished_at=end, faces=500, vertices=252, max_segments=9, automatic_segments=4)
-    Tallies(connection).job_ended(job, done, {"cut": 0.2, "label": 5000.0})
-    Tallies(connection).job_ended(job, done, {"cut": 0.2})
-    Tallies(connection).job_ended(job, Failed(finished_at=end, code="invalid_mesh", message="."), {})
-    counts = Tallies(connection).counts()
+    JobCounters(connection).job_ended(job, done, {"cut": 0.2, "label": 5000.0})
+    JobCounters(connection).job_ended(job, done, {"cut": 0.2})
+    JobCounters(connection).job_ended(job, Failed(finished_at=end, code="invalid_mesh", message="."), {})
+    counts = JobCounters(connection).counts()
     assert counts["finished", "succeeded", ""] == 2
     assert counts["finished", "failed", "invalid_mesh"] == 1
     assert counts["faces",] == 1000
@@ -31,14 +30,14 @@ def test_jobs_are_counted_by_their_outcome_with_faces_and_durations(connection: 
 
 
 def test_other_events_are_counted_by_their_label(connection: Redis) -> None:
-    tallies = Tallies(connection)
-    tallies.attempt_lost("worker_lost")
-    tallies.attempt_lost("out_of_memory")
-    tallies.attempt_lost("worker_lost")
-    tallies.job_given_up("worker_lost")
-    tallies.job_recovered()
-    tallies.store_failed("worker")
-    assert tallies.counts() == {
+    counters = JobCounters(connection)
+    counters.attempt_lost("worker_lost")
+    counters.attempt_lost("out_of_memory")
+    counters.attempt_lost("worker_lost")
+    counters.job_given_up("worker_lost")
+    counters.job_recovered()
+    counters.store_failed("worker")
+    assert counters.counts() == {
         ("lost", "worker_lost"): 2,
         ("lost", "out_of_memory"): 1,
         ("finished", "failed", "worker_lost"): 1,
@@ -47,18 +46,6 @@ def test_other_events_are_counted_by_their_label(connection: Redis) -> None:
     }
 
 
-def test_counting_without_redis_does_nothing() -> None:
-    with connect_impatiently("unix:///nowhere/queue.sock", timeout_s=0.1) as gone:
-        Tallies(gone).job_recovered()
-
-
-def test_the_clock_gives_every_stage_its_time_and_passes_everything_on() -> None:
-    times = iter([0.0, 1.0, 1.0, 4.0, 4.0, 6.0])
-    seen: list[tuple[str, float]] = []
-    clock = StageClock(lambda stage, fraction: seen.append((stage, fraction)), lambda: next(times))
-    clock("reading", 0.0)
-    clock("cut", 0.1)
-    clock("cut", 0.2)
-    clock.begin("storing")
-    assert clock.stop() == {"reading": 1.0, "cut": 3.0, "storing": 2.0}
-    assert seen == [("reading", 0.0), ("cut", 0.1), ("cut", 0.2)]
+def test_counting_without_redis_is_ignored() -> None:
+    with connect("unix:///nowhere/queue.sock", timeout_s=0.1) as gone:
+        JobCounters(gone).job_recovered()

@@ -1,4 +1,4 @@
-"""The queue: every job waits once, a lease has one holder, and nothing of it survives its use."""
+"""The queue: every job waits once, a lease has one holder, and no keys remain afterwards."""
 
 import pytest
 from redis import Redis
@@ -6,7 +6,8 @@ from redis import Redis
 from helpers.jobs import LARGE, SMALL
 from helpers.waiting import wait_until
 from worker.jobs.job import new_job_id
-from worker.jobs.queue.queue import Activity, JobQueue, Progress, QueueError, connect_impatiently
+from worker.jobs.queue.connection import QueueError, connect
+from worker.jobs.queue.queue import Activity, JobQueue, Progress
 
 
 def waiting(queue: JobQueue) -> list[str]:
@@ -22,7 +23,7 @@ def test_a_job_waits_once_however_often_it_is_enqueued(queue: JobQueue) -> None:
     assert waiting(queue) == [job_id]
 
 
-def test_jobs_wait_in_the_order_of_their_arrival_unless_one_comes_back(queue: JobQueue) -> None:
+def test_jobs_wait_in_the_order_of_their_arrival_except_those_put_at_the_front(queue: JobQueue) -> None:
     first, second, returned = new_job_id(), new_job_id(), new_job_id()
     queue.enqueue(first, SMALL)
     queue.enqueue(second, SMALL)
@@ -30,11 +31,11 @@ def test_jobs_wait_in_the_order_of_their_arrival_unless_one_comes_back(queue: Jo
     assert waiting(queue) == [returned, first, second]
 
 
-def test_a_job_whose_entry_is_stuck_can_wait_again(queue: JobQueue, connection: Redis) -> None:
+def test_a_job_whose_entry_is_stuck_can_be_requeued(queue: JobQueue, connection: Redis) -> None:
     job_id = new_job_id()
     queue.enqueue(job_id, SMALL)
     entries = queue.entries[SMALL]
-    connection.blmove(entries.key, entries.intermediate_queue_key, 1)  # a worker died with it in hand
+    connection.blmove(entries.key, entries.intermediate_queue_key, 1)  # as if a worker had died after the dequeue
     queue.enqueue(job_id, SMALL)
     assert waiting(queue) == []
     assert queue.held([job_id]) == set()
@@ -43,7 +44,7 @@ def test_a_job_whose_entry_is_stuck_can_wait_again(queue: JobQueue, connection: 
     assert connection.llen(entries.intermediate_queue_key) == 0
 
 
-def test_small_and_large_jobs_stand_in_lines_of_their_own(queue: JobQueue) -> None:
+def test_small_and_large_jobs_have_separate_queues(queue: JobQueue) -> None:
     large, first, second = new_job_id(), new_job_id(), new_job_id()
     for job_id, size in ((large, LARGE), (first, SMALL), (second, SMALL)):
         queue.enqueue(job_id, size)
@@ -52,18 +53,18 @@ def test_small_and_large_jobs_stand_in_lines_of_their_own(queue: JobQueue) -> No
     assert queue.lengths() == {SMALL: 2, LARGE: 1}
     assert queue.held([first, second, large]) == {first, second, large}
     queue.forget(large)
-    queue.requeue(second, LARGE)  # the border between the two may move
+    queue.requeue(second, LARGE)  # as if CLEAVE_LARGE_JOB_BYTES had changed
     assert queue.lengths() == {SMALL: 1, LARGE: 1}
 
 
-def test_a_lease_has_one_holder_until_it_runs_out(queue: JobQueue) -> None:
+def test_a_lease_has_one_holder_until_it_expires(queue: JobQueue) -> None:
     job_id = new_job_id()
     assert queue.take(job_id, "worker-1", lease_s=0.2)
     assert not queue.take(job_id, "worker-2", lease_s=10)
     wait_until(lambda: queue.take(job_id, "worker-2", lease_s=10), within_s=10)
 
 
-def test_only_its_holder_ends_a_lease(queue: JobQueue) -> None:
+def test_only_its_holder_releases_a_lease(queue: JobQueue) -> None:
     job_id = new_job_id()
     queue.take(job_id, "worker-1", lease_s=10)
     queue.release(job_id, "worker-2")
@@ -72,7 +73,7 @@ def test_only_its_holder_ends_a_lease(queue: JobQueue) -> None:
     assert not queue.activity(job_id).running
 
 
-def test_held_are_the_jobs_that_wait_or_run(queue: JobQueue) -> None:
+def test_jobs_that_wait_or_run_are_held(queue: JobQueue) -> None:
     waits, runs, lost = new_job_id(), new_job_id(), new_job_id()
     queue.enqueue(waits, SMALL)
     queue.enqueue(new_job_id(), SMALL)
@@ -81,7 +82,7 @@ def test_held_are_the_jobs_that_wait_or_run(queue: JobQueue) -> None:
     assert queue.held([]) == set()
 
 
-def test_a_lease_that_redis_forgot_is_made_again(queue: JobQueue, connection: Redis) -> None:
+def test_a_lease_that_redis_has_lost_is_restored(queue: JobQueue, connection: Redis) -> None:
     job_id = new_job_id()
     queue.take(job_id, "worker", lease_s=10)
     connection.flushall()
@@ -89,7 +90,7 @@ def test_a_lease_that_redis_forgot_is_made_again(queue: JobQueue, connection: Re
     assert queue.held([job_id]) == {job_id}
 
 
-def test_progress_is_that_of_a_running_job(queue: JobQueue) -> None:
+def test_running_jobs_have_progress(queue: JobQueue) -> None:
     job_id = new_job_id()
     assert queue.activity(job_id) == Activity(running=False, progress=None)
     queue.take(job_id, "worker", lease_s=10)
@@ -97,7 +98,7 @@ def test_progress_is_that_of_a_running_job(queue: JobQueue) -> None:
     assert queue.activity(job_id) == Activity(running=True, progress=Progress("coarsen", 0.25))
 
 
-def test_a_forgotten_job_leaves_nothing_behind(queue: JobQueue, connection: Redis) -> None:
+def test_no_key_of_a_forgotten_job_remains(queue: JobQueue, connection: Redis) -> None:
     job_id = new_job_id()
     queue.enqueue(job_id, SMALL)
     queue.take(job_id, "worker", lease_s=10)
@@ -107,15 +108,7 @@ def test_a_forgotten_job_leaves_nothing_behind(queue: JobQueue, connection: Redi
     assert [key for key in connection.scan_iter() if job_id.encode() in key] == []
 
 
-def test_one_leads_until_its_lease_runs_out(queue: JobQueue) -> None:
-    assert queue.lead("janitor-1", lease_s=0.3)
-    assert not queue.lead("janitor-2", lease_s=10)
-    assert queue.lead("janitor-1", lease_s=0.3)
-    wait_until(lambda: queue.lead("janitor-2", lease_s=10), within_s=10)
-    assert not queue.lead("janitor-1", lease_s=10)
-
-
-def test_nothing_that_goes_through_redis_is_a_pickle(queue: JobQueue, connection: Redis) -> None:
+def test_entries_are_not_pickled(queue: JobQueue, connection: Redis) -> None:
     job_id = new_job_id()
     queue.enqueue(job_id, SMALL)
     entry = connection.hgetall(f"rq:job:{job_id}")
@@ -123,7 +116,7 @@ def test_nothing_that_goes_through_redis_is_a_pickle(queue: JobQueue, connection
     assert queue.entries[SMALL].fetch_job(job_id).args == [job_id]
 
 
-def test_an_impatient_connection_says_so_at_once() -> None:
-    queue = JobQueue(connect_impatiently("unix:///nowhere/queue.sock", timeout_s=0.1))
+def test_a_connection_without_a_server_fails_at_once() -> None:
+    queue = JobQueue(connect("unix:///nowhere/queue.sock", timeout_s=0.1))
     with pytest.raises(QueueError):
         queue.enqueue(new_job_id(), SMALL)

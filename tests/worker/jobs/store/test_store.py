@@ -1,4 +1,4 @@
-"""The store, wherever it is: accepted whole or not at all, finished once, deleted for good."""
+"""The store, on every storage: jobs are accepted completely or not at all, finished once, and deleted for good."""
 
 import hashlib
 import threading
@@ -10,23 +10,23 @@ import pytest
 from helpers.jobs import accepted
 from worker.jobs.job import Canceled, Failed, Job, Succeeded, new_job_id, now
 from worker.jobs.store.acceptance import JobExists
-from worker.jobs.store.index import turned
+from worker.jobs.store.index import complemented
 from worker.jobs.store.installation_secret import InstallationSecret
-from worker.jobs.store.layout import entry_name
+from worker.jobs.store.layout import BEING_DELETED, DELETED, entry_name
 from worker.jobs.store.opening import open_folder
-from worker.jobs.store.outbox import Letter
+from worker.jobs.store.outbox import Delivery
 from worker.jobs.store.spool import Spool
 from worker.jobs.store.store import JobStore, UnknownJob
 
 
 def keys(store: JobStore) -> list[str]:
-    """Everything that is in a store."""
-    folders = ("batches", "computed", "doomed", "gone", "index", "jobs", "outbox", "pending", "probe")
+    """Return the keys of all objects in a store."""
+    folders = ("batches", "computed", BEING_DELETED, DELETED, "index", "jobs", "outbox", "pending", "probe")
     return [one.key for folder in folders for one in store.objects.list_below(folder)]
 
 
 def reopened(store: JobStore, tmp_path: Path) -> JobStore:
-    """The store as another process sees it."""
+    """Open the same store again, as another process does."""
     return JobStore(store.objects, Spool(tmp_path / "another"))
 
 
@@ -35,7 +35,7 @@ def succeeded() -> Succeeded:
 
 
 def owned(store: JobStore, owner: str | None) -> Job:
-    with store.begin_upload() as upload:
+    with store.spool.begin_upload() as upload:
         job = Job(
             id=new_job_id(),
             sha256=upload.sha256,
@@ -49,41 +49,41 @@ def owned(store: JobStore, owner: str | None) -> Job:
     return job
 
 
-def test_an_accepted_job_is_read_back_as_it_was_written(placed: JobStore) -> None:
-    job = accepted(placed, b"mesh bytes", max_segments=7)
-    assert placed.job(job.id) == job
-    with placed.open_mesh(job.id) as mesh:
+def test_an_accepted_job_is_read_back_as_it_was_written(any_store: JobStore) -> None:
+    job = accepted(any_store, b"mesh bytes", max_segments=7)
+    assert any_store.records.job(job.id) == job
+    with any_store.open_mesh(job.id) as mesh:
         assert mesh.read() == b"mesh bytes"
         mesh.seek(5)
         assert mesh.read() == b"bytes"
-    assert list(placed.unfinished()) == [job.id]
+    assert list(any_store.pending.all()) == [job.id]
     assert job.sha256 == hashlib.sha256(b"mesh bytes").hexdigest()
 
 
-def test_an_upload_that_breaks_off_leaves_nothing(placed: JobStore, tmp_path: Path) -> None:
-    with placed.begin_upload() as upload:
+def test_an_upload_that_breaks_off_leaves_nothing(any_store: JobStore, tmp_path: Path) -> None:
+    with any_store.spool.begin_upload() as upload:
         upload.write(b"half of a mesh")
     assert list((tmp_path / "data" / "incoming").iterdir()) == []
-    assert keys(placed) == []
+    assert keys(any_store) == []
 
 
-def test_the_first_outcome_stands(placed: JobStore) -> None:
-    job = accepted(placed, b"mesh")
+def test_the_first_outcome_stands(any_store: JobStore) -> None:
+    job = accepted(any_store, b"mesh")
     first = Canceled(finished_at=now())
-    assert not placed.has_ended(job.id)
-    assert placed.finish(job.id, first) == first
-    assert placed.finish(job.id, succeeded()) == first
-    assert placed.outcome(job.id) == first
-    assert placed.has_ended(job.id)
-    assert placed.unfinished() == {}
+    assert not any_store.records.has_ended(job.id)
+    assert any_store.finish(job.id, first) == first
+    assert any_store.finish(job.id, succeeded()) == first
+    assert any_store.records.outcome(job.id) == first
+    assert any_store.records.has_ended(job.id)
+    assert any_store.pending.all() == {}
 
 
-def test_of_many_writers_at_once_one_gives_the_outcome(placed: JobStore) -> None:
-    job = accepted(placed, b"mesh")
+def test_one_of_many_concurrent_writers_writes_the_outcome(any_store: JobStore) -> None:
+    job = accepted(any_store, b"mesh")
     outcomes = [Failed(finished_at=now(), code=f"writer_{n}", message="") for n in range(16)]
     standing: list[object] = []
     threads = [
-        threading.Thread(target=lambda outcome=outcome: standing.append(placed.finish(job.id, outcome)))
+        threading.Thread(target=lambda outcome=outcome: standing.append(any_store.finish(job.id, outcome)))
         for outcome in outcomes
     ]
     for thread in threads:
@@ -91,14 +91,14 @@ def test_of_many_writers_at_once_one_gives_the_outcome(placed: JobStore) -> None
     for thread in threads:
         thread.join()
     assert len(standing) == 16
-    assert {repr(outcome) for outcome in standing} == {repr(placed.outcome(job.id))}
+    assert {repr(outcome) for outcome in standing} == {repr(any_store.records.outcome(job.id))}
 
 
-def test_of_many_submissions_of_one_id_one_is_accepted_with_its_own_mesh(placed: JobStore) -> None:
-    job_id, taken, refused = new_job_id(), [], []
+def test_one_of_many_concurrent_submissions_of_one_id_is_accepted_with_its_mesh(any_store: JobStore) -> None:
+    job_id, won, refused = new_job_id(), [], []
 
     def submit(mesh: bytes) -> None:
-        with placed.begin_upload() as upload:
+        with any_store.spool.begin_upload() as upload:
             upload.write(mesh)
             job = Job(
                 id=job_id,
@@ -109,8 +109,8 @@ def test_of_many_submissions_of_one_id_one_is_accepted_with_its_own_mesh(placed:
                 created_at=now(),
             )
             try:
-                placed.accept(job, upload)
-                taken.append(job)
+                any_store.accept(job, upload)
+                won.append(job)
             except JobExists:
                 refused.append(job)
 
@@ -119,109 +119,111 @@ def test_of_many_submissions_of_one_id_one_is_accepted_with_its_own_mesh(placed:
         thread.start()
     for thread in threads:
         thread.join()
-    assert (len(taken), len(refused)) == (1, 7)
-    assert placed.job(job_id) == taken[0]
-    with placed.open_mesh(job_id) as mesh:
-        assert hashlib.sha256(mesh.read()).hexdigest() == taken[0].sha256
-    assert placed.page(None, None, 10).jobs == taken
-    assert list(placed.unfinished()) == [job_id]
-    assert len([key for key in keys(placed) if "/mesh" in key]) == 1
+    assert (len(won), len(refused)) == (1, 7)
+    assert any_store.records.job(job_id) == won[0]
+    with any_store.open_mesh(job_id) as mesh:
+        assert hashlib.sha256(mesh.read()).hexdigest() == won[0].sha256
+    assert any_store.page(None, None, 10).jobs == won
+    assert list(any_store.pending.all()) == [job_id]
+    assert len([key for key in keys(any_store) if "/mesh" in key]) == 1
 
 
-def test_every_kind_of_outcome_is_read_back(placed: JobStore) -> None:
+def test_every_kind_of_outcome_is_read_back(any_store: JobStore) -> None:
     for outcome in (succeeded(), Canceled(finished_at=now()), Failed(finished_at=now(), code="c", message="m")):
-        job = accepted(placed, b"mesh")
-        placed.finish(job.id, outcome)
-        assert placed.outcome(job.id) == outcome
+        job = accepted(any_store, b"mesh")
+        any_store.finish(job.id, outcome)
+        assert any_store.records.outcome(job.id) == outcome
 
 
-def test_attempts_are_counted_until_they_are_withdrawn(placed: JobStore) -> None:
-    job = accepted(placed, b"mesh")
-    first = placed.begin_attempt(job.id, "worker-1")
-    placed.end_attempt(job.id, first, "worker_lost")
-    second = placed.begin_attempt(job.id, "worker-2")
-    assert [attempt.number for attempt in placed.attempts(job.id)] == [1, 2]
-    assert [attempt.cause for attempt in placed.attempts(job.id)] == ["worker_lost", None]
-    assert placed.states([job])[job.id].attempts == placed.attempts(job.id)
-    placed.withdraw_attempt(job.id, second)
-    assert [attempt.worker for attempt in placed.attempts(job.id)] == ["worker-1"]
+def test_attempts_are_counted_until_they_are_withdrawn(any_store: JobStore) -> None:
+    job = accepted(any_store, b"mesh")
+    first = any_store.begin_attempt(job.id, "worker-1")
+    any_store.records.end_attempt(job.id, first, "worker_lost")
+    second = any_store.begin_attempt(job.id, "worker-2")
+    assert [attempt.number for attempt in any_store.records.attempts(job.id)] == [1, 2]
+    assert [attempt.cause for attempt in any_store.records.attempts(job.id)] == ["worker_lost", None]
+    assert any_store.records.states([job.id])[job.id].attempts == any_store.records.attempts(job.id)
+    any_store.records.withdraw_attempt(job.id, second)
+    assert [attempt.worker for attempt in any_store.records.attempts(job.id)] == ["worker-1"]
 
 
-def test_a_result_is_read_back_by_every_process(placed: JobStore, tmp_path: Path) -> None:
-    job = accepted(placed, b"mesh")
+def test_a_result_is_read_back_by_every_process(any_store: JobStore, tmp_path: Path) -> None:
+    job = accepted(any_store, b"mesh")
     for _ in range(2):
-        placed.write_result(job.id, lambda target: target.write(b"result"))
-    for store in (placed, placed, reopened(placed, tmp_path)):
-        with store.open_result(job.id) as result:
+        any_store.results.write(job.id, lambda target: target.write(b"result"))
+    for store in (any_store, any_store, reopened(any_store, tmp_path)):
+        with store.results.open(job.id) as result:
             assert result.read() == b"result"
 
 
-def test_a_new_attempt_clears_what_a_killed_one_was_writing(placed: JobStore, tmp_path: Path) -> None:
-    job = accepted(placed, b"mesh")
+def test_a_new_attempt_removes_the_incomplete_result_of_a_killed_one(any_store: JobStore, tmp_path: Path) -> None:
+    job = accepted(any_store, b"mesh")
     torn = tmp_path / "data" / "incoming" / f"{job.id}-0123.result"
     torn.write_bytes(b"half of a result")
-    placed.begin_attempt(job.id, "worker")
+    any_store.begin_attempt(job.id, "worker")
     assert not torn.exists()
 
 
-def test_a_deleted_job_is_gone_and_cannot_be_finished(placed: JobStore) -> None:
-    job = accepted(placed, b"mesh")
-    attempt = placed.begin_attempt(job.id, "worker")
-    placed.write_result(job.id, lambda target: target.write(b"result"))
-    placed.delete(job.id)
-    assert placed.job(job.id) is None
+def test_a_deleted_job_is_gone_and_cannot_be_changed(any_store: JobStore) -> None:
+    job = accepted(any_store, b"mesh")
+    attempt = any_store.begin_attempt(job.id, "worker")
+    any_store.results.write(job.id, lambda target: target.write(b"result"))
+    any_store.delete(job.id)
+    assert any_store.records.job(job.id) is None
     for forbidden in (
-        lambda: placed.finish(job.id, succeeded()),
-        lambda: placed.begin_attempt(job.id, "worker"),
-        lambda: placed.end_attempt(job.id, attempt, "worker_lost"),
-        lambda: placed.write_result(job.id, lambda target: target.write(b"result")),
-        lambda: placed.open_result(job.id),
-        lambda: placed.delete(job.id),
+        lambda: any_store.finish(job.id, succeeded()),
+        lambda: any_store.begin_attempt(job.id, "worker"),
+        lambda: any_store.records.end_attempt(job.id, attempt, "worker_lost"),
+        lambda: any_store.results.write(job.id, lambda target: target.write(b"result")),
+        lambda: any_store.results.open(job.id),
+        lambda: any_store.delete(job.id),
     ):
         with pytest.raises(UnknownJob):
             forbidden()
-    assert keys(placed) == [f"gone/{job.id}"]
+    assert keys(any_store) == [f"{DELETED}/{job.id}"]
 
 
 @pytest.mark.parametrize("name", ["../../etc/passwd", "", ".", "A" * 32, "0" * 31, "0" * 32 + "\n", "é" * 32])
 def test_what_is_no_job_id_is_never_a_key(store: JobStore, name: str) -> None:
-    assert store.job(name) is None
+    assert store.records.job(name) is None
     with pytest.raises(ValueError, match="Not the id of a job"):
         store.open_mesh(name)
 
 
-def test_a_marker_without_a_job_is_no_job(placed: JobStore, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    job = accepted(placed, b"mesh")
-    placed.objects.delete(f"jobs/{job.id}/job.json")
-    assert reopened(placed, tmp_path).unfinished() == {}
-    assert any(job.id in key for key in keys(placed))  # it may be on its way in
+def test_a_marker_without_a_job_is_ignored_and_later_removed(
+    any_store: JobStore, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    job = accepted(any_store, b"mesh")
+    any_store.objects.delete(f"jobs/{job.id}/job.json")
+    assert reopened(any_store, tmp_path).pending.all() == {}
+    assert any(job.id in key for key in keys(any_store))  # as the job may still be uploaded
     monkeypatch.setattr("worker.jobs.store.pending._GRACE_S", -10.0)
-    assert reopened(placed, tmp_path).unfinished() == {}
-    assert [key for key in keys(placed) if key.startswith(("pending", "jobs"))] == []
+    assert reopened(any_store, tmp_path).pending.all() == {}
+    assert [key for key in keys(any_store) if key.startswith(("pending", "jobs"))] == []
 
 
-def test_a_crash_between_the_manifest_and_its_marker_heals(placed: JobStore, tmp_path: Path) -> None:
-    job = accepted(placed, b"mesh")
-    (marker,) = placed.objects.list_below("pending")
-    placed.finish(job.id, succeeded())
-    placed.objects.put(marker.key, b"")
-    assert reopened(placed, tmp_path).unfinished() == {}
-    assert placed.objects.list_below("pending") == []
+def test_a_marker_that_was_left_by_a_crash_after_the_manifest_is_removed(any_store: JobStore, tmp_path: Path) -> None:
+    job = accepted(any_store, b"mesh")
+    (marker,) = any_store.objects.list_below("pending")
+    any_store.finish(job.id, succeeded())
+    any_store.objects.put(marker.key, b"")
+    assert reopened(any_store, tmp_path).pending.all() == {}
+    assert any_store.objects.list_below("pending") == []
 
 
-def test_unfinished_jobs_come_oldest_first(placed: JobStore) -> None:
-    jobs = [owned(placed, owner) for owner in ("b", None, "a", "b")]
-    assert list(placed.unfinished()) == [job.id for job in jobs]
-    assert placed.unfinished_of("b") == [jobs[0].id, jobs[3].id]
-    assert placed.count_unfinished("b") == (4, 2)
+def test_unfinished_jobs_come_oldest_first(any_store: JobStore) -> None:
+    jobs = [owned(any_store, owner) for owner in ("b", None, "a", "b")]
+    assert list(any_store.pending.all()) == [job.id for job in jobs]
+    assert any_store.pending.of("b") == [jobs[0].id, jobs[3].id]
+    assert any_store.pending.count("b") == (4, 2)
 
 
-def test_jobs_are_paged_newest_first_without_a_gap_or_a_repetition(placed: JobStore) -> None:
-    jobs = [accepted(placed, b"mesh") for _ in range(7)]
+def test_pages_list_every_job_once_newest_first(any_store: JobStore) -> None:
+    jobs = [accepted(any_store, b"mesh") for _ in range(7)]
     found: list[str] = []
     cursor = None
     while True:
-        page = placed.page(None, cursor, 3)
+        page = any_store.page(None, cursor, 3)
         found += [job.id for job in page.jobs]
         cursor = page.next_cursor
         if cursor is None:
@@ -229,83 +231,83 @@ def test_jobs_are_paged_newest_first_without_a_gap_or_a_repetition(placed: JobSt
     assert found == [job.id for job in reversed(jobs)]
 
 
-def test_owners_see_their_own_jobs_alone(placed: JobStore) -> None:
-    mine, theirs, nobodys = (owned(placed, owner) for owner in ("me", "them", None))
-    for job in (mine, theirs, nobodys):
-        assert placed.page(job.owner, None, 10).jobs == [job]
-        assert placed.unfinished_of(job.owner) == [job.id]
-    assert placed.unfinished() == {mine.id: "me", theirs.id: "them", nobodys.id: None}
-    placed.finish(mine.id, Canceled(finished_at=now()))
-    assert placed.unfinished_of("me") == []
-    assert placed.page("me", None, 10).jobs == [mine]
+def test_owners_see_their_own_jobs_alone(any_store: JobStore) -> None:
+    mine, theirs, unowned = (owned(any_store, owner) for owner in ("me", "them", None))
+    for job in (mine, theirs, unowned):
+        assert any_store.page(job.owner, None, 10).jobs == [job]
+        assert any_store.pending.of(job.owner) == [job.id]
+    assert any_store.pending.all() == {mine.id: "me", theirs.id: "them", unowned.id: None}
+    any_store.finish(mine.id, Canceled(finished_at=now()))
+    assert any_store.pending.of("me") == []
+    assert any_store.page("me", None, 10).jobs == [mine]
 
 
-def test_what_was_computed_is_found_by_its_owner_alone(placed: JobStore) -> None:
-    job = owned(placed, "me")
-    assert placed.computed_before(job) is None
-    placed.finish(job.id, succeeded())
-    assert placed.computed_before(replace(job, id=new_job_id())) == job
-    assert placed.computed_before(replace(job, owner="them")) is None
+def test_an_earlier_result_is_found_for_its_owner_alone(any_store: JobStore) -> None:
+    job = owned(any_store, "me")
+    assert any_store.computed_before(job) is None
+    any_store.finish(job.id, succeeded())
+    assert any_store.computed_before(replace(job, id=new_job_id())) == job
+    assert any_store.computed_before(replace(job, owner="them")) is None
 
 
-def test_a_second_job_of_the_same_id_leaves_the_first_as_it_is(placed: JobStore) -> None:
-    first = accepted(placed, b"mesh")
+def test_a_second_job_of_the_same_id_does_not_change_the_first(any_store: JobStore) -> None:
+    first = accepted(any_store, b"mesh")
     second = replace(first, created_at=now(), size_bytes=12, webhook_url="https://example.com/")
-    with placed.begin_upload() as upload, pytest.raises(JobExists):
-        placed.accept(second, upload)
-    assert placed.job(first.id) == first
-    assert placed.page(None, None, 10).jobs == [first]
-    assert placed.outbox.letters() == {}
-    with placed.open_mesh(first.id) as mesh:
+    with any_store.spool.begin_upload() as upload, pytest.raises(JobExists):
+        any_store.accept(second, upload)
+    assert any_store.records.job(first.id) == first
+    assert any_store.page(None, None, 10).jobs == [first]
+    assert any_store.outbox.deliveries() == {}
+    with any_store.open_mesh(first.id) as mesh:
         assert mesh.read() == b"mesh"
 
 
-def test_a_deletion_is_known_to_its_owner_until_it_is_forgotten(placed: JobStore) -> None:
-    job = owned(placed, "me")
-    placed.delete(job.id)
-    assert placed.was_deleted(job.id, "me")
-    assert not placed.was_deleted(job.id, None)
-    placed.forget_deleted(3600.0)
-    assert placed.was_deleted(job.id, "me")
-    placed.forget_deleted(-10.0)
-    assert not placed.was_deleted(job.id, "me")
+def test_a_deletion_is_remembered_for_its_owner_until_it_is_forgotten(any_store: JobStore) -> None:
+    job = owned(any_store, "me")
+    any_store.delete(job.id)
+    assert any_store.deletions.was_deleted(job.id, "me")
+    assert not any_store.deletions.was_deleted(job.id, None)
+    any_store.deletions.forget(3600.0)
+    assert any_store.deletions.was_deleted(job.id, "me")
+    any_store.deletions.forget(-10.0)
+    assert not any_store.deletions.was_deleted(job.id, "me")
 
 
-def test_letters_stay_until_they_are_delivered(placed: JobStore) -> None:
+def test_deliveries_are_kept_until_they_are_removed(any_store: JobStore) -> None:
     job_id, other = new_job_id(), new_job_id()
-    placed.outbox.put(job_id, Letter())
-    placed.outbox.put(job_id, Letter(failures=2, due_at=5.0))
-    placed.outbox.put(other, Letter())
-    assert placed.outbox.letters(but_of={other}) == {job_id: Letter(failures=2, due_at=5.0)}
-    placed.outbox.remove(job_id)
-    assert placed.outbox.job_ids() == {other}
+    any_store.outbox.put(job_id, Delivery())
+    any_store.outbox.put(job_id, Delivery(failures=2, due_at=5.0))
+    any_store.outbox.put(other, Delivery())
+    assert any_store.outbox.deliveries(except_for={other}) == {job_id: Delivery(failures=2, due_at=5.0)}
+    any_store.outbox.remove(job_id)
+    assert any_store.outbox.job_ids() == {other}
 
 
-def test_every_process_derives_the_same_secrets(placed: JobStore) -> None:
-    secrets = [InstallationSecret(placed.objects) for _ in range(2)]
+def test_every_process_derives_the_same_secrets(any_store: JobStore) -> None:
+    secrets = [InstallationSecret(any_store.objects) for _ in range(2)]
     assert secrets[0].derive("a", "b") == secrets[1].derive("a", "b") != secrets[0].derive("ab")
 
 
-def test_a_store_that_can_be_written_keeps_no_probe(placed: JobStore) -> None:
+def test_a_write_check_removes_its_probe(any_store: JobStore) -> None:
     for _ in range(2):
-        placed.check_writable()
-    assert keys(placed) == []
+        any_store.check_writable()
+    assert keys(any_store) == []
 
 
-def test_a_data_folder_of_an_earlier_version_goes_on_working(tmp_path: Path) -> None:
+def test_a_data_folder_of_an_earlier_version_is_migrated(tmp_path: Path) -> None:
     store = open_folder(tmp_path / "data")
     job, ended = owned(store, "me"), owned(store, "me")
     store.finish(ended.id, succeeded())
     folder = tmp_path / "data"
-    for one in (job, ended):  # as they were named
+    for one in (job, ended):  # as earlier versions named them
         (folder / "jobs" / one.id / f"mesh-{one.sha256}").rename(folder / "jobs" / one.id / "mesh")
-        entry = folder / "index" / "me" / turned(entry_name(one))
+        entry = folder / "index" / "me" / complemented(entry_name(one))
         entry.rename(entry.with_name(entry_name(one)))
     (folder / "pending" / f"{entry_name(job)}.me").rename(folder / "pending" / f"{job.id}.me")
     store = open_folder(tmp_path / "data")
-    assert store.unfinished() == {job.id: "me"}
+    assert store.pending.all() == {job.id: "me"}
     assert store.page("me", None, 10).jobs == [ended, job]
     with store.open_mesh(job.id) as mesh:
         assert mesh.read() == b""
     store.finish(job.id, succeeded())
-    assert store.unfinished() == {}
+    assert store.pending.all() == {}

@@ -1,4 +1,4 @@
-"""A process dies between any two writes: what is left is one state or the other, and heals."""
+"""Crashes between any two writes: a job is in the old or in the new state afterwards, and leftovers are removed."""
 
 import errno
 from collections.abc import Callable, Iterator
@@ -11,9 +11,10 @@ import pytest
 
 from worker.janitor.retention import stored_jobs
 from worker.jobs.job import Job, Succeeded, new_job_id, now
-from worker.jobs.objects.seam import ObjectStorage, StoreError
+from worker.jobs.objects.interface import ObjectStorage, StoreError
 from worker.jobs.store.acceptance import JobExists
-from worker.jobs.store.outbox import Letter
+from worker.jobs.store.layout import BEING_DELETED
+from worker.jobs.store.outbox import Delivery
 from worker.jobs.store.spool import Spool
 from worker.jobs.store.store import JobStore, UnknownJob
 
@@ -21,11 +22,11 @@ _WRITES = ("create", "put", "put_file", "delete")
 
 
 class Killed(BaseException):
-    """The process ends here."""
+    """Stands for the death of the process."""
 
 
 class FailingObjects:
-    """Objects of which one write, and all after it, fail: before it is done, or after."""
+    """Storage whose n-th write, and all after it, fail; the n-th fails before or after it is done."""
 
     def __init__(self, objects: ObjectStorage, write: int, error: BaseException, *, is_done: bool = False) -> None:
         self._objects = objects
@@ -51,20 +52,20 @@ class FailingObjects:
 
 
 @pytest.fixture
-def reopen(placed: JobStore, tmp_path: Path) -> Callable[..., JobStore]:
-    """The store of the test, or other objects, as a new process opens it."""
+def reopen(any_store: JobStore, tmp_path: Path) -> Callable[..., JobStore]:
+    """Opens the store of the test, or one on other storage, as a new process does."""
 
     def opened(objects: Any = None) -> JobStore:
-        return JobStore(objects or placed.objects, Spool(tmp_path / "data" / "incoming"))
+        return JobStore(objects or any_store.objects, Spool(tmp_path / "data" / "incoming"))
 
     return opened
 
 
 @pytest.fixture
 def nothing_is_young(monkeypatch: pytest.MonkeyPatch) -> None:
-    """Whatever has no job is not on its way to one any more."""
+    """Objects without a job are old enough to be removed."""
     monkeypatch.setattr("worker.jobs.store.pending._GRACE_S", -10.0)
-    monkeypatch.setattr("worker.jobs.store.pages._ON_ITS_WAY", timedelta(days=-1))
+    monkeypatch.setattr("worker.jobs.store.pages._GRACE", timedelta(days=-1))
 
 
 def a_job() -> Job:
@@ -81,7 +82,7 @@ def a_job() -> Job:
 
 
 def accept(store: JobStore, job: Job) -> Job:
-    with store.begin_upload() as upload:
+    with store.spool.begin_upload() as upload:
         upload.write(b"mesh")
         job = replace(job, sha256=upload.sha256)
         store.accept(job, upload)
@@ -92,15 +93,15 @@ def succeeded() -> Succeeded:
     return Succeeded(finished_at=now(), faces=4, vertices=4, max_segments=3, automatic_segments=2)
 
 
-def everything(store: JobStore) -> list[str]:
-    folders = ("computed", "doomed", "index", "jobs", "outbox", "pending")
+def all_keys(store: JobStore) -> list[str]:
+    folders = ("computed", BEING_DELETED, "index", "jobs", "outbox", "pending")
     return [one.key for folder in folders for one in store.objects.list_below(folder)]
 
 
 def killed_at_every_write(
     objects: ObjectStorage, act: Callable[[Any], object], prepare: Callable[[], object] = lambda: None
 ) -> Iterator[int]:
-    """Do something again and again, killed at the first write, at the second, ..., until it is done unharmed."""
+    """Call a function again and again, killed at its first write, at its second, ..., until it is not killed."""
     for write in range(100):
         for is_done in (False, True):
             prepare()
@@ -112,147 +113,147 @@ def killed_at_every_write(
             if not failing.has_failed:
                 assert write > 1
                 return
-    raise AssertionError("there is no end of writes")
+    raise AssertionError("the function does not end")
 
 
-def test_a_job_is_accepted_whole_or_not_at_all(
-    placed: JobStore, reopen: Callable[..., JobStore], nothing_is_young: None
+def test_a_job_is_accepted_completely_or_not_at_all(
+    any_store: JobStore, reopen: Callable[..., JobStore], nothing_is_young: None
 ) -> None:
     del nothing_is_young
     job = a_job()
     seen = set()
 
-    def begin_anew() -> None:
+    def renew() -> None:
         nonlocal job
         job = a_job()
 
-    for _ in killed_at_every_write(placed.objects, lambda failing: accept(reopen(failing), job), begin_anew):
+    for _ in killed_at_every_write(any_store.objects, lambda failing: accept(reopen(failing), job), renew):
         store = reopen()
-        is_there = store.job(job.id) is not None
+        is_there = store.records.job(job.id) is not None
         seen.add(is_there)
-        assert store.unfinished_of("me") == [job.id] * is_there
+        assert store.pending.of("me") == [job.id] * is_there
         assert [one.id for one in store.page("me", None, 10).jobs] == [job.id] * is_there
         if is_there:
             with store.open_mesh(job.id) as mesh:
                 assert mesh.read() == b"mesh"
-            assert store.outbox.letter(job.id) == Letter()
+            assert store.outbox.delivery(job.id) == Delivery()
             with pytest.raises(JobExists):
                 accept(store, job)
             store.delete(job.id)
-        store.outbox.remove(job.id)  # as the courier does that finds no job
-        store.unfinished()
-        assert everything(reopen()) == []
+        store.outbox.remove(job.id)  # as the webhook process does if there is no job
+        store.pending.all()
+        assert all_keys(reopen()) == []
     assert seen == {True, False}
 
 
-def test_what_a_killed_submission_left_does_not_keep_the_same_job_from_being_accepted(
-    placed: JobStore, reopen: Callable[..., JobStore]
+def test_the_remains_of_a_killed_submission_do_not_prevent_the_next_one(
+    any_store: JobStore, reopen: Callable[..., JobStore]
 ) -> None:
     job = a_job()
 
-    def begin_anew() -> None:
+    def renew() -> None:
         nonlocal job
         job = a_job()
 
-    for _ in killed_at_every_write(placed.objects, lambda failing: accept(reopen(failing), job), begin_anew):
-        if placed.job(job.id) is None:
+    for _ in killed_at_every_write(any_store.objects, lambda failing: accept(reopen(failing), job), renew):
+        if any_store.records.job(job.id) is None:
             accept(reopen(), job)
-        assert reopen().unfinished_of("me") == [job.id]
+        assert reopen().pending.of("me") == [job.id]
         with reopen().open_mesh(job.id) as mesh:
             assert mesh.read() == b"mesh"
         reopen().delete(job.id)
 
 
-def test_a_job_is_finished_or_not_and_can_be_finished_then(placed: JobStore, reopen: Callable[..., JobStore]) -> None:
+def test_a_job_is_finished_or_can_be_finished_afterwards(any_store: JobStore, reopen: Callable[..., JobStore]) -> None:
     job, first = a_job(), succeeded()
 
-    def begin_anew() -> None:
+    def renew() -> None:
         nonlocal job, first
-        job, first = accept(placed, a_job()), succeeded()
+        job, first = accept(any_store, a_job()), succeeded()
 
     def work(failing: Any) -> None:
         store = reopen(failing)
         store.begin_attempt(job.id, "worker")
-        store.write_result(job.id, lambda target: target.write(b"result"))
+        store.results.write(job.id, lambda target: target.write(b"result"))
         store.finish(job.id, first)
 
-    for _ in killed_at_every_write(placed.objects, work, begin_anew):
+    for _ in killed_at_every_write(any_store.objects, work, renew):
         store = reopen()
-        outcome = store.outcome(job.id)
-        assert (job.id in store.unfinished()) == (outcome is None)
-        assert len(store.attempts(job.id)) <= 1
+        outcome = store.records.outcome(job.id)
+        assert (job.id in store.pending.all()) == (outcome is None)
+        assert len(store.records.attempts(job.id)) <= 1
         again = succeeded()
         store.begin_attempt(job.id, "another")
-        store.write_result(job.id, lambda target: target.write(b"result"))
+        store.results.write(job.id, lambda target: target.write(b"result"))
         assert store.finish(job.id, again) == (outcome or again)
-        with store.open_result(job.id) as result:
+        with store.results.open(job.id) as result:
             assert result.read() == b"result"
-        assert job.id not in store.unfinished()
+        assert job.id not in store.pending.all()
 
 
-def test_a_job_is_deleted_for_good_or_still_there(placed: JobStore, reopen: Callable[..., JobStore]) -> None:
+def test_a_job_is_deleted_for_good_or_still_exists(any_store: JobStore, reopen: Callable[..., JobStore]) -> None:
     job = a_job()
 
-    def begin_anew() -> None:
+    def renew() -> None:
         nonlocal job
-        job = accept(placed, replace(a_job(), webhook_url=None))
-        placed.write_result(job.id, lambda target: target.write(b"result"))
-        placed.finish(job.id, succeeded())
+        job = accept(any_store, replace(a_job(), webhook_url=None))
+        any_store.results.write(job.id, lambda target: target.write(b"result"))
+        any_store.finish(job.id, succeeded())
 
-    for write in killed_at_every_write(placed.objects, lambda failing: reopen(failing).delete(job.id), begin_anew):
+    for write in killed_at_every_write(any_store.objects, lambda failing: reopen(failing).delete(job.id), renew):
         store = reopen()
-        if store.job(job.id) is None:
-            assert store.was_deleted(job.id, "me")
+        if store.records.job(job.id) is None:
+            assert store.deletions.was_deleted(job.id, "me")
             assert store.page("me", None, 10).jobs == []
             with pytest.raises(UnknownJob):
                 store.finish(job.id, succeeded())
-        elif write == 0 and not store.objects.list_below("doomed"):
-            store.delete(job.id)  # nothing was begun
+        elif write == 0 and not store.objects.list_below(BEING_DELETED):
+            store.delete(job.id)  # the deletion had not begun
         store.finish_deletions(-10.0)
-        assert everything(reopen()) == []
-        assert store.was_deleted(job.id, "me")
+        assert all_keys(reopen()) == []
+        assert store.deletions.was_deleted(job.id, "me")
 
 
-def test_a_full_disk_leaves_nothing_of_what_was_not_accepted(
-    placed: JobStore, reopen: Callable[..., JobStore], tmp_path: Path
+def test_a_submission_that_fails_on_a_full_disk_is_removed(
+    any_store: JobStore, reopen: Callable[..., JobStore], tmp_path: Path
 ) -> None:
     class FullDisk(FailingObjects):
-        """What is there can be removed."""
+        """Only deletions work."""
 
         def __getattr__(self, name: str) -> Any:
             return getattr(self._objects, name) if name == "delete" else super().__getattr__(name)
 
     for write in range(100):
         job = a_job()
-        full = FullDisk(placed.objects, write, OSError(errno.ENOSPC, "No space left on device"))
+        full = FullDisk(any_store.objects, write, OSError(errno.ENOSPC, "No space left on device"))
         try:
             accept(reopen(full), job)
         except OSError as error:
             assert error.errno == errno.ENOSPC  # noqa: PT017
-            assert everything(reopen()) == []
+            assert all_keys(reopen()) == []
             assert list((tmp_path / "data" / "incoming").iterdir()) == []
             continue
-        assert reopen().unfinished_of("me") == [job.id]
+        assert reopen().pending.of("me") == [job.id]
         assert write > 2
         return
-    raise AssertionError("there is no end of writes")
+    raise AssertionError("the function does not end")
 
 
-def test_an_answer_of_the_store_that_is_lost_loses_no_job(placed: JobStore, reopen: Callable[..., JobStore]) -> None:
-    """The record may be there although the store did not say so: what belongs to it must not be removed."""
+def test_a_lost_response_of_the_store_loses_no_job(any_store: JobStore, reopen: Callable[..., JobStore]) -> None:
+    """The record may have been written although no response arrived, so its mesh must not be removed."""
     for write in range(100):
         job = a_job()
-        failing = FailingObjects(placed.objects, write, StoreError("no answer"), is_done=True)
+        failing = FailingObjects(any_store.objects, write, StoreError("no answer"), is_done=True)
         try:
             accept(reopen(failing), job)
         except StoreError:
             store = reopen()
-            if store.job(job.id) is not None:
+            if store.records.job(job.id) is not None:
                 with store.open_mesh(job.id) as mesh:
                     assert mesh.read() == b"mesh"
-                assert job.id in store.unfinished()
+                assert job.id in store.pending.all()
             continue
         assert not failing.has_failed or write > 3
-        assert {one.id for one in stored_jobs(placed) if one.is_accepted} >= {job.id}
+        assert {one.id for one in stored_jobs(any_store) if one.is_accepted} >= {job.id}
         return
-    raise AssertionError("there is no end of writes")
+    raise AssertionError("the function does not end")

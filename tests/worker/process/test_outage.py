@@ -1,4 +1,4 @@
-"""Workers without their queue server: they go on with what they have, and with the rest when it is back."""
+"""Outages of the queue server: workers finish the running job, and continue when the server is back."""
 
 import signal
 import subprocess
@@ -12,12 +12,13 @@ from helpers.processes import StartWorker, children_of
 from helpers.waiting import wait_until
 from service.host.queue_server import QueueServer, embedded_queue_server
 from worker.jobs.job import Job, Succeeded
-from worker.jobs.queue.queue import JobQueue, QueueError, connect_impatiently
+from worker.jobs.queue.connection import QueueError, connect
+from worker.jobs.queue.queue import JobQueue
 from worker.jobs.store.store import JobStore
 
 
 class Server:
-    """A queue server that a test may stop, and replace by an empty one."""
+    """A queue server that a test can kill and replace by an empty one."""
 
     def __init__(self, server: QueueServer) -> None:
         self.url = server.url
@@ -29,7 +30,7 @@ class Server:
         wait_until(self._server.is_answering)
 
     def lose(self) -> None:
-        """Kill it, and remove its files."""
+        """Kill the server and remove its files."""
         self.process.kill()
         self.process.wait()
         for path in self._server.socket.parent.rglob("*.aof*"):
@@ -45,14 +46,14 @@ def server(tmp_path: Path) -> Iterator[Server]:
 
 
 def succeeded(store: JobStore, job_id: str) -> bool:
-    return isinstance(store.outcome(job_id), Succeeded)
+    return isinstance(store.records.outcome(job_id), Succeeded)
 
 
 def at_work(
     start_worker: StartWorker, store: JobStore, server: Server
 ) -> tuple[JobQueue, subprocess.Popen[bytes], Job]:
-    """A queue, its worker, and the long job that it has begun."""
-    queue = JobQueue(connect_impatiently(server.url))
+    """Start a worker; return the queue, the worker, and a long job that it runs."""
+    queue = JobQueue(connect(server.url))
     worker = start_worker(CLEAVE_REDIS_URL=server.url)
     running = accepted(store, sphere(100), **LONG)
     queue.enqueue(running.id, SMALL)
@@ -60,12 +61,12 @@ def at_work(
     return queue, worker, running
 
 
-def test_a_worker_outlives_its_queue_server_and_works_for_the_next_one(
+def test_a_worker_survives_the_loss_of_its_queue_server(
     start_worker: StartWorker, store: JobStore, server: Server
 ) -> None:
     queue, worker, running = at_work(start_worker, store, server)
     server.lose()
-    wait_until(lambda: succeeded(store, running.id))  # nobody else needs to be there for that
+    wait_until(lambda: succeeded(store, running.id))  # without a queue server
     wait_until(lambda: not children_of(worker.pid))
     with pytest.raises(QueueError):
         queue.lengths()
@@ -74,7 +75,7 @@ def test_a_worker_outlives_its_queue_server_and_works_for_the_next_one(
     queue.enqueue(following.id, SMALL)
     wait_until(lambda: succeeded(store, following.id))
     assert worker.poll() is None
-    assert len(store.attempts(running.id)) == 1
+    assert len(store.records.attempts(running.id)) == 1
     assert queue.lengths()[SMALL] == 0
 
 

@@ -1,0 +1,89 @@
+"""The interface of object storage, which a folder and a bucket implement.
+
+An object has a key: parts separated by slashes, such as ``jobs/<id>/job.json``. An object is read whole or not at all,
+also after a crash during a write, and is durable as soon as the call that wrote it has returned.
+"""
+
+from collections.abc import Callable, Iterable
+from dataclasses import dataclass
+from pathlib import Path
+from typing import BinaryIO, Protocol, TypeVar
+
+Item = TypeVar("Item")
+Value = TypeVar("Value")
+
+
+class StoreError(OSError):
+    """The storage does not answer or refuses; whether the request was carried out is unknown. A retry may help."""
+
+
+@dataclass(frozen=True, slots=True)
+class ObjectInfo:
+    key: str
+    size_bytes: int
+    modified_at: float  # seconds since 1970
+
+    @property
+    def name(self) -> str:
+        return name_of(self.key)
+
+
+def name_of(key: str) -> str:
+    """Return the last part of a key."""
+    return key.rpartition("/")[2]
+
+
+class ObjectStorage(Protocol):
+    """Objects by key. Every method raises an OSError if it fails; a remote storage raises a StoreError."""
+
+    @property
+    def survives_fork(self) -> bool:
+        """Whether a forked child process can use this storage as well."""
+
+    @property
+    def poll_interval_s(self) -> float:
+        """Shortest interval at which a caller should poll for a change; 0 if reads are as cheap as those of a file."""
+
+    def create(self, key: str, data: bytes) -> bool:
+        """Write an object unless there is one; return True if this call has written the object that is there now.
+
+        Of several concurrent writers of different bytes exactly one gets True.
+        """
+
+    def put(self, key: str, data: bytes, *, durable: bool = True) -> None:
+        """Write or replace an object; if it is not ``durable``, it may be empty after a crash of the machine."""
+
+    def put_file(self, key: str, path: Path) -> None:
+        """Write or replace an object with the contents of a file; the file may be moved."""
+
+    def get(self, key: str) -> bytes | None:
+        """Return the bytes of a small object; None if there is none."""
+
+    def open(self, key: str) -> BinaryIO:
+        """Open an object of any size as a seekable file.
+
+        Raises
+        ------
+        FileNotFoundError
+            If there is none.
+        """
+
+    def exists(self, key: str) -> bool: ...
+
+    def delete(self, key: str) -> None:
+        """Remove an object, if there is one."""
+
+    def keys_below(self, folder: str, after: str = "", limit: int | None = None) -> list[str]:
+        """Return the keys that begin with the folder and a slash, in order: those after a key, at most ``limit``."""
+
+    def list_below(self, folder: str) -> list[ObjectInfo]:
+        """Return all objects whose keys begin with the folder and a slash, in the order of their keys."""
+
+    def each(self, work: Callable[[Item], Value], items: Iterable[Item]) -> list[Value]:
+        """Apply a function to some items and return the results in order; a remote storage uses several threads."""
+
+    def presigned_url(self, key: str, valid_s: float) -> str | None:
+        """Return a URL from which anyone can read an object for a time; None if the storage has none."""
+
+    def check_writable(self) -> None:
+        """Raise an OSError if objects cannot be written, or if ``create`` replaces an object."""
