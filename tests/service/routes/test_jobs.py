@@ -1,37 +1,20 @@
-"""The job API: what is submitted can be polled, fetched at every number of segments, canceled and deleted."""
+"""Jobs: documents, list, long polling, cancellation and deletion."""
 
 import threading
+import time
 from collections.abc import Callable
 
 import httpx
 import pytest
 
 from cleave.settings import Settings
-from helpers.api import FACES, UNKNOWN, problem, submit, traces
-from helpers.jobs import SMALL, sphere
-from segcore.io.result import read_result
+from helpers.api import FACES, problem, submit, traces
+from helpers.jobs import SMALL
+from service.documents import Status
 from worker.jobs.queue.queue import JobQueue, Progress
-from worker.jobs.store.records import Records
-from worker.jobs.store.store import JobStore
 
 
-def test_a_submitted_mesh_is_a_queued_job_at_its_location(
-    client: httpx.Client, store: JobStore, queue: JobQueue
-) -> None:
-    answer = client.post("/v1/jobs", files={"mesh": ("hand.off", b"some bytes")}, data={"parameters": '{"seed": 5}'})
-    assert answer.status_code == 202
-    job = answer.json()
-    assert answer.headers["Location"] == job["links"]["self"] == f"/v1/jobs/{job['id']}"
-    assert (job["status"], job["progress"], job["error"]) == ("queued", 0.0, None)
-    assert job["parameters"]["seed"] == 5
-    assert job["parameters"]["max_segments"] == 64
-    assert client.get(answer.headers["Location"]).json() == job
-    with store.open_mesh(job["id"]) as mesh:
-        assert mesh.read() == b"some bytes"
-    assert queue.entries[SMALL].get_job_ids() == [job["id"]]
-
-
-def test_a_job_that_a_worker_holds_is_running_with_its_stage(client: httpx.Client, queue: JobQueue) -> None:
+def test_a_leased_job_is_running_and_has_a_stage(client: httpx.Client, queue: JobQueue) -> None:
     path = submit(client)
     job_id = path.rpartition("/")[2]
     queue.take(job_id, "worker", lease_s=30)
@@ -41,7 +24,7 @@ def test_a_job_that_a_worker_holds_is_running_with_its_stage(client: httpx.Clien
     assert (job["status"], job["stage"], job["progress"]) == ("running", "coarsen", 0.5)
 
 
-def test_a_finished_job_says_what_can_be_asked_for(client: httpx.Client, finished_job: Callable[..., str]) -> None:
+def test_a_finished_job_describes_its_mesh_and_levels(client: httpx.Client, finished_job: Callable[..., str]) -> None:
     job = client.get(finished_job()).json()
     assert (job["status"], job["progress"], job["stage"]) == ("succeeded", 1.0, None)
     report = job["mesh"].pop("report")
@@ -51,51 +34,6 @@ def test_a_finished_job_says_what_can_be_asked_for(client: httpx.Client, finishe
     assert job["created_at"] <= job["finished_at"]
 
 
-def test_labels_are_those_of_the_stored_hierarchy_at_every_number_of_segments(
-    client: httpx.Client, store: JobStore, finished_job: Callable[..., str]
-) -> None:
-    path = finished_job()
-    with store.results.open(path.rpartition("/")[2]) as file:
-        hierarchy = read_result(file).hierarchy
-    for segments in (1, 2, hierarchy.max_segments):
-        document = client.get(f"{path}/labels", params={"segments": segments}).json()
-        assert document == {"segments": segments, "labels": hierarchy.labels(segments).tolist()}
-    automatic = client.get(f"{path}/labels").json()
-    assert automatic == {"segments": hierarchy.automatic_segments, "labels": hierarchy.labels().tolist()}
-    assert len(automatic["labels"]) == FACES
-
-
-def test_the_hierarchy_is_the_whole_tree(client: httpx.Client, finished_job: Callable[..., str]) -> None:
-    path = finished_job()
-    document = client.get(f"{path}/hierarchy").json()
-    assert len(document["nodes"]) == 2 * document["max_segments"] - 1
-    assert document["nodes"][0]["faces"] == FACES
-    assert document["max_segments"] == client.get(path).json()["max_segments"]
-
-
-def test_the_model_is_a_glb_of_the_segments(client: httpx.Client, finished_job: Callable[..., str]) -> None:
-    answer = client.get(f"{finished_job()}/model.glb", params={"segments": 3})
-    assert answer.headers["Content-Type"] == "model/gltf-binary"
-    assert answer.content[:4] == b"glTF"
-    assert b"segment 2" in answer.content
-    assert b"segment 3" not in answer.content
-
-
-@pytest.mark.parametrize("result", ["labels", "hierarchy", "model.glb"])
-def test_results_of_a_job_that_has_none_are_a_conflict(
-    client: httpx.Client, finished_job: Callable[..., str], result: str
-) -> None:
-    answer = client.get(f"{submit(client)}/{result}")
-    problem(answer, 409, "not_finished")
-    assert int(answer.headers["Retry-After"]) > 0
-    failed = problem(client.get(f"{finished_job(b'PK' + bytes([3, 4]))}/{result}"), 409, "job_failed")
-    assert failed["error"]["code"] == "unsupported_format"  # type: ignore[index]
-    canceled = submit(client)
-    client.post(f"{canceled}/cancel")
-    problem(client.get(f"{canceled}/{result}"), 409, "job_canceled")
-    problem(client.get(f"{UNKNOWN}/{result}"), 404, "job_not_found")
-
-
 def test_a_bad_mesh_ends_as_a_failed_job_with_a_reason(client: httpx.Client, finished_job: Callable[..., str]) -> None:
     job = client.get(finished_job(b"OFF\n3 1 0\n0 0 0\n1 0 0\n0 1 0\n3 0 1 9\n")).json()
     assert job["status"] == "failed"
@@ -103,17 +41,82 @@ def test_a_bad_mesh_ends_as_a_failed_job_with_a_reason(client: httpx.Client, fin
     assert job["error"]["message"].endswith(".")
 
 
-@pytest.mark.parametrize("segments", ["0", "-1", "100000", "x", "1.5", "", "9" * 5000, "NaN", "%ED%A0%80"])
-def test_a_number_of_segments_that_is_none_is_refused_with_a_sentence(
-    client: httpx.Client, finished_job: Callable[..., str], segments: str
-) -> None:
-    answer = client.get(f"{finished_job()}/labels?segments={segments}")
-    body = problem(answer, 422, "invalid_parameters" if segments == "100000" else "invalid_request")
-    if segments == "100000":
-        assert "from 1 to" in str(body["detail"])
+def test_jobs_are_listed_newest_first_page_by_page(client: httpx.Client) -> None:
+    paths = [submit(client) for _ in range(5)]
+    found, cursor = [], None
+    while True:
+        page = client.get("/v1/jobs", params={"limit": 2} | ({"cursor": cursor} if cursor else {})).json()
+        found += [job["links"]["self"] for job in page["jobs"]]
+        cursor = page["next_cursor"]
+        if cursor is None:
+            break
+    assert found == paths[::-1]
 
 
-def test_a_queued_job_is_canceled_at_once_and_for_good(client: httpx.Client, queue: JobQueue) -> None:
+def test_a_listed_job_equals_its_own_document(client: httpx.Client, finished_job: Callable[..., str]) -> None:
+    for make in (finished_job, lambda: submit(client)):
+        path = make()
+        assert client.get("/v1/jobs", params={"limit": 1}).json()["jobs"] == [client.get(path).json()]
+
+
+def test_the_list_can_be_filtered_by_status(client: httpx.Client, finished_job: Callable[..., str]) -> None:
+    paths: dict[Status, str] = {"succeeded": finished_job(), "queued": submit(client), "canceled": submit(client)}
+    client.post(f"{paths['canceled']}/cancel")
+    for status, path in paths.items():
+        (job,) = client.get("/v1/jobs", params={"status": status}).json()["jobs"]
+        assert job["links"]["self"] == path
+
+
+def test_an_invalid_cursor_is_refused(client: httpx.Client) -> None:
+    for cursor in ("x", "..", "../../etc", "0" * 32):
+        problem(client.get("/v1/jobs", params={"cursor": cursor}), 422, "invalid_request")
+
+
+def test_a_deleted_job_is_not_listed(client: httpx.Client) -> None:
+    path, kept = submit(client), submit(client)
+    client.delete(path)
+    assert [job["links"]["self"] for job in client.get("/v1/jobs").json()["jobs"]] == [kept]
+
+
+def test_waiting_jobs_have_a_queue_position(client: httpx.Client, queue: JobQueue) -> None:
+    paths = [submit(client) for _ in range(3)]
+    assert [client.get(path).json()["queue_position"] for path in paths] == [1, 2, 3]
+    first = queue.entries[SMALL].pop_job_id()
+    queue.take(first, "worker", lease_s=30)
+    assert [client.get(path).json()["queue_position"] for path in paths] == [None, 1, 2]
+
+
+def test_the_document_has_the_name_of_the_file_and_its_digest(client: httpx.Client) -> None:
+    answer = client.post("/v1/jobs", files={"mesh": ("../my hand.off", b"abc")})
+    assert answer.json()["input"] == {
+        "file_name": "my hand.off",
+        "format": "off",
+        "size_bytes": 3,
+        "sha256": "ba7816bf8f01cfea414140de5dae2223b00361a396177a9cb410ff61f20015ad",
+    }
+
+
+def test_an_unchanged_document_is_not_sent_again(client: httpx.Client, queue: JobQueue) -> None:
+    path = submit(client)
+    for url in (path, "/v1/jobs"):
+        first = client.get(url)
+        again = client.get(url, headers={"If-None-Match": first.headers["ETag"]})
+        assert (again.status_code, again.content) == (304, b"")
+    queue.take(path.rpartition("/")[2], "worker", lease_s=30)
+    assert client.get(path, headers={"If-None-Match": first.headers["ETag"]}).status_code == 200
+
+
+def test_a_long_poll_ends_with_the_job_or_the_timeout(client: httpx.Client) -> None:
+    path = submit(client)
+    began_at = time.monotonic()
+    assert client.get(path, params={"wait": 0.3}).json()["status"] == "queued"
+    assert time.monotonic() - began_at >= 0.3
+    client.post(f"{path}/cancel")
+    assert client.get(path, params={"wait": 60}).json()["status"] == "canceled"
+    problem(client.get(path, params={"wait": 601}), 422, "invalid_request")
+
+
+def test_a_queued_job_is_canceled_immediately_and_permanently(client: httpx.Client, queue: JobQueue) -> None:
     path = submit(client)
     canceled = client.post(f"{path}/cancel")
     assert canceled.status_code == 200
@@ -128,7 +131,7 @@ def test_a_finished_job_cannot_be_canceled(client: httpx.Client, finished_job: C
     assert client.get(path).json()["status"] == "succeeded"
 
 
-def test_of_many_cancels_at_once_all_agree(client: httpx.Client) -> None:
+def test_concurrent_cancels_have_the_same_outcome(client: httpx.Client) -> None:
     path = submit(client)
     answers: list[dict[str, object]] = []
     threads = [threading.Thread(target=lambda: answers.append(client.post(f"{path}/cancel").json())) for _ in range(12)]
@@ -163,91 +166,3 @@ def test_an_unknown_job_is_not_found(client: httpx.Client, name: str) -> None:
     ):
         assert answer.status_code == 404
         assert answer.json()["code"] in ("job_not_found", "not_found")
-
-
-def test_a_service_is_ready_when_queue_store_and_worker_are(client: httpx.Client, queue: JobQueue) -> None:
-    assert client.get("/healthz").json() == {"status": "ok"}
-    waiting = client.get("/readyz")
-    assert waiting.status_code == 503
-    assert waiting.json() == {
-        "ready": False,
-        "queue": True,
-        "store": True,
-        "workers": 0,
-        "missing": ["No worker for small jobs is ready.", "No worker for large jobs is ready."],
-    }
-    for size in ("small", "large"):
-        queue.connection.sadd(f"rq:workers:cleave:{size}", f"rq:worker:{size}")
-        queue.connection.hset(f"rq:worker:{size}", "state", "idle")
-    ready = client.get("/readyz")
-    assert (ready.status_code, ready.json()["workers"]) == (200, 2)
-
-
-def test_without_its_queue_the_service_takes_no_jobs_and_serves_results(
-    client_without_queue: httpx.Client, finished_job: Callable[..., str], client: httpx.Client, settings: Settings
-) -> None:
-    finished, waiting = finished_job(), submit(client)
-    before = sorted(settings.data_dir.rglob("*"))
-    refused = client_without_queue.post("/v1/jobs", files={"mesh": ("mesh.off", sphere(12))})
-    problem(refused, 503, "queue_unavailable")
-    assert int(refused.headers["Retry-After"]) > 0
-    assert sorted(settings.data_dir.rglob("*")) == before
-    assert client_without_queue.get(finished).json()["status"] == "succeeded"
-    assert client_without_queue.get(f"{finished}/labels?segments=2").status_code == 200
-    assert client_without_queue.get(waiting).json()["status"] == "queued"
-    assert client_without_queue.post(f"{waiting}/cancel").json()["status"] == "canceled"
-    assert client_without_queue.get("/readyz").json()["missing"][0] == "The queue server does not answer."
-    assert client_without_queue.get("/healthz").status_code == 200
-
-
-def test_what_is_accepted_while_the_queue_goes_down_stays_accepted(
-    client: httpx.Client, monkeypatch: pytest.MonkeyPatch, store: JobStore, queue: JobQueue
-) -> None:
-    from redis.exceptions import ConnectionError as QueueConnectionError
-
-    def fail(*_: object, **__: object) -> None:
-        raise QueueConnectionError
-
-    monkeypatch.setattr(JobQueue, "enqueue", fail)
-    path = submit(client)
-    assert list(store.pending.all()) == [path.rpartition("/")[2]]
-    assert queue.entries[SMALL].get_job_ids() == []
-
-
-def test_a_full_disk_is_said_and_leaves_nothing(
-    client: httpx.Client, monkeypatch: pytest.MonkeyPatch, settings: Settings
-) -> None:
-    def fail(*_: object) -> None:
-        raise OSError(28, "No space left on device")
-
-    monkeypatch.setattr("worker.jobs.store.upload.MeshUpload.write", fail)
-    answer = client.post("/v1/jobs", files={"mesh": ("mesh.off", sphere(12))})
-    problem(answer, 507, "insufficient_storage")
-    assert traces(settings.data_dir) == []
-
-
-def test_an_internal_error_tells_no_secrets(client: httpx.Client, monkeypatch: pytest.MonkeyPatch) -> None:
-    def fail(*_: object) -> None:
-        raise ZeroDivisionError("secret")
-
-    monkeypatch.setattr(Records, "job", fail)
-    answer = client.get(UNKNOWN)
-    problem(answer, 500, "internal_error")
-    assert "secret" not in answer.text
-
-
-def test_other_paths_and_methods_are_problems_too(client: httpx.Client) -> None:
-    problem(client.get("/v2"), 404, "not_found")
-    problem(client.get("/v1/jobs/"), 404, "not_found")
-    wrong = client.put("/v1/jobs")
-    problem(wrong, 405, "method_not_allowed")
-    assert "POST" in wrong.headers["Allow"]
-
-
-def test_every_documented_error_is_a_problem(client: httpx.Client) -> None:
-    document = client.get("/openapi.json").json()
-    for path, operations in document["paths"].items():
-        for operation in operations.values():
-            for status, response in operation["responses"].items():
-                if status >= "400" and path != "/readyz":
-                    assert list(response["content"]) == ["application/problem+json"], (path, status)

@@ -1,164 +1,17 @@
-"""Uploads: streamed, capped, and without a trace where they break off; what a client calls its file is never a path."""
+"""Uploads without a form, file names and parameters."""
 
-import asyncio
 import io
-from collections.abc import Iterator
-from contextlib import suppress
 from pathlib import Path
 
 import httpx
-import hypothesis
 import pytest
-from hypothesis import strategies as st
-from starlette.requests import ClientDisconnect, Request
 
 from cleave.settings import Settings
 from helpers.api import problem, traces
+from helpers.uploads import form, part, post_form
 from segcore.errors import InvalidParameters
-from service.problems import Problem
-from service.submit.form import FormReader
-from service.submit.request import file_label, mesh_format, parse_parameters, receive_mesh
+from service.submit.request import file_label, mesh_format, parse_parameters
 from worker.jobs.store.store import JobStore
-
-BOUNDARY = "----boundary"
-LIMITED = Settings(max_upload_bytes=10_000, upload_idle_s=0.2)
-CONTENT_TYPE = f"multipart/form-data; boundary={BOUNDARY}"
-
-
-def part(name: str, content: bytes, extra: str = "") -> bytes:
-    head = f'--{BOUNDARY}\r\nContent-Disposition: form-data; name="{name}"{extra}\r\n\r\n'
-    return head.encode() + content + b"\r\n"
-
-
-def form(*parts: bytes) -> bytes:
-    return b"".join(parts) + f"--{BOUNDARY}--\r\n".encode()
-
-
-def post(client: httpx.Client, body: bytes | Iterator[bytes], content_type: str = CONTENT_TYPE) -> tuple[int, str]:
-    answer = client.post("/v1/jobs", content=body, headers={"Content-Type": content_type})
-    return answer.status_code, answer.json().get("code", "")
-
-
-@pytest.mark.parametrize("step", [1, 2, 7, 64, 1000])
-def test_a_form_means_the_same_however_it_is_cut_up(store: JobStore, step: int) -> None:
-    content = b"\r\n--" + bytes(range(256)) + f"\r\n--{BOUNDARY[:-1]}\r\n".encode() * 3
-    body = form(part("parameters", b'{"seed": 1}'), part("mesh", content, '; filename="hand.OFF"'))
-    with store.spool.begin_upload() as upload:
-        reader = FormReader(BOUNDARY.encode(), lambda: upload, 10_000)
-        for start in range(0, len(body), step):
-            reader.feed(body[start : start + step])
-        result = reader.finish()
-        assert (upload.folder / "mesh").read_bytes() == content
-    assert bytes(result.parameters) == b'{"seed": 1}'
-    assert [mesh.file_name for mesh in result.meshes] == ["hand.OFF"]
-
-
-@hypothesis.settings(
-    max_examples=200, deadline=None, suppress_health_check=[hypothesis.HealthCheck.function_scoped_fixture]
-)
-@hypothesis.given(
-    st.lists(
-        st.sampled_from([b"\r\n", b"--" + BOUNDARY.encode(), b"--", b"name=mesh", b": ", b"\0"])
-        | st.binary(max_size=40)
-    )
-)
-def test_whatever_is_sent_is_a_form_or_a_problem(store: JobStore, pieces: list[bytes]) -> None:
-    with store.spool.begin_upload() as upload:
-        reader = FormReader(BOUNDARY.encode(), lambda: upload, 10_000)
-        with suppress(Problem):
-            for piece in [form(part("mesh", b"abc"))[:40], *pieces]:
-                reader.feed(piece)
-            reader.finish()
-
-
-@pytest.mark.parametrize(
-    ("body", "code"),
-    [
-        (form(part("mesh", b"abc"))[:-20], "malformed_request"),
-        (form(), "malformed_request"),
-        (form(part("parameters", b"{}")), "malformed_request"),
-        (form(part("file", b"abc")), "malformed_request"),
-        (form(part("mesh", b"abc"), part("mesh", b"abc")), "malformed_request"),
-        (b"\x00" * 1000, "malformed_request"),
-        (f"--{BOUNDARY}\r\n\r\nabc\r\n--{BOUNDARY}--\r\n".encode(), "malformed_request"),
-        (form(part("mesh", b"")), "invalid_mesh"),
-        (form(part("mesh", b"x" * 200_001)), "too_large"),
-        (form(part("mesh", b"abc"), part("parameters", b" " * 20_000)), "too_large"),
-        (form(part("mesh", b"abc"), part("parameters", b"{")), "invalid_parameters"),
-    ],
-)
-def test_a_form_that_cannot_be_used_is_refused_and_leaves_nothing(
-    client: httpx.Client, settings: Settings, body: bytes, code: str
-) -> None:
-    status, found = post(client, body)
-    assert found == code
-    assert 400 <= status < 500
-    assert traces(settings.data_dir) == []
-    assert list((settings.data_dir / "incoming").iterdir()) == []
-
-
-@pytest.mark.parametrize(
-    ("content_type", "expected"),
-    [
-        ("application/json", (415, "unsupported_media_type")),
-        ("application/x-www-form-urlencoded", (415, "unsupported_media_type")),
-        ("multipart/form-data", (400, "malformed_request")),
-        (f"multipart/form-data; boundary={'b' * 71}", (400, "malformed_request")),
-    ],
-)
-def test_a_body_of_another_kind_is_refused(client: httpx.Client, content_type: str, expected: tuple[int, str]) -> None:
-    assert post(client, form(part("mesh", b"abc")), content_type) == expected
-
-
-def test_an_undeclared_length_is_limited_while_it_streams(client: httpx.Client, settings: Settings) -> None:
-    sent = 0
-
-    def endless() -> Iterator[bytes]:
-        nonlocal sent
-        yield part("mesh", b"")[:-2]
-        for _ in range(100):
-            sent += 1
-            yield b"x" * 10_000
-
-    assert post(client, endless()) == (413, "too_large")
-    assert traces(settings.data_dir) == []
-
-
-def request_of(chunks: list[bytes], **headers: str) -> Request:
-    """A request whose client goes away after these chunks."""
-    messages = [{"type": "http.request", "body": chunk, "more_body": True} for chunk in chunks]
-    messages.append({"type": "http.disconnect"})
-    source = iter(messages)
-
-    async def receive() -> dict[str, object]:
-        return next(source)
-
-    raw = [(name.replace("_", "-").encode(), value.encode()) for name, value in headers.items()]
-    return Request({"type": "http", "method": "POST", "headers": raw}, receive)
-
-
-def test_a_client_that_goes_away_leaves_nothing(store: JobStore, tmp_path: Path) -> None:
-    request = request_of([part("mesh", b"half of a mesh")], content_type=CONTENT_TYPE, transfer_encoding="chunked")
-
-    async def receive() -> None:
-        with store.spool.begin_upload() as upload:
-            await receive_mesh(request, LIMITED, lambda: upload)
-
-    with pytest.raises(ClientDisconnect):
-        asyncio.run(receive())
-    assert list((tmp_path / "data" / "incoming").iterdir()) == []
-
-
-@pytest.mark.parametrize("length", ["10000000", "9" * 5000])
-def test_a_declared_length_is_refused_before_the_body_is_read(store: JobStore, length: str) -> None:
-    request = request_of([], content_type=CONTENT_TYPE, content_length=length)
-
-    async def receive() -> None:
-        with store.spool.begin_upload() as upload:
-            await receive_mesh(request, LIMITED, lambda: upload)
-
-    with pytest.raises(Problem, match="larger than"):
-        asyncio.run(receive())
 
 
 @pytest.mark.parametrize(
@@ -175,7 +28,7 @@ def test_a_declared_length_is_refused_before_the_body_is_read(store: JobStore, l
         ("model.exe", None),
     ],
 )
-def test_a_file_name_is_a_hint_at_the_format_and_nothing_else(name: str | None, expected: str | None) -> None:
+def test_the_extension_of_a_file_name_declares_the_format(name: str | None, expected: str | None) -> None:
     assert mesh_format(name) == expected
 
 
@@ -229,10 +82,10 @@ def test_a_file_name_is_shown_without_what_could_do_harm(name: str | None, label
         b'{"unknown": 1}',
     ],
 )
-def test_parameters_that_cannot_be_used_are_refused(client: httpx.Client, text: bytes) -> None:
+def test_invalid_parameters_are_refused(client: httpx.Client, text: bytes) -> None:
     with pytest.raises(InvalidParameters):
         parse_parameters(text)
-    status, code = post(client, form(part("mesh", b"abc"), part("parameters", text)))
+    status, code = post_form(client, form(part("mesh", b"abc"), part("parameters", text)))
     assert (status, code) == (422, "invalid_parameters")
 
 
@@ -262,50 +115,26 @@ def test_the_body_can_be_the_mesh_itself(
         assert mesh.read() == b"abc"
 
 
-def test_parameters_can_stand_in_the_query(client: httpx.Client) -> None:
+def test_parameters_can_be_given_in_the_query(client: httpx.Client) -> None:
     answer = client.post("/v1/jobs", content=b"abc", params={"parameters": '{"seed": 9}'})
     assert answer.json()["parameters"]["seed"] == 9
     refused = client.post("/v1/jobs", content=b"abc", params={"parameters": '{"seed": -9}'})
     problem(refused, 422, "invalid_parameters")
 
 
-def test_a_raw_body_is_limited_and_leaves_nothing(client: httpx.Client, settings: Settings) -> None:
+def test_parameters_in_form_and_query_are_refused(client: httpx.Client) -> None:
+    answer = client.post(
+        "/v1/jobs",
+        params={"parameters": '{"max_segments": 5}'},
+        data={"parameters": '{"max_segments": 6}'},
+        files={"mesh": ("mesh.off", b"abc")},
+    )
+    problem(answer, 422, "invalid_parameters")
+
+
+def test_a_refused_body_leaves_no_files(client: httpx.Client, settings: Settings) -> None:
     problem(raw(client, b"x" * 200_001), 413, "too_large")
     problem(client.post("/v1/jobs", content=iter([b"x" * 100_000] * 3)), 413, "too_large")
     problem(raw(client, b""), 422, "invalid_mesh")
     problem(raw(client, b"abc", "/v1/jobs?format=exe"), 415, "unsupported_media_type")
     assert list((settings.data_dir / "incoming").iterdir()) == []
-
-
-def test_a_request_without_a_body_is_told_so(store: JobStore) -> None:
-    request = request_of([], content_type=CONTENT_TYPE)
-
-    async def receive() -> None:
-        with store.spool.begin_upload() as upload:
-            await receive_mesh(request, LIMITED, lambda: upload)
-
-    with pytest.raises(Problem, match="no body") as refused:
-        asyncio.run(receive())
-    assert refused.value.code == "length_required"
-
-
-def slow_request(pause_s: float) -> Request:
-    """A request that sends a byte after every pause, for ever."""
-
-    async def receive() -> dict[str, object]:
-        await asyncio.sleep(pause_s)
-        return {"type": "http.request", "body": b"x", "more_body": True}
-
-    return Request({"type": "http", "method": "POST", "headers": [(b"transfer-encoding", b"chunked")]}, receive)
-
-
-@pytest.mark.parametrize("pause_s", [60.0, 0.01])
-def test_a_client_that_sends_hardly_anything_is_given_up(store: JobStore, tmp_path: Path, pause_s: float) -> None:
-    async def receive() -> None:
-        with store.spool.begin_upload() as upload:
-            await receive_mesh(slow_request(pause_s), LIMITED, lambda: upload)
-
-    with pytest.raises(Problem, match="slow") as refused:
-        asyncio.run(receive())
-    assert refused.value.code == "too_slow"
-    assert list((tmp_path / "data" / "incoming").iterdir()) == []
