@@ -10,7 +10,7 @@ from segcore.io.formats import declared_format, detect_format
 from segcore.io.gltf.reader import read_gltf
 from segcore.io.limits import ReadLimits
 from segcore.io.obj.reader import read_obj
-from segcore.io.off import read_off
+from segcore.io.off.reader import read_off
 from segcore.io.ply.reader import read_ply
 from segcore.io.source import read_source
 from segcore.io.stl.reader import read_stl
