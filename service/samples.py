@@ -1,9 +1,11 @@
 """Sample meshes of the page, made with :mod:`segcore.shapes`."""
 
+import io
 from collections.abc import Callable
 
 import numpy as np
 
+from segcore.io import write_mesh
 from segcore.mesh import Mesh
 from segcore.shapes import Shape, burr, dumbbell, joined, revolve
 
@@ -18,7 +20,10 @@ _PAWN = (  # (height, radius) of the corners of its outline, by part, from the f
 
 def sample_ply(name: str) -> bytes:
     """Return a sample as binary PLY; errors as in :func:`sample_shape`."""
-    return _ply(sample_shape(name).mesh)
+    mesh = sample_shape(name).mesh
+    target = io.BytesIO()
+    write_mesh(target, Mesh(mesh.vertices.astype(np.float32), mesh.faces), "ply")
+    return target.getvalue()
 
 
 def sample_shape(name: str) -> Shape:
@@ -60,17 +65,6 @@ def _stool() -> Shape:
 
 def _moved(mesh: Mesh, by: tuple[float, float, float]) -> Mesh:
     return Mesh(mesh.vertices + np.array(by), mesh.faces)
-
-
-def _ply(mesh: Mesh) -> bytes:
-    header = (
-        f"ply\nformat binary_little_endian 1.0\nelement vertex {len(mesh.vertices)}\n"
-        "property float x\nproperty float y\nproperty float z\n"
-        f"element face {len(mesh.faces)}\nproperty list uchar int vertex_indices\nend_header\n"
-    )
-    faces = np.empty(len(mesh.faces), dtype=[("corners", "u1"), ("vertices", "<i4", 3)])
-    faces["corners"], faces["vertices"] = 3, mesh.faces
-    return header.encode("ascii") + mesh.vertices.astype("<f4").tobytes() + faces.tobytes()
 
 
 _SHAPES: dict[str, Callable[[], Shape]] = {"jack": burr, "pawn": _pawn, "dumbbell": dumbbell, "stool": _stool}

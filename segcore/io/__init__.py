@@ -1,14 +1,16 @@
 """Read meshes and write segmentations; no other package knows a file format.
 
 Everything that the service, the worker and the command line use is exported here: the formats that can be read
-(``FORMATS``, ``read_mesh``, ``ReadLimits``), the formats that can be written (``WRITERS``, ``writer_for``), the writers
-by name, labels and the hierarchy as JSON values, ``.cleave`` files, and pictures.
+(``FORMATS``, ``read_mesh``, ``ReadLimits``), the formats of segmentations (``WRITERS``, ``writer_for`` and their
+functions by name), plain meshes (``write_mesh``), labels and the hierarchy as JSON values, ``.cleave`` files
+(``write_result``, ``read_result``) and pictures (``draw``, ``write_png``).
 """
 
 from segcore.io.formats import FORMATS, Format, declared_format
 from segcore.io.gltf.writer import write_glb
 from segcore.io.labels import hierarchy_document, labels_document, runs_document, write_json, write_npy, write_seg
 from segcore.io.limits import ReadLimits
+from segcore.io.mesh_writer import write_mesh
 from segcore.io.names import SegmentNames
 from segcore.io.obj.writer import write_obj
 from segcore.io.parts.writer import PartFormat, write_parts
@@ -40,6 +42,7 @@ __all__ = [
     "write_3mf",
     "write_glb",
     "write_json",
+    "write_mesh",
     "write_npy",
     "write_obj",
     "write_parts",
