@@ -21,7 +21,7 @@ from worker.jobs.store.batches import BatchStore
 from worker.jobs.store.installation_secret import InstallationSecret
 from worker.jobs.store.store import JobStore
 
-_RETRY_AFTER_S = 1.0
+_RETRY_AFTER_S = 1.0  # set by hand
 
 
 @dataclass(slots=True)

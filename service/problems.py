@@ -64,6 +64,7 @@ _CODES: dict[str, tuple[int, str]] = {
 }
 STATUS = {code: status for code, (status, _) in _CODES.items()}
 MEANING = {code: sentence for code, (_, sentence) in _CODES.items()}
+# Of the header Retry-After; set by hand.
 _RETRY_AFTER_S = {"not_finished": 1, "queue_unavailable": 5, "store_unavailable": 5, "insufficient_storage": 60}
 
 

@@ -73,6 +73,6 @@ def _as_binary(target: object) -> BinaryIO:
 
 
 def _folder_name(job: Job) -> str:
-    """Return the file name with ASCII alphanumerics, hyphens and underscores only, which every archive program accepts."""
+    """Return the file name with ASCII alphanumerics, hyphens and underscores only: safe in every archive program."""
     stem = (job.file_name or job.id).rpartition(".")[0] or (job.file_name or job.id)
     return "".join(sign if sign.isascii() and (sign.isalnum() or sign in "-_") else "_" for sign in stem)[:80]

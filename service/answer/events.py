@@ -13,9 +13,9 @@ from service.lookup import describe
 from worker.jobs.job import Job, now
 from worker.jobs.store.store import UnknownJob
 
-_POLL_S = 0.2  # between two reads of the state of the job
-_KEEP_ALIVE_S = 15.0  # without an event; then a comment keeps proxies from closing the connection
-_RETRY_MS = 1000  # after which a client reconnects
+_POLL_S = 0.2  # between two reads of the state of the job; set by hand
+_KEEP_ALIVE_S = 15.0  # until a comment is sent, so that proxies keep the connection, as the HTML standard advises
+_RETRY_MS = 1000  # after which a client reconnects; set by hand
 EVENT_SCHEMA = {
     "type": "object",
     "required": ["id", "event", "data"],

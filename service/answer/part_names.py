@@ -9,7 +9,7 @@ from fastapi import Depends, Query
 from segcore.errors import InvalidParameters
 
 _NAME = re.compile(r"([0-9]{1,5}):(\S.*)", re.DOTALL)
-_MAX_LENGTH = 200  # characters, with the label
+_MAX_LENGTH = 200  # characters, with the label; set by hand
 
 
 async def _names(

@@ -15,7 +15,7 @@ from service.lookup import RESULT_PROBLEMS
 from service.problems import Problem, documented
 
 # Results never change, but access to them does, so that shared caches must not store them.
-FOR_EVER = "private, max-age=31536000, immutable"
+IMMUTABLE = "private, max-age=31536000, immutable"
 _RESULT_HEADERS = {
     "ETag": {"schema": {"type": "string"}, "description": "Identifies these bytes; for If-None-Match and If-Range."},
     "Accept-Ranges": {"schema": {"const": "bytes"}},
@@ -28,7 +28,7 @@ LEVEL_PROBLEMS = ("invalid_parameters", "invalid_request")  # codes for a level 
 NOT_MODIFIED = "Not modified: If-None-Match contains its ETag."
 # Media types that compress well and fast; models and pictures do not.
 _COMPRESSIBLE = re.compile(r"text/.*|application/(.*\+)?json|application/x-npy|application/octet-stream")
-_GZIP_LEVEL = 1
+_GZIP_LEVEL = 1  # the fastest, because results are compressed for every response
 _NO_QUALITY = re.compile(r"q\s*=\s*0(\.0*)?", re.IGNORECASE)
 _ONE_RANGE = re.compile(r"bytes=(\d{0,18})-(\d{0,18})", re.ASCII)
 
@@ -70,7 +70,7 @@ def answer_rendition(request: Request, rendition: Rendition) -> Response:
     # Ranges refer to the uncompressed bytes: most clients would not recognize a piece of a compressed file as one.
     is_gzip = compressible and "range" not in request.headers and takes_gzip(request.headers.get("accept-encoding", ""))
     tag = entity_tag(f"{rendition.identity}{';gzip' if is_gzip else ''}".encode())
-    headers = {"ETag": tag, "Cache-Control": FOR_EVER, "Accept-Ranges": "bytes"}
+    headers = {"ETag": tag, "Cache-Control": IMMUTABLE, "Accept-Ranges": "bytes"}
     varies_by = [rendition.vary, "Accept-Encoding" if compressible else None]
     if any(varies_by):
         headers["Vary"] = ", ".join(filter(None, varies_by))

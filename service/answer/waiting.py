@@ -7,10 +7,10 @@ from starlette.concurrency import run_in_threadpool
 
 from worker.jobs.store.store import JobStore
 
-_SHORTEST_PAUSE_S, _LONGEST_PAUSE_S = 0.01, 0.25
-# The pause between two checks is this fraction of the time waited, so that an answer is late by at most a hundredth of
-# the duration of the job. Set by hand.
+# The pause between two checks is a fraction of the time waited, so that a response is late by at most a hundredth of
+# the duration of a job, within limits. Set by hand.
 _PAUSE_FRACTION = 1 / 100
+_SHORTEST_PAUSE_S, _LONGEST_PAUSE_S = 0.01, 0.25
 
 
 async def wait_for_end(store: JobStore, job_id: str, at_most_s: float) -> bool:

@@ -7,7 +7,7 @@ from typing import Annotated, BinaryIO
 from fastapi import APIRouter, Query, Request
 from starlette.responses import Response, StreamingResponse
 
-from service.answer.renditions import FOR_EVER, NOT_MODIFIED, entity_tag, is_current
+from service.answer.renditions import IMMUTABLE, NOT_MODIFIED, entity_tag, is_current
 from service.context import ContextOf
 from service.guard.callers import CallerOf
 from service.lookup import RESULT_PROBLEMS, JobId, check_succeeded, find_job
@@ -43,7 +43,7 @@ def get_result_file(
     """The mesh and its hierarchy in one file, which `cleave convert` converts to other formats."""
     job = find_job(context, caller, job_id)
     check_succeeded(context, job)
-    headers = {"ETag": entity_tag(f"{job.id}/result.cleave".encode()), "Cache-Control": FOR_EVER}
+    headers = {"ETag": entity_tag(f"{job.id}/result.cleave".encode()), "Cache-Control": IMMUTABLE}
     if is_current(request, headers["ETag"]):
         return Response(status_code=304, headers=headers)
     url = context.store.results.presigned_url(job.id, _URL_VALID_S) if redirect else None

@@ -7,7 +7,7 @@ from typing import Annotated, Any, Literal
 from fastapi import APIRouter, Depends, Query
 from starlette.responses import Response
 
-from segcore.io import Writer
+from segcore.io import PartFormat, WriteOption, Writer
 from service.answer.model_formats import MODELS, model_file, operation_name
 from service.answer.models import PNG, model_rendition, preview_rendition
 from service.answer.part_names import PartNames
@@ -19,7 +19,7 @@ router = APIRouter(prefix="/v1/jobs/{job_id}", tags=["models"])
 _BINARY = {"schema": {"type": "string", "format": "binary"}}
 
 # The query parameters for the options of writers: types and defaults.
-_OPTIONS: dict[str, tuple[Any, object]] = {
+OPTIONS: dict[WriteOption, tuple[Any, object]] = {
     "all_levels": (
         Annotated[
             Literal["all"] | None,
@@ -38,7 +38,7 @@ _OPTIONS: dict[str, tuple[Any, object]] = {
         False,
     ),
     "part_format": (
-        Annotated[Literal["stl", "obj"], Query(description="The format of the files of the parts.")],
+        Annotated[PartFormat, Query(description="The format of the files of the parts.")],
         "stl",
     ),
     "capped": (Annotated[bool, Query(description="Close every part at its cuts, for printing.")], False),
@@ -55,7 +55,7 @@ def _options_of(writer: Writer) -> Callable[..., Awaitable[dict[str, Any]]]:
 
     parameters = [
         Parameter(name, Parameter.KEYWORD_ONLY, default=default, annotation=annotation)
-        for name, (annotation, default) in _OPTIONS.items()
+        for name, (annotation, default) in OPTIONS.items()
         if name in writer.options
     ]
     read.__signature__ = Signature(parameters)  # type: ignore[attr-defined]

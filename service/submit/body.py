@@ -10,7 +10,7 @@ from python_multipart.multipart import parse_options_header
 from cleave.settings import Settings
 from service.problems import Problem
 
-_CHUNK_BYTES = 1024 * 1024
+_CHUNK_BYTES = 1024 * 1024  # handed to a thread at a time; set by hand
 
 
 def media_type(request: Request) -> str:

@@ -11,6 +11,8 @@ import matplotlib.image
 import pytest
 
 from helpers.api import FACES, problem
+from service.answer.model_formats import MODELS
+from service.routes.models import OPTIONS
 
 
 def test_the_model_is_a_glb_of_the_segments(client: httpx.Client, finished_job: Callable[..., str]) -> None:
@@ -74,3 +76,7 @@ def test_the_preview_shows_the_segments(client: httpx.Client, finished_job: Call
     assert client.get(f"{path}/preview.png", params={"segments": 5, "size": 64}).content != answer.content
     problem(client.get(f"{path}/preview.png", params={"size": 100_000}), 422, "invalid_request")
     problem(client.get(f"{path}/preview.png", params={"segments": FACES}), 422, "invalid_parameters")
+
+
+def test_every_option_of_a_writer_is_a_query_parameter() -> None:
+    assert {option for writer in MODELS.values() for option in writer.options} == {"names", *OPTIONS}
