@@ -8,6 +8,7 @@ makes one. It needs root, and leaves nothing mounted.
 
 import argparse
 import http.client
+import io
 import json
 import os
 import shutil
@@ -20,6 +21,7 @@ from pathlib import Path
 from typing import Any
 
 from deploy.image_build import Builder, BuiltStage
+from segcore.io import write_mesh
 from segcore.shapes import burr
 
 _WORK = "CLEAVE_IMAGE_CHECK_WORK"
@@ -99,11 +101,9 @@ def _examine(image: BuiltStage, environment: dict[str, str]) -> None:
 
 def burr_in_off() -> bytes:
     """A ball with six arms."""
-    mesh = burr().mesh
-    lines = [f"OFF\n{len(mesh.vertices)} {len(mesh.faces)} 0"]
-    lines += [" ".join(f"{number:.6f}" for number in vertex) for vertex in mesh.vertices]
-    lines += ["3 " + " ".join(str(index) for index in face) for face in mesh.faces]
-    return "\n".join(lines).encode()
+    target = io.BytesIO()
+    write_mesh(target, burr().mesh, "off")
+    return target.getvalue()
 
 
 def _wait_until_ready(process: "subprocess.Popen[bytes]") -> None:

@@ -14,6 +14,7 @@ _SECONDS = {
     "cut": (0.36, 0.0),
     "label": (0.0, 0.95),
 }
+STAGES = tuple(_SECONDS)  # in order
 
 
 class Progress:

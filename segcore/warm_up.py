@@ -2,7 +2,7 @@
 
 from segcore.io.limits import ReadLimits
 from segcore.io.obj.reader import read_obj
-from segcore.io.off import read_off
+from segcore.io.off.reader import read_off
 from segcore.io.picture import draw
 from segcore.method import segment
 from segcore.shapes import burr, icosphere, joined

@@ -1,4 +1,4 @@
-"""The application: routes, errors and the OpenAPI document around one context."""
+"""The application: routes, middleware, error handlers and OpenAPI document."""
 
 from fastapi import FastAPI
 from starlette.middleware.cors import CORSMiddleware
@@ -47,8 +47,8 @@ _ROUTES = (
 
 
 def create_app(settings: Settings) -> FastAPI:
-    """The service over the store and the queue that the settings name; ``redis_url`` must be set."""
-    assert settings.redis_url, "the settings of an application have a redis_url"
+    """Return the application for some settings; ``redis_url`` must be set."""
+    assert settings.redis_url, "redis_url must be set"
     app = FastAPI(
         title="Cleave",
         summary="Cuts a 3D mesh into the parts that a person would name.",

@@ -1,4 +1,4 @@
-"""What the routes work with: the store, the queue and the opened results of one application."""
+"""The state of one application that its routes share: settings, store, queue, caches and metrics."""
 
 import time
 from dataclasses import dataclass, field
@@ -21,32 +21,35 @@ from worker.jobs.store.batches import BatchStore
 from worker.jobs.store.installation_secret import InstallationSecret
 from worker.jobs.store.store import JobStore
 
-_PAUSE_S = 1.0
+_RETRY_AFTER_S = 1.0  # set by hand
 
 
 @dataclass(slots=True)
 class QueueView:
-    """The queue for readers who can do without: one that does not answer is left alone for a moment.
+    """Read access to the queue for callers that can do without it.
 
-    So a hung queue server holds up one reader a second, not all of them.
+    If Redis does not answer, return no activity and retry after one second. A Redis server that hangs then delays one
+    reader per second instead of all of them.
     """
 
     queue: JobQueue
-    _asleep_until: float = field(default=0.0, init=False)
+    _retry_at: float = field(default=0.0, init=False)  # on the monotonic clock
 
     def activities(self, job_ids: list[str]) -> dict[str, Activity]:
-        """What the queue knows about some jobs; nothing where it does not answer."""
-        if not job_ids or time.monotonic() < self._asleep_until:
+        """Return the activity of each job in the queue, by job id; empty if Redis does not answer."""
+        if not job_ids or time.monotonic() < self._retry_at:
             return {}
         try:
             return self.queue.activities(job_ids)
         except QueueError:
-            self._asleep_until = time.monotonic() + _PAUSE_S
+            self._retry_at = time.monotonic() + _RETRY_AFTER_S
             return {}
 
 
 @dataclass(frozen=True, slots=True)
 class Context:
+    """The shared state of one application."""
+
     settings: Settings
     version: str  # of the software
     store: JobStore
@@ -61,10 +64,11 @@ class Context:
     batches: BatchStore
 
     def admit(self, owner: str | None, new: Job | None = None) -> None:
+        """Move waiting jobs of an owner into the queue, as many as the owner may have there."""
         admit(self.store, self.queue, self.settings, owner, new)
 
     def cancel(self, job: Job) -> Outcome:
-        """End a job that has not ended; the outcome that stands."""
+        """End a job unless it has ended, and return its outcome."""
         canceled = Canceled(finished_at=now())
         outcome = self.store.finish(job.id, canceled)
         if isinstance(outcome, Canceled) and self.withdraw(job) and outcome.finished_at == canceled.finished_at:
@@ -72,18 +76,18 @@ class Context:
         return outcome
 
     def discard(self, job: Job) -> None:
-        """Remove a job with its files; one that has not finished is canceled first."""
+        """Delete a job and its files; an unfinished job is canceled first."""
         try:
             self.cancel(job)
         except OSError as error:
-            if not is_disk_full(error):  # what makes room must be possible then
+            if not is_disk_full(error):  # deleting must be possible on a full disk
                 raise
         self.store.delete(job.id)
         self.results.drop(job.id)
         self.withdraw(job)
 
     def withdraw(self, job: Job) -> bool:
-        """Take a job that is no longer wanted out of the queue; where that fails, the worker drops it that takes it."""
+        """Remove a job from the queue. Return False if that fails; the worker that dequeues the job then drops it."""
         try:
             self.queue.forget(job.id)
             self.admit(job.owner)

@@ -1,4 +1,4 @@
-"""What the service answers, as types: the OpenAPI document is made of them."""
+"""Models of the JSON documents of the API, from which its OpenAPI document is made."""
 
 from datetime import datetime
 from typing import Any, Literal
@@ -6,19 +6,23 @@ from typing import Any, Literal
 from pydantic import BaseModel, Field
 
 from segcore.report import MeshReport
+from service.answer.model_formats import model_links
 from service.problems import JobError
 from worker.jobs.attempts import Attempt
 from worker.jobs.job import Canceled, Failed, Job, Outcome, Succeeded
 from worker.jobs.queue.queue import Activity
+from worker.process.progress import REPORTED_STAGES
 
 Status = Literal["queued", "running", "succeeded", "failed", "canceled"]
 
 
 class InputDocument(BaseModel):
-    """The file that was sent."""
+    """The uploaded mesh file."""
 
-    file_name: str | None = Field(description="What the client calls it.", examples=["hand.off"])
-    format: str | None = Field(description="What its name or type says; null: told from its content.", examples=["off"])
+    file_name: str | None = Field(description="Its name at the client.", examples=["hand.off"])
+    format: str | None = Field(
+        description="Declared by its name or type; null if it is detected from the content.", examples=["off"]
+    )
     size_bytes: int = Field(examples=[274_139])
     sha256: str = Field(description="Of its bytes, in hexadecimal.")
 
@@ -26,18 +30,20 @@ class InputDocument(BaseModel):
 class MeshSummary(BaseModel):
     faces: int = Field(examples=[12_000])
     vertices: int = Field(examples=[6_002])
-    report: MeshReport | None = Field(description="What was found in the mesh; null in jobs of earlier versions.")
+    report: MeshReport | None = Field(description="Properties of the mesh; null in jobs of earlier versions.")
 
 
 class JobLinks(BaseModel):
-    """Paths on this server; those of the results answer once the job has succeeded."""
+    """Paths on this server; results are available when the job has succeeded."""
 
     self: str
     events: str
     cancel: str
     labels: str
     hierarchy: str
-    model: str = Field(description="A coloured GLB; ?segments=k for another level, ?levels=all for all in one file.")
+    model: str = Field(
+        description="A coloured GLB; ?segments=k for another level, ?levels=all for all levels in one file."
+    )
     ply: str
     obj: str
     threemf: str
@@ -48,36 +54,38 @@ class JobLinks(BaseModel):
 class JobDocument(BaseModel):
     id: str = Field(examples=["5f1c5d1d2c0f4e0fa8f0b4b2f1a9d6c3"])
     status: Status
-    stage: str | None = Field(description="What a running job is doing.", examples=["cut"])
-    progress: float = Field(ge=0, le=1, description="The part of the work that is done.")
-    queue_position: int | None = Field(description="Of a job that waits: 1 is next. Null where it is not known.")
+    stage: str | None = Field(
+        description=f"Stage of a running job: one of {', '.join(REPORTED_STAGES)}.", examples=["cut"]
+    )
+    progress: float = Field(ge=0, le=1, description="Fraction of the work that is done.")
+    queue_position: int | None = Field(description="Position of a waiting job: 1 is next. Null if it is not known.")
     created_at: datetime
-    started_at: datetime | None = Field(description="When the latest attempt began.")
+    started_at: datetime | None = Field(description="Start of the latest attempt.")
     finished_at: datetime | None
-    attempts: int = Field(description="How often the job was begun.")
+    attempts: int = Field(description="Number of times the job was started.")
     input: InputDocument
-    parameters: dict[str, Any] = Field(description="Every parameter of the segmentation, defaults included.")
-    mesh: MeshSummary | None = Field(description="Known when the job has succeeded.")
-    max_segments: int | None = Field(description="The largest number of segments that can be asked for.")
-    automatic_segments: int | None = Field(description="The number of segments where none is asked for.")
-    error: JobError | None = Field(description="Why the job failed.")
+    parameters: dict[str, Any] = Field(description="All parameters of the segmentation, including defaults.")
+    mesh: MeshSummary | None = Field(description="Null until the job has succeeded.")
+    max_segments: int | None = Field(description="The largest possible number of segments.")
+    automatic_segments: int | None = Field(description="The number of segments if a request gives none.")
+    error: JobError | None = Field(description="The reason why the job failed.")
     links: JobLinks
 
 
 class JobPageDocument(BaseModel):
-    jobs: list[JobDocument] = Field(description="Newest first; may be fewer than asked for while there are more.")
-    next_cursor: str | None = Field(description="To be sent as cursor for the jobs that follow; null at the end.")
+    jobs: list[JobDocument] = Field(description="Newest first; may be fewer than the limit although more jobs follow.")
+    next_cursor: str | None = Field(description="Send it as cursor to get the next page; null on the last page.")
 
 
 class SubmittedJobDocument(JobDocument):
-    """A job as it was submitted; with its labels where the client waited for it and it succeeded."""
+    """A submitted job, with its labels if the client waited for it and it succeeded."""
 
     segments: int | None = Field(description="The number of segments of these labels.")
-    labels: list[int] | None = Field(description="For every face, in the order of the file, its segment.")
+    labels: list[int] | None = Field(description="The segment of every face, in the order of the file.")
 
 
 class BatchJobs(BaseModel):
-    """Jobs that are to be a batch."""
+    """Jobs to be combined into a batch."""
 
     jobs: list[str] = Field(min_length=1, description="Ids of jobs.")
 
@@ -93,21 +101,21 @@ class BatchedJob(BaseModel):
 
 class BatchLinks(BaseModel):
     self: str
-    results: str = Field(description="A ZIP archive, when the batch is finished.")
+    results: str = Field(description="A ZIP archive, available when the batch is finished.")
 
 
 class BatchDocument(BaseModel):
     id: str
-    status: Literal["running", "finished"] = Field(description="Finished when every job has ended, however.")
+    status: Literal["running", "finished"] = Field(description="Finished when every job has ended, with any status.")
     created_at: datetime
     counts: dict[str, int] = Field(description="Jobs by status.", examples=[{"succeeded": 98, "running": 2}])
-    jobs: list[BatchedJob] = Field(description="In the order in which they were sent.")
+    jobs: list[BatchedJob] = Field(description="In the order of the request.")
     links: BatchLinks
 
 
 class LabelsDocument(BaseModel):
     segments: int
-    labels: list[int] = Field(description="For every face, in the order of the file, its segment 0..segments-1.")
+    labels: list[int] = Field(description="The segment 0..segments-1 of every face, in the order of the file.")
 
 
 class RunsDocument(BaseModel):
@@ -120,55 +128,56 @@ class RunsDocument(BaseModel):
 
 
 class HierarchyNode(BaseModel):
-    """A segment at some level. Node 0 is the whole mesh."""
+    """A segment of some levels. Node 0 is the whole mesh."""
 
     id: int
     parent: int | None
-    children: list[int] = Field(description="Two, the larger first, or none.")
+    children: list[int] = Field(description="Two nodes, the larger one first, or none.")
     level: int = Field(description="The smallest number of segments at which the node is a segment.")
-    label: int = Field(description="Its label wherever it is a segment.")
+    label: int = Field(description="Its label at every level at which it is a segment.")
     area: float = Field(description="In squared units of the mesh.")
     faces: int
     cut_value: float | None = Field(description="Of the cut that splits the node; null for a leaf.")
 
 
 class CurvePoint(BaseModel):
-    """What one segment more costs."""
+    """The cost of one more segment."""
 
-    segments: int = Field(description="The number of segments that the cut leads to, 2 or more.")
+    segments: int = Field(description="The number of segments after the cut, 2 or more.")
     cut_value: float | None = Field(
-        description="Normalized cut times the square root of the surface area: low where a part ends, 0 where "
-        "components part, high where the cut is arbitrary."
+        description="Normalized cut times the square root of the surface area: low at the end of a part, 0 between "
+        "components, high if the cut is arbitrary."
     )
-    node: int = Field(description="The node that is cut.")
+    node: int = Field(description="The node that is split.")
 
 
 class HierarchyDocument(BaseModel):
     max_segments: int
     automatic_segments: int
-    cut_values: list[float | None] = Field(description="Entry i is of the cut from i + 1 to i + 2 segments.")
-    curve: list[CurvePoint] = Field(description="The same, by number of segments: where it jumps, cuts get arbitrary.")
+    cut_values: list[float | None] = Field(description="Entry i belongs to the cut from i + 1 to i + 2 segments.")
+    curve: list[CurvePoint] = Field(description="The same by number of segments: cuts after a jump are arbitrary.")
     nodes: list[HierarchyNode]
 
 
 class FormatDocument(BaseModel):
-    name: str = Field(description="As in ?format=.", examples=["stl"])
+    name: str = Field(description="The value of ?format=.", examples=["stl"])
     title: str = Field(examples=["STL"])
     extensions: list[str]
-    media_types: list[str] = Field(description="Those that a Content-Type may say; the usual one first.")
+    media_types: list[str] = Field(description="Possible values of Content-Type, the usual one first.")
 
 
 class FormatsDocument(BaseModel):
-    meshes: list[FormatDocument] = Field(description="What can be sent, also compressed with gzip.")
-    labels: list[FormatDocument] = Field(description="What labels can be fetched as.")
-    models: list[FormatDocument] = Field(description="What the segmented mesh can be fetched as.")
+    meshes: list[FormatDocument] = Field(description="Formats of uploads, also compressed with gzip.")
+    labels: list[FormatDocument] = Field(description="Formats of labels.")
+    models: list[FormatDocument] = Field(description="Formats of the segmented mesh.")
     max_upload_bytes: int
     max_faces: int
 
 
 class WebhookSecret(BaseModel):
     secret: str = Field(
-        description="For any library of Standard Webhooks.", examples=["whsec_MfKQ9r8GKYqrTwjUPD8ILPZIo2LaLaSw"]
+        description="The signing secret, for any library of Standard Webhooks.",
+        examples=["whsec_MfKQ9r8GKYqrTwjUPD8ILPZIo2LaLaSw"],
     )
 
 
@@ -179,13 +188,13 @@ class Health(BaseModel):
 class Readiness(BaseModel):
     ready: bool
     queue: bool = Field(description="The queue server answers.")
-    store: bool = Field(description="The store can be written.")
-    workers: int = Field(description="Workers that are alive.")
-    missing: list[str] = Field(description="What keeps the service from being ready, in sentences.")
+    store: bool = Field(description="The store is writable.")
+    workers: int = Field(description="Number of live workers.")
+    missing: list[str] = Field(description="Reasons why the service is not ready, one sentence each.")
 
 
 def job_document(job: Job, outcome: Outcome | None, attempts: list[Attempt], activity: Activity | None) -> JobDocument:
-    """What clients are told about a job; ``activity`` is None where the queue does not answer."""
+    """Return the document of a job; ``activity`` is None if the queue does not answer."""
     is_running = outcome is None and _is_running(attempts, activity)
     progress = activity.progress if activity is not None and is_running else None
     return JobDocument(
@@ -202,7 +211,7 @@ def job_document(job: Job, outcome: Outcome | None, attempts: list[Attempt], act
             file_name=job.file_name, format=job.mesh_format, size_bytes=job.size_bytes, sha256=job.sha256
         ),
         parameters=job.parameters,
-        links=_links(job.id),
+        links=_links(f"/v1/jobs/{job.id}"),
         **_result_fields(outcome),
     )
 
@@ -225,18 +234,13 @@ def _result_fields(outcome: Outcome | None) -> dict[str, Any]:
             return fields
 
 
-def _links(job_id: str) -> JobLinks:
-    path = f"/v1/jobs/{job_id}"
+def _links(path: str) -> JobLinks:
     return JobLinks(
         self=path,
         events=f"{path}/events",
         cancel=f"{path}/cancel",
         labels=f"{path}/labels",
         hierarchy=f"{path}/hierarchy",
-        model=f"{path}/model.glb",
-        ply=f"{path}/model.ply",
-        obj=f"{path}/model.obj",
-        threemf=f"{path}/model.3mf",
-        parts=f"{path}/parts.zip",
         preview=f"{path}/preview.png",
+        **model_links(path),
     )

@@ -1,4 +1,4 @@
-"""API keys: who may use this installation, and under which name. Keys are never stored, only their digests."""
+"""API keys and the names of their owners. Only the digests of keys are stored."""
 
 import hashlib
 import hmac
@@ -16,7 +16,7 @@ _ENTRY = re.compile(rf"({_NAME.pattern})[:\s]+([0-9a-f]{{64}})", re.ASCII)
 
 @dataclass(slots=True)
 class KeyRing:
-    """The keys of the settings and of the file that they name, which may change while the service runs."""
+    """The API keys of the settings and of the key file, which may change while the service runs."""
 
     fixed: dict[str, str]  # name -> SHA-256 of the key, in hexadecimal
     file: Path | None = None
@@ -24,7 +24,7 @@ class KeyRing:
     _read_at_ns: int = field(default=-1, init=False)
 
     def owner_of(self, key: str) -> str | None:
-        """The name of a key; None where it is none. Takes as long whichever it is."""
+        """Return the name of the owner of a key, None if it is unknown; the run time does not depend on the key."""
         digest = key_digest(key)
         found = None
         for name, known in self.all().items():
@@ -33,6 +33,7 @@ class KeyRing:
         return found
 
     def all(self) -> dict[str, str]:
+        """Return the digests of all keys by name; the file is read again if it has changed."""
         if self.file is not None:
             changed_at_ns = self.file.stat().st_mtime_ns
             if changed_at_ns != self._read_at_ns:
@@ -42,12 +43,12 @@ class KeyRing:
 
 
 def key_ring(settings: Settings) -> KeyRing:
-    """The keys that the settings name.
+    """Return the keys of the settings.
 
     Raises
     ------
     InvalidSettings
-        Where an entry is not a name and a digest, or the file cannot be read.
+        If an entry is not a name and a digest, or the file cannot be read.
     """
     ring = KeyRing(parse_keys((settings.api_keys or "").split(","), "CLEAVE_API_KEYS"), settings.api_keys_file)
     try:
@@ -58,20 +59,28 @@ def key_ring(settings: Settings) -> KeyRing:
 
 
 def is_owner_name(text: str) -> bool:
+    """Return whether a text can be the name of the owner of a key."""
     return _NAME.fullmatch(text) is not None
 
 
 def new_key() -> str:
+    """Return a new random key."""
     return _PREFIX + secrets.token_urlsafe(32)
 
 
 def key_digest(key: str) -> str:
-    """A key has 256 random bits, so one round is enough."""
+    """Return the SHA-256 of a key. A key has 256 random bits, so that one round of hashing is sufficient."""
     return hashlib.sha256(key.encode("utf-8", "surrogatepass")).hexdigest()
 
 
 def parse_keys(entries: list[str], source: str) -> dict[str, str]:
-    """Names and digests from entries such as ``anna:9f86d0...``; empty ones and comments are left out."""
+    """Return digests by name from entries such as ``anna:9f86d0...``; empty entries and comments are skipped.
+
+    Raises
+    ------
+    InvalidSettings
+        If an entry is not a name and a digest.
+    """
     wanted = [entry.strip() for entry in entries if entry.strip() and not entry.strip().startswith("#")]
     matches = [_ENTRY.fullmatch(entry) for entry in wanted]
     if None in matches:

@@ -1,61 +1,125 @@
-"""Jobs as a caller sees them: found by id, described with what the store and the queue know at the moment."""
+"""Jobs and batches of a caller: found by id, and described with the state of the store and the queue."""
 
+from collections import Counter
 from collections.abc import Sequence
+from typing import Annotated
+
+from fastapi import Path
 
 from cleave.logs import note_job
-from segcore.io.result import Segmentation
+from segcore.io import Segmentation
 from service.context import Context
-from service.documents import JobDocument, job_document
+from service.documents import BatchDocument, BatchedJob, BatchLinks, JobDocument, job_document
 from service.guard.callers import Caller
 from service.problems import JobError, Problem
 from worker.jobs.job import Canceled, Failed, Job, Succeeded
+from worker.jobs.store.batches import Batch
 from worker.jobs.store.store import UnknownJob
 
+JobId = Annotated[str, Path(description="As in the response to POST /v1/jobs.")]
 
-def known_job(context: Context, caller: Caller, job_id: str) -> Job:
-    """The record of a job of the caller; others' jobs are not there.
+# Codes of the problems that find_job and check_succeeded raise, and of a missing API key.
+JOB_PROBLEMS = ("unauthorized", "job_not_found", "job_deleted")
+RESULT_PROBLEMS = (*JOB_PROBLEMS, "not_finished", "job_failed", "job_canceled")
+
+
+def find_job(context: Context, caller: Caller, job_id: str) -> Job:
+    """Return the record of a job of the caller. Jobs of others are not found.
 
     Raises
     ------
     UnknownJob
-        Where there is none.
+        If there is no such job.
     Problem
-        Where there was one.
+        If the job was deleted.
     """
     job = context.store.records.job(job_id)
     if job is not None and job.owner == caller.owner:
         note_job(job_id)
         return job
     if context.store.deletions.was_deleted(job_id, caller.owner):
-        raise Problem("job_deleted", "This job was deleted with its files: submit the mesh again.")
+        raise Problem("job_deleted")
     raise UnknownJob(job_id)
 
 
 def describe(context: Context, job: Job) -> JobDocument:
+    """Return the document of a job."""
     return describe_all(context, [job])[0]
 
 
 def describe_all(context: Context, jobs: Sequence[Job]) -> list[JobDocument]:
-    """How some jobs are, with one question to the queue."""
+    """Return the documents of some jobs, with one request to the queue."""
     states = context.store.records.states([job.id for job in jobs])
     activities = context.view.activities([job.id for job in jobs if states[job.id].outcome is None])
     return [job_document(job, states[job.id].outcome, states[job.id].attempts, activities.get(job.id)) for job in jobs]
 
 
 def result_of(context: Context, job: Job) -> Segmentation:
-    """The mesh and the hierarchy of a job that succeeded; where there is none, the Problem says why."""
+    """Return the mesh and the hierarchy of a job; errors as in :func:`check_succeeded`."""
     check_succeeded(context, job)
     return context.results.get(job.id)
 
 
 def check_succeeded(context: Context, job: Job) -> None:
-    """Raise the Problem that says why a job has no result, where it has none."""
+    """Check that a job has a result.
+
+    Raises
+    ------
+    Problem
+        If the job has not finished, has failed or was canceled.
+    """
     match context.store.records.outcome(job.id):
         case Succeeded():
             return
         case Failed(code=code, message=message):
             raise Problem("job_failed", f"The job failed: {message}", JobError(code=code, message=message))
         case Canceled():
-            raise Problem("job_canceled", "The job was canceled and has no result: submit the mesh again.")
+            raise Problem("job_canceled")
         case None:
-            raise Problem("not_finished", "The job has not finished: poll it until its status is succeeded.")
+            raise Problem("not_finished")
+
+
+def find_batch(context: Context, caller: Caller, batch_id: str) -> Batch:
+    """Return the record of a batch of the caller. Batches of others are not found.
+
+    Raises
+    ------
+    Problem
+        If there is no such batch.
+    """
+    batch = context.batches.find(batch_id)
+    if batch is None or batch.owner != caller.owner:
+        raise Problem("batch_not_found", "There is no batch with this id: it was deleted, or the id is wrong.")
+    return batch
+
+
+def jobs_of_batch(context: Context, batch: Batch) -> list[tuple[Job | None, JobDocument | None]]:
+    """Return the jobs of a batch in its order, None for deleted ones."""
+    found = context.store.records.jobs(batch.job_ids)
+    existing = [job for job in found.values() if job is not None]
+    documents = {document.id: document for document in describe_all(context, existing)}
+    return [(found[job_id], documents.get(job_id)) for job_id in batch.job_ids]
+
+
+def describe_batch(context: Context, batch: Batch) -> BatchDocument:
+    """Return the document of a batch."""
+    documents = [document for _, document in jobs_of_batch(context, batch)]
+    path = f"/v1/batches/{batch.id}"
+    return BatchDocument(
+        id=batch.id,
+        status="finished" if all(one is None or one.finished_at for one in documents) else "running",
+        created_at=batch.created_at,
+        counts=dict(Counter("deleted" if one is None else one.status for one in documents)),
+        jobs=[
+            BatchedJob(
+                id=job_id,
+                file_name=one.input.file_name if one else None,
+                status=one.status if one else "deleted",
+                progress=one.progress if one else 0.0,
+                error=one.error if one else None,
+                self=f"/v1/jobs/{job_id}",
+            )
+            for job_id, one in zip(batch.job_ids, documents, strict=True)
+        ],
+        links=BatchLinks(self=path, results=f"{path}/results.zip"),
+    )

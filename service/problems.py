@@ -1,4 +1,4 @@
-"""Every error body of the service: problem details as in RFC 9457, with a stable ``code`` for programs."""
+"""Errors of the API as problem details (RFC 9457), with a stable ``code`` for programs."""
 
 import json
 import logging
@@ -23,44 +23,48 @@ log = logging.getLogger("cleave.service")
 
 MEDIA_TYPE = "application/problem+json"
 
-# What each code stands for: its status, and what to do.
+# Status of each code, and the sentence that says what it means and what to do.
 _CODES: dict[str, tuple[int, str]] = {
-    "malformed_request": (400, "The request cannot be read: send it again, well-formed and whole."),
+    "malformed_request": (400, "The request cannot be read: send it again, well-formed and complete."),
     "unauthorized": (401, "This installation requires an API key: send it in the header Authorization: Bearer KEY."),
-    "foreign_site": (403, "A page of another site sent this: the operator can allow it in CLEAVE_CORS_ORIGINS."),
-    "not_found": (404, "There is nothing at this path: GET /openapi.json lists what there is."),
-    "job_not_found": (404, "There is no job of this id, or it is somebody else's."),
-    "batch_not_found": (404, "There is no batch of this id, or it is somebody else's."),
-    "method_not_allowed": (405, "This path does not take this method: see the Allow header."),
-    "not_acceptable": (406, "Labels are not sent in that form: accept another, or ask with ?format=."),
-    "too_slow": (408, "The upload came to a halt or is too slow: send it again over a better connection."),
+    "foreign_site": (
+        403,
+        "The request comes from a page of another site: the operator can allow that site in CLEAVE_CORS_ORIGINS.",
+    ),
+    "not_found": (404, "There is nothing at this path: GET /openapi.json lists all paths."),
+    "job_not_found": (404, "There is no job with this id, or it belongs to another API key."),
+    "batch_not_found": (404, "There is no batch with this id, or it belongs to another API key."),
+    "method_not_allowed": (405, "This path does not support this method: see the Allow header."),
+    "not_acceptable": (406, "Labels are not available in this format: accept another one, or use ?format=."),
+    "too_slow": (408, "The upload stalled or is too slow: send it again over a better connection."),
     "not_finished": (409, "There is no result yet: poll the job until its status is succeeded."),
     "already_finished": (409, "The job has ended: delete it to remove its files."),
-    "job_failed": (409, "The job failed and has no result; error says why."),
+    "job_failed": (409, "The job failed and has no result; error contains the reason."),
     "job_canceled": (409, "The job was canceled and has no result: submit the mesh again."),
     "idempotency_key_spent": (409, "The job of this Idempotency-Key was deleted: use another key."),
-    "job_deleted": (410, "The job was deleted with its files: submit the mesh again."),
-    "length_required": (411, "There is no body: send the mesh, with its Content-Length or in chunks."),
-    "too_large": (413, "The mesh, the batch or a field is larger than this installation takes."),
-    "unsupported_media_type": (415, "The body is in no format that is read here: see GET /v1/formats."),
+    "job_deleted": (410, "This job was deleted with its files: submit the mesh again."),
+    "length_required": (411, "The request has no body: send the mesh, with its Content-Length or in chunks."),
+    "too_large": (413, "The mesh, the batch or a field is larger than this installation accepts."),
+    "unsupported_media_type": (415, "The format of the body is not supported: see GET /v1/formats."),
     "range_not_satisfiable": (416, "The range lies outside the result."),
     "invalid_mesh": (422, "The mesh file is empty: send one with faces."),
-    "invalid_parameters": (422, "A parameter is outside its range: see GET /v1/methods."),
+    "invalid_parameters": (422, "A parameter is out of range: see GET /v1/methods."),
     "invalid_request": (422, "A value in the path, the query or a header is not valid; detail names it."),
     "idempotency_key_reused": (
         422,
-        "This Idempotency-Key was sent with another mesh or parameters: use a new one.",
+        "This Idempotency-Key was sent with another mesh or other parameters: use a new key.",
     ),
-    "queue_full": (429, "Too many jobs wait here: submit again after Retry-After."),
+    "queue_full": (429, "Too many jobs are waiting: submit again after Retry-After."),
     "too_many_jobs": (429, "The caller has too many unfinished jobs: submit again when some have ended."),
-    "too_many_bytes": (429, "The caller has uploaded too much in this hour: go on after Retry-After."),
-    "internal_error": (500, "The server stopped at an internal error: its log has the details."),
-    "queue_unavailable": (503, "The queue does not answer at the moment: try again after Retry-After."),
-    "store_unavailable": (503, "The store does not answer at the moment: try again after Retry-After."),
-    "insufficient_storage": (507, "The disk of the server is full: try again later or tell the operator."),
+    "too_many_bytes": (429, "The caller has uploaded too many bytes in this hour: continue after Retry-After."),
+    "internal_error": (500, "The server failed with an internal error: its log has the details."),
+    "queue_unavailable": (503, "The queue does not answer: try again after Retry-After."),
+    "store_unavailable": (503, "The store does not answer: try again after Retry-After."),
+    "insufficient_storage": (507, "The disk of the server is full: try again later or inform the operator."),
 }
 STATUS = {code: status for code, (status, _) in _CODES.items()}
 MEANING = {code: sentence for code, (_, sentence) in _CODES.items()}
+# Of the header Retry-After; set by hand.
 _RETRY_AFTER_S = {"not_finished": 1, "queue_unavailable": 5, "store_unavailable": 5, "insufficient_storage": 60}
 
 
@@ -83,66 +87,65 @@ class ProblemDocument(BaseModel):
 
 
 class Problem(Exception):  # noqa: N818
-    """An answer that is not what the client asked for; ``code`` is a key of STATUS."""
+    """An error response. ``code`` is a key of STATUS; ``detail`` is the sentence of MEANING by default."""
 
     def __init__(
-        self, code: str, detail: str, error: JobError | None = None, headers: Mapping[str, str] | None = None
+        self,
+        code: str,
+        detail: str | None = None,
+        error: JobError | None = None,
+        headers: Mapping[str, str] | None = None,
     ) -> None:
-        super().__init__(detail)
         self.code = code
-        self.detail = detail
+        self.detail = MEANING[code] if detail is None else detail
         self.error = error
         self.headers = headers or {}
+        super().__init__(self.detail)
 
     def response(self, headers: Mapping[str, str] | None = None) -> Response:
+        """Return the response, with additional headers."""
         status = STATUS[self.code]
-        document: dict[str, Any] = {
-            "type": "about:blank",
-            "title": _phrase(status),
-            "status": status,
-            "detail": self.detail,
-            "code": self.code,
-        }
+        document = _document(self.code, self.detail)
         if self.error is not None:
             document["error"] = self.error.model_dump()
         own = {"Retry-After": str(_RETRY_AFTER_S[self.code])} if self.code in _RETRY_AFTER_S else {}
         if self.code == "unauthorized":
             own["WWW-Authenticate"] = "Bearer"
-        # Pure ASCII: a lone surrogate that a client sent can be quoted, and NaN cannot get in.
+        # ASCII only, because a detail may quote a lone surrogate that a client sent.
         body = json.dumps(document, ensure_ascii=True, allow_nan=False)
         return Response(body, status, {**own, **self.headers, **(headers or {})}, MEDIA_TYPE)
 
 
 def translate(exception: Exception) -> Problem:
-    """The one table in which exceptions meet HTTP."""
+    """Return the problem for an exception: the only place that maps exceptions to HTTP errors."""
     match exception:
         case Problem():
             return exception
         case UnknownJob():
-            return Problem("job_not_found", "There is no job of this id: it was deleted, or the id is wrong.")
+            return Problem("job_not_found", "There is no job with this id: it was deleted, or the id is wrong.")
         case InvalidParameters():
             return Problem("invalid_parameters", str(exception))
         case RequestValidationError():
             return _invalid_request(exception)
         case HTTPException(status_code=404):
-            return Problem("not_found", "There is nothing at this path: GET /openapi.json lists what there is.")
+            return Problem("not_found")
         case HTTPException(status_code=405):
-            return Problem("method_not_allowed", "This path does not take this method: see the Allow header.")
+            return Problem("method_not_allowed")
         case ClientDisconnect() | HTTPException():
-            return Problem("malformed_request", "The request could not be read to its end: send it again.")
+            return Problem("malformed_request")
         case QueueError():
-            return Problem("queue_unavailable", "The queue does not answer at the moment: try again later.")
+            return Problem("queue_unavailable")
         case OSError() if is_disk_full(exception):
-            return Problem("insufficient_storage", "The disk is full: try again later or tell the operator.")
+            return Problem("insufficient_storage")
         case StoreError():
             log.warning("%s", exception)
-            return Problem("store_unavailable", "The store does not answer at the moment: try again later.")
-    log.error("a request stopped at an error that it does not expect", exc_info=exception)
-    return Problem("internal_error", "The server stopped at an internal error: its log has the details.")
+            return Problem("store_unavailable")
+    log.error("a request failed with an unexpected exception", exc_info=exception)
+    return Problem("internal_error")
 
 
 def handle_problems(app: FastAPI) -> None:
-    """Have every error of an application answered as a problem."""
+    """Register handlers that answer every exception of an application with a problem."""
 
     def answer(request: Request, exception: Exception) -> Response:
         if isinstance(exception, OSError):
@@ -165,7 +168,7 @@ def handle_problems(app: FastAPI) -> None:
 
 
 def documented(*codes: str) -> dict[int | str, dict[str, Any]]:
-    """The ``responses`` of a route that may answer with these problems, for the OpenAPI document."""
+    """Return the ``responses`` of a route that may answer with these problems, for the OpenAPI document."""
     grouped: dict[int | str, dict[str, Any]] = {}
     for code in codes:
         status = STATUS[code]
@@ -178,18 +181,16 @@ def documented(*codes: str) -> dict[int | str, dict[str, Any]]:
 
 
 def example(code: str) -> dict[str, Any]:
-    """A problem as it is sent."""
-    status = STATUS[code]
-    document = {
-        "type": "about:blank",
-        "title": _phrase(status),
-        "status": status,
-        "detail": MEANING[code],
-        "code": code,
-    }
+    """Return an example of a problem document."""
+    document = _document(code, MEANING[code])
     if code == "job_failed":
         document["error"] = {"code": "invalid_mesh", "message": "Face 3 refers to a vertex outside 0..7: [0, 1, 9]."}
     return document
+
+
+def _document(code: str, detail: str) -> dict[str, Any]:
+    status = STATUS[code]
+    return {"type": "about:blank", "title": _phrase(status), "status": status, "detail": detail, "code": code}
 
 
 def _described(status: int) -> dict[str, Any]:
@@ -198,7 +199,7 @@ def _described(status: int) -> dict[str, Any]:
 
 
 def _phrase(status: int) -> str:
-    """The phrase of RFC 9110; Python's own differ from version to version."""
+    """Return the reason phrase of RFC 9110; those of Python differ between versions."""
     return {413: "Content Too Large", 416: "Range Not Satisfiable", 422: "Unprocessable Content"}.get(
         status
     ) or HTTPStatus(status).phrase

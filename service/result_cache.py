@@ -1,16 +1,56 @@
-"""Results that were opened or drawn lately: they never change, so a few stay in memory."""
+"""An in-memory LRU cache of opened results and of the files rendered from them."""
 
-from collections.abc import Callable
+from collections import OrderedDict
+from collections.abc import Callable, Hashable
 from dataclasses import fields
-from typing import Any
+from threading import Lock
+from typing import Any, Generic, TypeVar
 
-from segcore.io.result import Segmentation, read_result
-from service.lru import LruCache
+from segcore.io import Segmentation, read_result
 from worker.jobs.store.store import JobStore
+
+Key = TypeVar("Key", bound=Hashable)
+Value = TypeVar("Value")
+
+
+class LruCache(Generic[Key, Value]):
+    """Immutable values of a limited total size; the least recently used are dropped first."""
+
+    def __init__(self, max_bytes: int, size_bytes: Callable[[Value], int]) -> None:
+        self._max_bytes = max_bytes
+        self._size_bytes = size_bytes
+        self._values: OrderedDict[Key, Value] = OrderedDict()
+        self._held_bytes = 0
+        self._lock = Lock()
+
+    def get(self, key: Key, make: Callable[[], Value]) -> Value:
+        """Return the value of a key, made if it is not cached; two concurrent callers may both make it."""
+        with self._lock:
+            if key in self._values:
+                self._values.move_to_end(key)
+                return self._values[key]
+        value = make()
+        with self._lock:
+            self._remove(key)
+            self._values[key] = value
+            self._held_bytes += self._size_bytes(value)
+            while self._held_bytes > self._max_bytes:
+                self._remove(next(iter(self._values)))
+        return value
+
+    def drop(self, matches: Callable[[Key], bool]) -> None:
+        """Remove all values whose key matches."""
+        with self._lock:
+            for key in [key for key in self._values if matches(key)]:
+                self._remove(key)
+
+    def _remove(self, key: Key) -> None:
+        if key in self._values:
+            self._held_bytes -= self._size_bytes(self._values.pop(key))
 
 
 class ResultCache:
-    """The opened results of the store, and the bytes that were made of them."""
+    """The opened results of a store, and the files rendered from them."""
 
     def __init__(self, store: JobStore, max_opened_bytes: int, max_rendered_bytes: int) -> None:
         self._store = store
@@ -18,20 +58,21 @@ class ResultCache:
         self._rendered: LruCache[tuple[str, str], bytes] = LruCache(max_rendered_bytes, len)
 
     def get(self, job_id: str) -> Segmentation:
-        """The result of a job that succeeded.
+        """Return the result of a job that succeeded.
 
         Raises
         ------
         UnknownJob
-            Where the job was deleted.
+            If the job was deleted.
         """
         return self._opened.get(job_id, lambda: self._read(job_id))
 
     def rendered(self, job_id: str, name: str, render: Callable[[], bytes]) -> bytes:
-        """What is made of the result of a job under a name that says everything about how."""
+        """Return a file rendered from a result; ``name`` must identify the format and all of its options."""
         return self._rendered.get((job_id, name), render)
 
     def drop(self, job_id: str) -> None:
+        """Remove everything that belongs to a job."""
         self._opened.drop(lambda key: key == job_id)
         self._rendered.drop(lambda key: key[0] == job_id)
 

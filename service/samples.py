@@ -1,14 +1,16 @@
-"""Meshes to try the service with, made from :mod:`segcore.shapes`."""
+"""Sample meshes of the page, made with :mod:`segcore.shapes`."""
 
+import io
 from collections.abc import Callable
 
 import numpy as np
 
+from segcore.io import write_mesh
 from segcore.mesh import Mesh
 from segcore.shapes import Shape, burr, dumbbell, joined, revolve
 
-_AROUND = 64  # vertices on every ring
-_PAWN = (  # height, radius and part of the corners of its outline, from the foot up
+_AROUND = 64  # vertices of a ring
+_PAWN = (  # (height, radius) of the corners of its outline, by part, from the foot up
     [(0.0, 1.0), (0.35, 1.0), (0.55, 0.72), (0.75, 0.6)],
     [(1.1, 0.42), (1.7, 0.3)],
     [(1.78, 0.56), (1.95, 0.56)],
@@ -17,17 +19,20 @@ _PAWN = (  # height, radius and part of the corners of its outline, from the foo
 
 
 def sample_ply(name: str) -> bytes:
-    """A sample as binary PLY; errors as in :func:`sample_shape`."""
-    return _ply(sample_shape(name).mesh)
+    """Return a sample as binary PLY; errors as in :func:`sample_shape`."""
+    mesh = sample_shape(name).mesh
+    target = io.BytesIO()
+    write_mesh(target, Mesh(mesh.vertices.astype(np.float32), mesh.faces), "ply")
+    return target.getvalue()
 
 
 def sample_shape(name: str) -> Shape:
-    """A sample, its y axis up.
+    """Return a sample with the y axis up.
 
     Raises
     ------
     KeyError
-        Where there is no sample of this name.
+        If there is no sample with this name.
     """
     shape = _SHAPES[name]()
     x, y, z = shape.mesh.vertices.T
@@ -46,7 +51,7 @@ def _pawn() -> Shape:
 
 
 def _stool() -> Shape:
-    """A seat on four legs that cross it: five components."""
+    """Return a seat with four legs that intersect it: five components."""
     height = np.linspace(0, 1, 24)
     rim = np.sqrt(np.maximum(0.02, 1 - (2 * height - 1) ** 6))
     seat = _moved(revolve(1.0 * rim, 0.3 * height, _AROUND), (0.0, 0.0, 1.6))
@@ -60,17 +65,6 @@ def _stool() -> Shape:
 
 def _moved(mesh: Mesh, by: tuple[float, float, float]) -> Mesh:
     return Mesh(mesh.vertices + np.array(by), mesh.faces)
-
-
-def _ply(mesh: Mesh) -> bytes:
-    header = (
-        f"ply\nformat binary_little_endian 1.0\nelement vertex {len(mesh.vertices)}\n"
-        "property float x\nproperty float y\nproperty float z\n"
-        f"element face {len(mesh.faces)}\nproperty list uchar int vertex_indices\nend_header\n"
-    )
-    faces = np.empty(len(mesh.faces), dtype=[("corners", "u1"), ("vertices", "<i4", 3)])
-    faces["corners"], faces["vertices"] = 3, mesh.faces
-    return header.encode("ascii") + mesh.vertices.astype("<f4").tobytes() + faces.tobytes()
 
 
 _SHAPES: dict[str, Callable[[], Shape]] = {"jack": burr, "pawn": _pawn, "dumbbell": dumbbell, "stool": _stool}

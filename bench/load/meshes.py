@@ -4,6 +4,9 @@ import io
 
 import numpy as np
 
+from segcore.io import write_mesh
+from segcore.mesh import Mesh
+
 
 def wavy_torus(faces: int, waves: int = 5) -> bytes:
     """A binary PLY file with about as many faces."""
@@ -21,19 +24,6 @@ def wavy_torus(faces: int, waves: int = 5) -> bytes:
     corners = np.concatenate(
         [np.stack([index, right, corner], -1).reshape(-1, 3), np.stack([index, corner, up], -1).reshape(-1, 3)]
     )
-    records = np.empty(len(corners), dtype=np.dtype([("count", "u1"), ("corners", "<i4", 3)]))
-    records["count"], records["corners"] = 3, corners
     target = io.BytesIO()
-    head = [
-        "ply",
-        "format binary_little_endian 1.0",
-        f"element vertex {vertices.size // 3}",
-        *(f"property float {axis}" for axis in "xyz"),
-        f"element face {len(corners)}",
-        "property list uchar int vertex_indices",
-        "end_header\n",
-    ]
-    target.write("\n".join(head).encode())
-    target.write(vertices.reshape(-1, 3).astype("<f4").tobytes())
-    target.write(records.tobytes())
+    write_mesh(target, Mesh(vertices.reshape(-1, 3).astype(np.float32), corners), "ply")
     return target.getvalue()

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import io
 import time
 from typing import TYPE_CHECKING
 
@@ -23,11 +24,13 @@ def finished_job(url: str, name: str, mesh: Mesh) -> str:
         Where the service does not answer or the job has no result.
     """
     import httpx
-    import trimesh
 
-    content = trimesh.Trimesh(mesh.vertices, mesh.faces, process=False).export(file_type="ply")
+    from segcore.io import write_mesh
+
+    content = io.BytesIO()
+    write_mesh(content, mesh, "ply")
     try:
-        answer = httpx.post(f"{url}/v1/jobs", files={"mesh": (name, content)}, timeout=_TIMEOUT_S)
+        answer = httpx.post(f"{url}/v1/jobs", files={"mesh": (name, content.getvalue())}, timeout=_TIMEOUT_S)
         job = answer.raise_for_status().json()
         gives_up_at = time.monotonic() + _TIMEOUT_S
         while job["status"] in ("queued", "running") and time.monotonic() < gives_up_at:

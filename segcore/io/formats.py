@@ -1,4 +1,4 @@
-"""The mesh formats that are read, and how they are told apart: by what a file holds, not by what it is called."""
+"""FORMATS, the list of every mesh format that can be read, and their detection by content, not by file name."""
 
 import os
 import re
@@ -13,7 +13,7 @@ from segcore.io.source import GZIP_MAGIC
 
 @dataclass(frozen=True, slots=True)
 class Format:
-    """What a mesh format is called."""
+    """The names of a mesh format."""
 
     title: str
     extensions: tuple[str, ...]  # with the dot, the usual one first
@@ -37,9 +37,9 @@ _SOLID = re.compile(rb"\s*+solid\b", re.IGNORECASE)
 _OBJ = re.compile(rb"(?:\s++|#[^\r\n]*+[\r\n])*+(?:v|vt|vn|vp|f|l|p|g|o|s|mg|usemtl|mtllib)(?=[ \t])")
 _OBJ_VERTEX = re.compile(rb"(?:^|[\r\n])[ \t]*+v[ \t]")
 _GLTF = re.compile(rb"\s*+\{")
-_ZIP, _ZIP_NAME = b"PK\x03\x04", 30  # how an archive begins, and where the name of its first member stands
+_ZIP, _ZIP_NAME = b"PK\x03\x04", 30  # the first bytes of an archive, and the offset of the name of its first member
 _FOREIGN = {
-    _ZIP: "a ZIP archive, but no 3MF",
+    _ZIP: "a ZIP archive, but not 3MF",
     b"Kaydara FBX Binary": "FBX",
     b"<?xml": "XML (COLLADA, X3D or other)",
     b"ISO-10303-21": "STEP",
@@ -55,12 +55,12 @@ _STL_HEADER, _STL_FACE = 84, 50  # bytes
 
 
 def declared_format(source: str | os.PathLike[str] | BinaryIO, declaration: str | None) -> str | None:
-    """The format that a caller or the name of a file announces: a key of FORMATS, or None where neither does.
+    """Return the format by the declaration of a caller, else by the extension of a path: a key of FORMATS, or None.
 
     Raises
     ------
     UnsupportedFormat
-        Where ``declaration`` is no name, extension or media type of a known format.
+        If ``declaration`` is not a name, extension or media type of a format in FORMATS.
     """
     if declaration is not None:
         return _named(declaration)
@@ -72,12 +72,12 @@ def declared_format(source: str | os.PathLike[str] | BinaryIO, declaration: str 
 
 
 def detect_format(data: bytes, declared: str | None) -> str:
-    """The format of a file: a key of FORMATS. What is declared decides only where the content does not.
+    """Return the format of a file, a key of FORMATS; the declared one counts only if the content does not decide.
 
     Raises
     ------
     UnsupportedFormat
-        Where the content is of another format than the declared one, or of none that is read here.
+        If the content has another format than the declared one, or one that cannot be read.
     """
     found = _found(data)
     if found is not None and declared in (None, found):
@@ -95,7 +95,7 @@ def detect_format(data: bytes, declared: str | None) -> str:
 
 
 def is_ascii_stl(data: bytes) -> bool:
-    """Whether a file that is STL is so in text: binary ones may begin with the word ``solid`` too."""
+    """Whether an STL file is text; a binary one may begin with the word ``solid`` too."""
     if _fills_stl(data):
         return False
     text = data.removeprefix(_BOM)
@@ -116,7 +116,7 @@ def _titles() -> str:
 
 
 def _foreign(data: bytes) -> str | None:
-    """What a file is that no reader is for, where that is known."""
+    """The name of a known format that has no reader, or None."""
     if data.startswith(_ZIP) and data.startswith(b"header.json", _ZIP_NAME):
         return "a .cleave file, which cleave convert opens"
     return next((title for magic, title in _FOREIGN.items() if data.startswith(magic)), None)
@@ -148,7 +148,7 @@ def _fills_stl(data: bytes) -> bool:
 
 
 def _mostly_stl(data: bytes) -> bool:
-    """Whether the count of a binary STL accounts for most of the bytes: some writers add their own after the faces."""
+    """Whether the faces of a binary STL file are at least half of its bytes; some programs append bytes to them."""
     return len(data) > _STL_HEADER and len(data) // 2 <= _stl_size(data) <= len(data)
 
 

@@ -1,4 +1,4 @@
-"""Labels and the tree of cuts as text and as JSON values."""
+"""Labels and the hierarchy as text, as NumPy arrays and as JSON values."""
 
 import json
 import math
@@ -11,7 +11,7 @@ from segcore.hierarchy import Hierarchy
 
 
 def write_seg(target: BinaryIO, labels: IntArray) -> None:
-    """Write (F,) labels one per line in input face order, the ``.seg`` form of the Princeton segmentation benchmark."""
+    """Write (F,) labels in input face order, one per line: a ``.seg`` file of the Princeton segmentation benchmark."""
     target.write("".join(f"{label}\n" for label in labels.tolist()).encode("ascii"))
 
 
@@ -21,19 +21,19 @@ def write_npy(target: BinaryIO, labels: IntArray) -> None:
 
 
 def labels_document(hierarchy: Hierarchy, segments: int | None = None) -> dict[str, Any]:
-    """``{"segments": K, "labels": [...]}``, one label of 0..K - 1 for every input face, in input order.
+    """Return ``{"segments": K, "labels": [...]}`` with a label 0..K - 1 for each input face, in input order.
 
     Raises
     ------
     InvalidParameters
-        Where ``segments`` is not in 1..max_segments.
+        If ``segments`` is not in 1..max_segments.
     """
     labels = hierarchy.labels(segments)
     return {"segments": hierarchy.automatic_segments if segments is None else segments, "labels": labels.tolist()}
 
 
 def runs_document(hierarchy: Hierarchy, segments: int | None = None) -> dict[str, Any]:
-    """``{"segments": K, "faces": F, "values": [...], "lengths": [...]}``: labels in run-length form.
+    """Return ``{"segments": K, "faces": F, "values": [...], "lengths": [...]}``: labels in run-length form.
 
     The first ``lengths[0]`` faces of the input have the label ``values[0]``, the next ``lengths[1]`` the label
     ``values[1]``, and so on; the lengths add up to F.
@@ -41,7 +41,7 @@ def runs_document(hierarchy: Hierarchy, segments: int | None = None) -> dict[str
     Raises
     ------
     InvalidParameters
-        Where ``segments`` is not in 1..max_segments.
+        If ``segments`` is not in 1..max_segments.
     """
     labels = hierarchy.labels(segments)
     first = np.concatenate([[0], np.flatnonzero(np.diff(labels)) + 1])
@@ -54,18 +54,18 @@ def runs_document(hierarchy: Hierarchy, segments: int | None = None) -> dict[str
 
 
 def write_json(target: BinaryIO, hierarchy: Hierarchy, segments: int | None = None) -> None:
-    """Write :func:`runs_document`, with the tree of cuts as its ``hierarchy`` (:func:`hierarchy_document`)."""
+    """Write :func:`runs_document`, with :func:`hierarchy_document` as its ``hierarchy``."""
     document = runs_document(hierarchy, segments) | {"hierarchy": hierarchy_document(hierarchy)}
     target.write(json.dumps(document, allow_nan=False, separators=(",", ":")).encode("ascii"))
 
 
 def hierarchy_document(hierarchy: Hierarchy) -> dict[str, Any]:
-    """The tree of cuts as values that JSON can hold.
+    """Return the hierarchy as JSON values.
 
-    ``cut_values[i]`` belongs to the cut that leads from i + 1 to i + 2 segments. A node has ``id``, ``parent`` (null
-    for the root), ``children`` (empty for a leaf), ``level`` (the smallest number of segments at which it is a
-    segment), ``label`` (its label wherever it is one), ``area``, ``faces`` and ``cut_value`` (of the cut that splits
-    it; null for a leaf). A cut value that is not finite is null.
+    ``cut_values[i]`` is the value of the cut from i + 1 to i + 2 segments. A node has ``id``, ``parent`` (null for the
+    root), ``children`` (empty for a leaf), ``level`` (the smallest number of segments at which it is a segment),
+    ``label`` (its label at every level at which it is one), ``area`` (squared units of the mesh), ``faces`` and
+    ``cut_value`` (of the cut that splits it; null for a leaf). A cut value that is not finite is null.
     """
     return {
         "max_segments": hierarchy.max_segments,
@@ -76,7 +76,7 @@ def hierarchy_document(hierarchy: Hierarchy) -> dict[str, Any]:
 
 
 def node_documents(hierarchy: Hierarchy) -> list[dict[str, Any]]:
-    """The entries of ``nodes`` in :func:`hierarchy_document`, entry i being node i."""
+    """Return the ``nodes`` of :func:`hierarchy_document`; entry i is node i."""
     cut_value = dict(zip(hierarchy.split_node.tolist(), hierarchy.cut_value.tolist(), strict=True))
     columns = zip(
         hierarchy.parent.tolist(),
@@ -103,5 +103,5 @@ def node_documents(hierarchy: Hierarchy) -> list[dict[str, Any]]:
 
 
 def finite_or_none(value: float) -> float | None:
-    """JSON has no word for infinity."""
+    """None for infinity, which JSON does not have."""
     return value if math.isfinite(value) else None

@@ -1,4 +1,4 @@
-"""How much a reader accepts."""
+"""ReadLimits: the largest mesh file that a reader accepts."""
 
 from dataclasses import dataclass
 
@@ -7,18 +7,19 @@ from segcore.errors import InvalidParameters, LimitExceeded
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class ReadLimits:
-    """The largest input that is read; checked before memory is taken for it.
+    """The largest input that is read; checked before memory is allocated for it.
 
     Raises
     ------
     InvalidParameters
-        Where a limit is not a positive integer.
+        If a limit is not a positive integer.
     """
 
+    # Set by hand, far above the usual meshes; the service replaces them by its settings.
     max_bytes: int = 2 * 2**30  # of the file as it was sent
-    max_uncompressed_bytes: int = 2 * 2**30  # of what a compressed file unpacks to
-    max_faces: int = 20_000_000  # triangles, after polygons are cut and instances expanded
-    max_vertices: int = 60_000_000  # STL files have three for every face
+    max_uncompressed_bytes: int = 2 * 2**30  # of the contents of a compressed file
+    max_faces: int = 20_000_000  # triangles, after polygons are triangulated and instances expanded
+    max_vertices: int = 60_000_000  # three for each face, as in STL
 
     def __post_init__(self) -> None:
         for name in self.__slots__:
@@ -27,7 +28,7 @@ class ReadLimits:
                 raise InvalidParameters(f"{name} must be a positive integer, not {value!r}.")
 
     def check(self, name: str, value: int, what: str) -> None:
-        """Raise LimitExceeded where ``value`` is above the limit called ``name``."""
+        """Raise LimitExceeded if ``value`` is above the limit called ``name``."""
         limit = getattr(self, name)
         if value > limit:
             raise LimitExceeded(

@@ -1,19 +1,19 @@
-"""Names of segments in files: those that were given, else their numbers; never two alike."""
+"""Unique names of segments in files: the given names, else ``segment`` and the label."""
 
 import re
 from collections.abc import Mapping
 from typing import TypeAlias
 
-SegmentNames: TypeAlias = Mapping[int, str]  # by label; labels that a file does not have are passed over
+SegmentNames: TypeAlias = Mapping[int, str]  # by label; labels that do not exist are ignored
 
-_LONGEST = 60  # characters, so that names of files stay below 255 bytes
+_LONGEST = 60  # characters; file names are limited to 255 bytes, and UTF-8 takes up to four for a character
 
 
 def segment_names(names: SegmentNames | None, count: int, separator: str = " ") -> list[str]:
-    """What the labels 0..count - 1 are called: the name that was given, or ``segment`` and the label.
+    """Return the names of the labels 0..count - 1: the given name, else ``segment`` and the label.
 
-    White space and what cannot be printed becomes ``separator``. A name that an earlier label has already gets its
-    label behind it, as programs put together what is called the same.
+    ``separator`` replaces white space and unprintable characters. The label is appended to a name that an earlier label
+    has, because some programs merge parts with equal names.
     """
     given = names or {}
     taken: set[str] = set()
@@ -29,23 +29,23 @@ def segment_names(names: SegmentNames | None, count: int, separator: str = " ") 
 
 
 def group_names(names: SegmentNames | None, count: int) -> list[str]:
-    """The same as groups of OBJ: white space parts names there, ``#`` begins a comment, a backslash goes on a line."""
+    """The same for groups of OBJ, without white space, ``#`` (a comment) and ``\\`` (a continued line)."""
     plain = {label: re.sub(r"[#\\]+", " ", name) for label, name in (names or {}).items()}
     return segment_names(plain, count, "_")
 
 
 def file_stems(names: SegmentNames | None, count: int) -> list[str]:
-    """The same as names of files that are safe on every system and stand in the order of the labels."""
+    """The same for file names: safe on every system, and their alphabetical order is that of the labels."""
     digits = len(str(count - 1))
     words = {label: re.findall(r"\w+", name) for label, name in (names or {}).items()}
     return ["_".join([f"segment_{label:0{digits}}", *words.get(label, [])])[:_LONGEST] for label in range(count)]
 
 
 def comment(text: str) -> str:
-    """A text that can stand in a comment of OBJ: there too, a backslash at the end of a line goes on."""
+    """A text for a comment of OBJ, where a backslash at the end would continue the line."""
     return one_line(text).replace("\\", "/")
 
 
 def one_line(text: str) -> str:
-    """A text with spaces for everything that cannot be printed."""
+    """A text with a space for each unprintable character."""
     return "".join(character if character.isprintable() else " " for character in text)

@@ -1,4 +1,4 @@
-"""Colours for segments: far apart for every kind of colour vision, and fixed for each label."""
+"""Colours of segments: a fixed one for each label, far apart also with a colour vision deficiency."""
 
 from functools import cache
 
@@ -7,13 +7,14 @@ from numpy.typing import NDArray
 
 from segcore.arrays import FloatArray
 
-# Okabe and Ito, Color Universal Design, 2008: seven colours chosen with people who have a colour vision deficiency.
+# Okabe and Ito, Color Universal Design, 2008: seven colours chosen together with people with such a deficiency.
 _FIRST = ("56b4e9", "e69f00", "009e73", "cc79a7", "f0e442", "0072b2", "d55e00")
+# The next three are set by hand.
 _DISTINCT = 256  # colours before the sequence repeats
-_STEPS = 17  # candidates per channel
-_LIGHTNESS = (0.45, 0.93)  # of the candidates in OKLab: neither lost on black nor on white
+_STEPS = 17  # candidates per channel, every 16th value of a byte
+_LIGHTNESS = (0.45, 0.93)  # of the candidates in OKLab: visible on black and on white
 
-# How protanopes, deuteranopes and tritanopes see linear RGB.
+# Linear RGB as seen with full colour vision, protanopia, deuteranopia and tritanopia.
 # Machado, Oliveira and Fernandes, A physiologically-based model for simulation of color vision deficiency, 2009,
 # severity 1.
 _VISIONS = np.array(
@@ -44,14 +45,15 @@ _LMS_TO_OKLAB = np.array(
 def segment_colors(n: int) -> FloatArray:
     """(n, 3) sRGB colours in 0..1 of the labels 0..n - 1.
 
-    The colour of a label does not depend on ``n``. The first 256 differ: each is the candidate that is farthest in
-    OKLab from all before it, in the eyes of the kind of colour vision that tells them apart worst; then they repeat.
+    The colour of a label does not depend on ``n``. The first 256 colours differ, then they repeat. After the first
+    seven each is the candidate that is farthest from all colours before it: by the smallest distance in OKLab over the
+    kinds of colour vision.
     """
     return _sequence()[np.arange(n) % _DISTINCT]
 
 
 def color_bytes(n: int) -> NDArray[np.uint8]:
-    """(n, 3): the same in 0..255."""
+    """(n, 3) the same colours in 0..255."""
     return np.round(255 * segment_colors(n)).astype(np.uint8)
 
 
@@ -90,7 +92,7 @@ def _candidates() -> FloatArray:
 
 
 def _appearance(srgb: FloatArray) -> FloatArray:
-    """(4, N, 3): where the colours lie in OKLab for each kind of colour vision."""
+    """(4, N, 3) OKLab coordinates of the colours for each kind of colour vision."""
     light = np.clip(np.einsum("vij,nj->vni", _VISIONS, linear_rgb(srgb)), 0, 1)
     oklab: FloatArray = np.cbrt(light @ _RGB_TO_LMS.T) @ _LMS_TO_OKLAB.T
     return oklab

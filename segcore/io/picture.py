@@ -1,4 +1,4 @@
-"""Pictures of segmentations, drawn on the processor: no display and no graphics card needed."""
+"""Pictures of segmentations, rendered on the CPU, and a PNG writer."""
 
 import struct
 import zlib
@@ -14,11 +14,15 @@ from segcore.mesh import Mesh, face_normals_and_areas
 
 ByteArray = np.ndarray[tuple[int, ...], np.dtype[np.uint8]]
 
+# The look of the pictures, set by hand.
 _SAMPLES = 2  # samples per pixel in each direction
-_MARGIN = 0.04  # free border, in widths of the picture
-_CREASE = np.cos(np.radians(40))  # faces that meet at a larger angle are shaded apart
-_KEY = np.array([0.35, 0.75, 0.56])  # direction to the main light: right, up, towards the viewer
-_NOTHING = -1
+_MARGIN = 0.04  # free border, as a fraction of the width of the picture
+_CREASE = np.cos(np.radians(40))  # faces that meet at a larger angle are not shaded smoothly
+_KEY = np.array([0.35, 0.75, 0.56])  # direction to the key light: right, up, towards the viewer
+_AMBIENT, _HEADLIGHT, _KEY_LIGHT = 0.30, 0.28, 0.52  # shares of the brightness; the headlight is at the viewer
+_LINE = 0.35  # brightness of the lines between segments
+
+_BACKGROUND = -1  # in place of a label
 
 
 def draw(mesh: Mesh, labels: IntArray, size: int = 512, azimuth: float = 30.0, elevation: float = 20.0) -> ByteArray:
@@ -28,11 +32,11 @@ def draw(mesh: Mesh, labels: IntArray, size: int = 512, azimuth: float = 30.0, e
     ----------
     labels : (F,) the segment of every face.
     size : width and height in pixels.
-    azimuth, elevation : where the viewer stands, in degrees: turned about the y axis from +z towards +x, and above it.
+    azimuth, elevation : direction to the viewer in degrees: about the y axis from +z to +x, and above the xz plane.
 
     Returns
     -------
-    (size, size, 4) uint8, red, green, blue and opacity; orthographic, y up, the mesh fills the picture.
+    (size, size, 4) uint8, red, green, blue and opacity: an orthographic view of the whole mesh, y up.
     """
     view = _view(azimuth, elevation)
     seen = mesh.vertices @ view.T
@@ -47,7 +51,7 @@ def draw(mesh: Mesh, labels: IntArray, size: int = 512, azimuth: float = 30.0, e
 
 
 def _view(azimuth: float, elevation: float) -> FloatArray:
-    """Rows: right, up, towards the viewer."""
+    """(3, 3) rotation whose rows are the directions right, up and towards the viewer."""
     a, e = np.radians(azimuth), np.radians(elevation)
     towards = np.array([np.sin(a) * np.cos(e), np.sin(e), np.cos(a) * np.cos(e)])
     right = np.array([np.cos(a), 0.0, -np.sin(a)])
@@ -55,13 +59,14 @@ def _view(azimuth: float, elevation: float) -> FloatArray:
 
 
 def _shaded(label: IntArray, light: FloatArray, size: int) -> ByteArray:
-    covered = label != _NOTHING
+    """(size, size, 4) pixels of the samples."""
+    covered = label != _BACKGROUND
     colors = segment_colors(int(label.max()) + 1)[label] if covered.any() else np.zeros((*label.shape, 3))
     border = np.zeros(label.shape, dtype=bool)
     for axis in (0, 1):
         behind = np.roll(label, 1, axis)
-        border |= (label != behind) & covered & (behind != _NOTHING)
-    shade = np.where(border, 0.35, 1.0) * light
+        border |= (label != behind) & covered & (behind != _BACKGROUND)
+    shade = np.where(border, _LINE, 1.0) * light
     image = np.concatenate(
         [np.minimum(colors * shade[..., None], 1.0) * covered[..., None], covered[..., None]], axis=2
     )
@@ -73,7 +78,7 @@ def _shaded(label: IntArray, light: FloatArray, size: int) -> ByteArray:
 
 @njit(cache=True, nogil=True)
 def _corner_normals(faces: IntArray, normals: FloatArray, vertex_count: int) -> FloatArray:
-    """(F, 3, 3): at every corner the mean normal of the faces there that lie within the crease angle."""
+    """(F, 3, 3) at each corner the mean normal of the faces at its vertex that are within the crease angle."""
     start = np.zeros(vertex_count + 1, np.int64)
     for f in range(len(faces)):
         for k in range(3):
@@ -105,8 +110,8 @@ def _corner_normals(faces: IntArray, normals: FloatArray, vertex_count: int) -> 
 def _rasterize(
     screen: FloatArray, faces: IntArray, labels: IntArray, normals: FloatArray, resolution: int
 ) -> tuple[IntArray, FloatArray]:
-    """The label (-1 where there is nothing) and the brightness of the nearest face at every sample."""
-    label = np.full((resolution, resolution), -1, np.int32)
+    """The label, -1 for the background, and the brightness of the nearest face at each sample."""
+    label = np.full((resolution, resolution), _BACKGROUND, np.int32)
     light = np.zeros((resolution, resolution))
     depth = np.full((resolution, resolution), -np.inf)
     for f in range(len(faces)):
@@ -133,15 +138,15 @@ def _rasterize(
                 label[row, column] = labels[f]
                 n = u * normals[f, 0] + v * normals[f, 1] + w * normals[f, 2]
                 length = max(np.sqrt(n[0] * n[0] + n[1] * n[1] + n[2] * n[2]), 1e-12)
-                # Faces seen from behind are lit as if turned round.
+                # A face seen from behind is lit as its other side is.
                 side = 1.0 if n[2] >= 0.0 else -1.0
                 key = max(0.0, side * (_KEY[0] * n[0] + _KEY[1] * n[1] + _KEY[2] * n[2]) / length)
-                light[row, column] = 0.30 + 0.28 * abs(n[2]) / length + 0.52 * key
+                light[row, column] = _AMBIENT + _HEADLIGHT * abs(n[2]) / length + _KEY_LIGHT * key
     return label, light
 
 
 def write_png(target: BinaryIO, pixels: NDArray[np.uint8]) -> None:
-    """Write (height, width, 4) uint8 pixels, the first row on top."""
+    """Write (height, width, 4) uint8 pixels as PNG, the top row first."""
     height, width, _ = pixels.shape
     unfiltered = np.zeros((height, 1 + 4 * width), dtype=np.uint8)
     unfiltered[:, 1:] = pixels.reshape(height, -1)

@@ -1,4 +1,4 @@
-"""From the polygons of a file to the faces of a mesh."""
+"""Triangulation of the polygons and strips of a file."""
 
 from dataclasses import dataclass
 
@@ -12,19 +12,19 @@ from segcore.mesh import Mesh
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Polygons:
-    """The polygons of a file in its order."""
+    """The polygons of a file, in its order."""
 
-    corners: LongArray | IntArray  # (sum of sizes,) the vertices of all polygons, one after the other
-    sizes: LongArray  # (P,) the number of corners of every polygon, >= 0
+    corners: LongArray | IntArray  # (sum of sizes,) the vertices of all polygons, concatenated
+    sizes: LongArray  # (P,) the number of corners of each polygon, >= 0
 
 
 def mesh_of_polygons(
     vertices: FloatArray, polygons: Polygons, limits: ReadLimits, appearance: Appearance | None = None
 ) -> Mesh:
-    """A mesh whose faces are the fans of polygons, in their order.
+    """Return the mesh whose faces are the fans of polygons, in their order.
 
-    A polygon with corners c0, c1, ... gives the faces (c0, c1, c2), (c0, c2, c3), ...; with fewer than three corners it
-    gives none.
+    A polygon with corners c0, c1, ... becomes the faces (c0, c1, c2), (c0, c2, c3), ...; a polygon with fewer than
+    three corners becomes none.
 
     Parameters
     ----------
@@ -45,13 +45,13 @@ def mesh_of_polygons(
 
 
 def ragged_range(start: LongArray, length: LongArray) -> LongArray:
-    """start[0], start[0] + 1, ... (length[0] of them), start[1], start[1] + 1, ... and so on."""
+    """(sum of length,) start[0], start[0] + 1, ... (length[0] numbers), then start[1], start[1] + 1, ... and so on."""
     before = np.cumsum(length) - length
     return np.repeat(start - before, length) + np.arange(int(length.sum()))
 
 
 def fan_corners(sizes: LongArray) -> LongArray:
-    """(F, 3): the entries of ``Polygons.corners`` that the corners of every face are."""
+    """(F, 3) indices into ``Polygons.corners`` of the corners of each face."""
     triangles = np.maximum(sizes - 2, 0)
     begin = np.cumsum(sizes) - sizes
     first, second = np.repeat(begin, triangles), ragged_range(begin + 1, triangles)
@@ -59,12 +59,12 @@ def fan_corners(sizes: LongArray) -> LongArray:
 
 
 def strip_faces(indices: LongArray | IntArray, starts: BoolArray) -> LongArray | IntArray:
-    """(T, 3): the triangles of strips, every second one turned so that all face the same way, degenerate ones kept.
+    """(T, 3) triangles of strips, degenerate ones too; every second one is reversed so that all have one orientation.
 
     Parameters
     ----------
-    indices : (N,) the vertices of all strips, one after the other.
-    starts : (N,) True where a strip begins.
+    indices : (N,) the vertices of all strips, concatenated.
+    starts : (N,) True for the first vertex of a strip.
     """
     first = np.maximum.accumulate(np.where(starts, np.arange(len(indices)), 0))
     at = np.flatnonzero(first[:-2] == first[2:])

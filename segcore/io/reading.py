@@ -1,4 +1,4 @@
-"""read_mesh: any mesh file that is known here, by its content."""
+"""read_mesh: a mesh file of any format in FORMATS, detected by its content."""
 
 import os
 from collections.abc import Callable
@@ -10,7 +10,7 @@ from segcore.io.formats import declared_format, detect_format
 from segcore.io.gltf.reader import read_gltf
 from segcore.io.limits import ReadLimits
 from segcore.io.obj.reader import read_obj
-from segcore.io.off import read_off
+from segcore.io.off.reader import read_off
 from segcore.io.ply.reader import read_ply
 from segcore.io.source import read_source
 from segcore.io.stl.reader import read_stl
@@ -35,35 +35,35 @@ def read_mesh(
     limits: ReadLimits | None = None,
     appearance: bool = False,
 ) -> Mesh:
-    """Read a mesh file, also one that is compressed with gzip.
+    """Read a mesh file, which may be compressed with gzip.
 
-    Face i of the mesh is the i-th triangle after the polygons of the file, in its order, are cut into fans;
-    ``source_polygon`` says which polygon it came from where there are others than triangles. No vertex and no face is
-    left out, merged or moved, and nothing but ``source`` is ever opened.
+    Face i of the mesh is triangle i after the polygons of the file, in its order, are triangulated as fans;
+    ``source_polygon`` is the polygon of each face if there are others than triangles. No vertex or face is dropped,
+    merged or moved, and no file but ``source`` is opened.
 
     Parameters
     ----------
     source : a path, or a binary file, which is read to its end.
-    format : a name, extension or media type of FORMATS. The content decides what is read; where it is clearly of
-        another format than this one, or than the name of the file, the file is refused.
+    format : a name, extension or media type of FORMATS. The content decides which reader is used; the file is refused
+        if its content clearly has another format than this one or than the extension of the path.
     limits : the largest input that is read, by default ``ReadLimits()``.
-    appearance : keep normals, texture coordinates, colours of vertices and names of groups for the outputs, where the
-        file has them in a form that is understood; without it they cost nothing.
+    appearance : keep normals, texture coordinates, colours of vertices and names of groups for the outputs, as far as
+        they can be read. Reading is faster without.
 
     Raises
     ------
     UnsupportedFormat
-        Where the format, or a feature that the file needs, is not read here.
+        If the format, or a feature that the file needs, cannot be read.
     InvalidMesh
-        Where the file is damaged, cut short or without faces; the message has the line, the byte or the element.
+        If the file is damaged, cut short or without faces; the message has the line, the byte or the element.
     LimitExceeded
-        Where the mesh is larger than a limit, which the message names.
+        If the mesh is larger than a limit, which the message names.
     OSError
-        Where a path cannot be read.
+        If a path cannot be read.
     """
     limits = limits or ReadLimits()
     declared = declared_format(source, format)
     data = read_source(source, limits)
     reader = _READERS[detect_format(data, declared)]
-    with np.errstate(all="ignore"):  # what leaves the range of floating point numbers is refused as not finite
+    with np.errstate(all="ignore"):  # Mesh refuses numbers that overflow, as not finite
         return reader(data, limits, appearance)

@@ -1,16 +1,16 @@
-"""The ``.cleave`` file: a mesh and its hierarchy of cuts, exact, in one file.
+"""The ``.cleave`` file: a mesh and its hierarchy, exact, in one file.
 
-Form, version 1. A ZIP archive whose members are stored without compression, in this order, all dated 1980-01-01, so
-that equal results are equal bytes:
+Format, version 1. A ZIP archive whose members are stored without compression, in this order, all dated 1980-01-01, so
+that equal results have equal bytes:
 
     header.json           {"format": "cleave-result", "version": 1, "automatic_segments": int}
     vertices.npy          (V, 3) float64    faces.npy        (F, 3) int32
-    source_polygon.npy    (F,) int32, left out where every polygon of the input is one face
+    source_polygon.npy    (F,) int32, absent if every polygon of the input is one face
     split_node.npy        (S,) int32        cut_value.npy    (S,) float64
     area.npy              (2 S + 1,) float64
     face_count.npy        (2 S + 1,) int32  face_leaf.npy    (F,) int32
 
-Then, each only where the mesh has an appearance with it (A rows, of the vertices and of further looks of them):
+Then those that the appearance of the mesh has (A rows: one for each vertex, then the further ones):
 
     normals.npy           (A, 3) float32    uvs.npy          (A, 2) float32
     colors.npy            (A, 4) uint8      corners.npy      (F, 3) int32
@@ -18,8 +18,7 @@ Then, each only where the mesh has an appearance with it (A rows, of the vertice
     group_names.json      [str, ...]
 
 The arrays are little-endian, in C order, in NumPy's ``.npy`` format 1.0, and mean what the attributes of the same names
-of Mesh, Hierarchy and Appearance mean. A program may pass over members that it does not know. Nothing in the file is
-ever unpickled.
+of Mesh, Hierarchy and Appearance mean. A program may ignore unknown members. Nothing in the file is ever unpickled.
 """
 
 import json
@@ -41,7 +40,7 @@ from segcore.mesh import Mesh
 
 _FORMAT, _VERSION = "cleave-result", 1
 _HEADER = "header.json"
-_LARGEST_HEADER = 4096  # bytes
+_LARGEST_HEADER = 4096  # bytes; the header has about 80
 _NPY_HEADER = re.compile(
     rb"\x93NUMPY\x01\x00.."
     rb"\{'descr': '(?P<dtype>...)', 'fortran_order': False, 'shape': \((?P<shape>\d{1,12},(?: \d{1,12})?)\), \} *\n",
@@ -58,7 +57,7 @@ _OPTIONAL = "source_polygon"
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Segmentation:
-    """What a ``.cleave`` file holds."""
+    """The contents of a ``.cleave`` file."""
 
     mesh: Mesh
     hierarchy: Hierarchy
@@ -74,12 +73,12 @@ def write_result(target: BinaryIO, mesh: Mesh, hierarchy: Hierarchy) -> None:
     Raises
     ------
     InvalidParameters
-        Where the hierarchy is of another mesh.
+        If the hierarchy is of another mesh.
     """
     if len(hierarchy.face_leaf) != len(mesh.faces):
         raise InvalidParameters(
             f"The hierarchy has {len(hierarchy.face_leaf)} faces and the mesh {len(mesh.faces)}: "
-            "give the mesh that it was made of."
+            "give the mesh that was segmented."
         )
     header = {"format": _FORMAT, "version": _VERSION, "automatic_segments": hierarchy.automatic_segments}
     with zipfile.ZipFile(target, "w", zipfile.ZIP_STORED) as archive:
@@ -103,9 +102,9 @@ def read_result(source: str | os.PathLike[str] | BinaryIO) -> Segmentation:
     Raises
     ------
     InvalidMesh
-        Where the file is of another kind or version, is damaged or cut short, or contradicts itself.
+        If the file has another format or version, is damaged or cut short, or contradicts itself.
     OSError
-        Where a path cannot be opened.
+        If a path cannot be opened.
     """
     if isinstance(source, str | os.PathLike):
         with open(source, "rb") as file:
@@ -169,7 +168,7 @@ def _read_appearance(archive: zipfile.ZipFile, present: set[str]) -> Appearance 
 def _read_header(archive: zipfile.ZipFile) -> dict[str, int]:
     header = _read_json(archive, _HEADER, _LARGEST_HEADER)
     if not isinstance(header, dict) or header.get("format") != _FORMAT:
-        raise InvalidMesh("This ZIP archive is not a .cleave file: its header does not say so.")
+        raise InvalidMesh("This ZIP archive is not a .cleave file: its header has another format.")
     if header.get("version") != _VERSION:
         raise InvalidMesh(
             f"This .cleave file has version {header.get('version')!r}, and this program reads version {_VERSION}: "
@@ -198,15 +197,15 @@ def _read_array(archive: zipfile.ZipFile, name: str, dtype: str) -> NDArray[Any]
     data = _read_member(archive, f"{name}.npy")
     header = _NPY_HEADER.match(data)
     if header is None or header["dtype"] != dtype.encode():
-        raise InvalidMesh(f"Array {name!r} of the .cleave file has another form than it should: make the file again.")
+        raise InvalidMesh(f"Array {name!r} of the .cleave file has the wrong type or shape: make the file again.")
     shape = tuple(int(extent) for extent in header["shape"].split(b",") if extent)
     if len(data) - header.end() != np.dtype(dtype).itemsize * math.prod(shape):
-        raise InvalidMesh(f"Array {name!r} of the .cleave file has another size than it should: make the file again.")
+        raise InvalidMesh(f"Array {name!r} of the .cleave file has the wrong size: make the file again.")
     return np.frombuffer(data, dtype, offset=header.end()).reshape(shape).copy()
 
 
 def _check_tree(hierarchy: Hierarchy, face_count: int) -> None:
-    """Refuse a hierarchy that is not a tree of cuts over the faces."""
+    """Raise InvalidMesh if the hierarchy is not a binary tree over the faces."""
     splits = len(hierarchy.split_node)
     shapes = {"split_node": splits, "cut_value": splits, "area": 2 * splits + 1, "face_count": 2 * splits + 1}
     for name, length in (shapes | {"face_leaf": face_count}).items():

@@ -1,4 +1,4 @@
-"""The faces of a mesh in slices, one for each part."""
+"""The faces of a mesh grouped by part."""
 
 from dataclasses import dataclass
 
@@ -10,10 +10,10 @@ from segcore.hierarchy import Hierarchy
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Slices:
-    """The faces grouped by part, in input order within each."""
+    """The input faces grouped by part, in input order within each part."""
 
-    faces: IntArray  # (F,) input face ids
-    start: IntArray  # (K + 1,) part k owns faces[start[k]:start[k + 1]]
+    faces: IntArray  # (F,) input faces
+    start: IntArray  # (K + 1,) part k has faces[start[k]:start[k + 1]]
 
     def __len__(self) -> int:
         return len(self.start) - 1
@@ -24,19 +24,24 @@ class Slices:
 
 
 def group(part_of_face: IntArray, count: int) -> Slices:
-    """The faces of each of ``count`` parts."""
-    keys = part_of_face.astype(np.uint16) if count <= 2**16 else part_of_face  # 16-bit keys are sorted by radix
+    """Group the faces by part 0..count - 1.
+
+    Parameters
+    ----------
+    part_of_face : (F,).
+    """
+    keys = part_of_face.astype(np.uint16) if count <= 2**16 else part_of_face  # NumPy sorts 16-bit keys by radix
     order = np.argsort(keys, kind="stable").astype(np.int32)
     start = np.concatenate([[0], np.cumsum(np.bincount(part_of_face, minlength=count))]).astype(np.int32)
     return Slices(order, start)
 
 
 def segment_slices(hierarchy: Hierarchy, segments: int | None = None) -> Slices:
-    """The faces of each segment of a level, by default the automatic one.
+    """Group the faces by segment of a level, by default the automatic one.
 
     Raises
     ------
     InvalidParameters
-        Where ``segments`` is not in 1..max_segments.
+        If ``segments`` is not in 1..max_segments.
     """
     return group(hierarchy.labels(segments), len(hierarchy.segment_nodes(segments)))

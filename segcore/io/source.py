@@ -1,4 +1,4 @@
-"""The bytes of a mesh file, from wherever they come, within the limits and unpacked."""
+"""read_source: the bytes of a path or a binary file, decompressed if they are gzip, within the limits."""
 
 import os
 import zlib
@@ -9,21 +9,21 @@ from segcore.errors import InvalidMesh, LimitExceeded
 from segcore.io.limits import ReadLimits
 
 GZIP_MAGIC = b"\x1f\x8b"
-_CHUNK = 2**20
+_CHUNK = 2**20  # bytes read or decompressed at a time; bounds the memory beyond a limit
 _GZIP_WINDOW = 31  # zlib's code for: 32 KiB window, gzip header and checksum
 
 
 def read_source(source: str | os.PathLike[str] | BinaryIO, limits: ReadLimits) -> bytes:
-    """Everything that a path or a binary file holds, unpacked where it is compressed with gzip.
+    """Return the contents of a path or a binary file, decompressed if they are gzip.
 
     Raises
     ------
     LimitExceeded
-        Where there are more bytes than ``limits`` allows, before or after unpacking.
+        If there are more bytes than ``limits`` allows, before or after decompression.
     InvalidMesh
-        Where there are none, or where the compressed data is damaged or cut short.
+        If there are none, or if the compressed data is damaged or cut short.
     OSError
-        Where a path cannot be read.
+        If a path cannot be read.
     """
     data = _read_path(source, limits) if isinstance(source, str | os.PathLike) else _read_file(source, limits)
     if data.startswith(GZIP_MAGIC):
@@ -39,13 +39,13 @@ def _read_path(path: str | os.PathLike[str], limits: ReadLimits) -> bytes:
 
 
 def _read_file(file: BinaryIO, limits: ReadLimits) -> bytes:
-    piece = max(_bytes_left(file), _CHUNK)  # a file that knows its size is read at once, without a second copy
+    piece = max(_bytes_left(file), _CHUNK)  # if the size is known, one read and no second copy
     limits.check("max_bytes", piece if piece > _CHUNK else 0, "bytes")
     return _join(iter(lambda: file.read(piece), b""), limits, "max_bytes")
 
 
 def _bytes_left(file: BinaryIO) -> int:
-    """0 where the file does not know."""
+    """The number of bytes from the current position to the end; 0 if the file is not seekable."""
     if not file.seekable():
         return 0
     position = file.tell()
@@ -63,7 +63,7 @@ def _gunzip(data: bytes, limits: ReadLimits) -> bytes:
 
 def _gunzip_chunks(data: bytes) -> Iterator[bytes]:
     at = 0
-    while data.startswith(GZIP_MAGIC, at):  # a gzip file is one or more members, one after the other
+    while data.startswith(GZIP_MAGIC, at):  # a gzip file is a sequence of members
         member, tail = zlib.decompressobj(_GZIP_WINDOW), b""
         while not member.eof:
             if not tail:

@@ -1,1 +1,1 @@
-"""Answers: results of a job in the form, at the level and in the range that a client asks for."""
+"""Results of jobs in the format, at the level and in the byte range that a client requests."""

@@ -1,4 +1,4 @@
-"""Server-sent events: how a job is, told whenever it changes."""
+"""The changes of a job as server-sent events."""
 
 import asyncio
 import time
@@ -13,9 +13,9 @@ from service.lookup import describe
 from worker.jobs.job import Job, now
 from worker.jobs.store.store import UnknownJob
 
-_LOOK_S = 0.2  # between two looks at the job
-_SILENCE_S = 15.0  # after so long a comment keeps proxies from closing the connection
-_RETRY_MS = 1000  # when a client that lost the connection comes back
+_POLL_S = 0.2  # between two reads of the state of the job; set by hand
+_KEEP_ALIVE_S = 15.0  # until a comment is sent, so that proxies keep the connection, as the HTML standard advises
+_RETRY_MS = 1000  # after which a client reconnects; set by hand
 EVENT_SCHEMA = {
     "type": "object",
     "required": ["id", "event", "data"],
@@ -32,13 +32,14 @@ EVENT_SCHEMA = {
 
 
 async def job_events(context: Context, job: Job, last_id: int) -> AsyncIterator[str]:
-    """The events of a job from now on; the last one is that of its end.
+    """Yield the events of a job until its end.
 
-    An id is the time since the job was accepted, in milliseconds, so it grows over reconnections, whoever answers them.
+    An id is the time in milliseconds since the job was accepted, so that ids increase over reconnections, also if
+    another process serves them.
     """
     yield f"retry: {_RETRY_MS}\n\n"
-    said, said_at = "", time.monotonic()
-    ends_at = said_at + context.settings.max_stream_s
+    sent, sent_at = "", time.monotonic()
+    ends_at = sent_at + context.settings.max_stream_s
     while time.monotonic() < ends_at:
         last_id = max(_milliseconds(now() - job.created_at), last_id + 1)
         try:
@@ -46,19 +47,19 @@ async def job_events(context: Context, job: Job, last_id: int) -> AsyncIterator[
         except UnknownJob:
             return
         text = document.model_dump_json()
-        if text != said:
-            said, said_at = text, time.monotonic()
+        if text != sent:
+            sent, sent_at = text, time.monotonic()
             yield f"id: {last_id}\nevent: status\ndata: {text}\n\n"
-        elif time.monotonic() - said_at > _SILENCE_S:
-            said_at = time.monotonic()
+        elif time.monotonic() - sent_at > _KEEP_ALIVE_S:
+            sent_at = time.monotonic()
             yield ": still here\n\n"
         if document.finished_at is not None or not await run_in_threadpool(context.store.records.job, job.id):
             return
-        await asyncio.sleep(max(_LOOK_S, 2 * context.store.objects.poll_interval_s))
+        await asyncio.sleep(max(_POLL_S, 2 * context.store.objects.poll_interval_s))
 
 
-def has_seen_the_end(document: JobDocument, last_id: int) -> bool:
-    """Whether a client that got this id got the last event, so that coming back would be for nothing."""
+def has_last_event(document: JobDocument, last_id: int) -> bool:
+    """Return whether a client that received an event with this id has received the last one."""
     return document.finished_at is not None and last_id >= _milliseconds(document.finished_at - document.created_at)
 
 

@@ -1,4 +1,4 @@
-"""Which cut through the tree a result is asked for: a number of segments, a granularity, or splits chosen by hand."""
+"""The level of a result that a request selects: a number of segments, a granularity, or a set of splits."""
 
 from dataclasses import dataclass, replace
 from typing import Annotated
@@ -6,45 +6,45 @@ from typing import Annotated
 from fastapi import Depends, Query
 
 from segcore.errors import InvalidParameters
-from segcore.io.result import Segmentation
+from segcore.io import Segmentation
 from segcore.levels import Fineness, keep_splits
 
-_MOST_SPLITS = 10_000  # of any hierarchy
+_MAX_SPLITS = 10_000  # more than any hierarchy has
 
 
 @dataclass(frozen=True, slots=True)
 class ChosenCut:
-    """A result at one cut."""
+    """The result of a job at one level."""
 
+    job_id: str
     result: Segmentation
     segments: int
-    name: str  # the same for the same cut of the same job, as a part of an address
+    name: str  # identifies the level among those of the job; a part of a URL
 
 
 @dataclass(frozen=True, slots=True)
 class Level:
-    """What a request says."""
+    """The query parameters that select a level."""
 
     fineness: Fineness
-    splits: str | None  # in place of the fineness
+    splits: str | None  # instead of the fineness
 
-    def of(self, result: Segmentation) -> ChosenCut:
-        """The cut that is meant.
+    def of(self, job_id: str, result: Segmentation) -> ChosenCut:
+        """Return the result of a job at this level.
 
         Raises
         ------
         InvalidParameters
-            Where the hierarchy has no such cut.
+            If the hierarchy has no such level.
         """
         if self.splits is None:
             count = self.fineness.segments_of(result.hierarchy)
-            return ChosenCut(result, count, f"segments={count}")
+            return ChosenCut(job_id, result, count, f"segments={count}")
         if not self.fineness.is_automatic:
             raise InvalidParameters("Give one of segments, granularity and splits, not several.")
         chosen = sorted({int(split) for split in self.splits.split(",") if split})
-        hierarchy = keep_splits(result.hierarchy, chosen)
-        name = ",".join(map(str, chosen))
-        return ChosenCut(replace(result, hierarchy=hierarchy), len(chosen) + 1, f"splits={name}")
+        kept = replace(result, hierarchy=keep_splits(result.hierarchy, chosen))
+        return ChosenCut(job_id, kept, len(chosen) + 1, f"splits={','.join(map(str, chosen))}")
 
 
 Segments = Annotated[
@@ -55,7 +55,7 @@ Granularity = Annotated[
     Query(
         ge=0,
         le=1,
-        description="In place of segments: 0 is one segment, 0.5 automatic_segments, 1 max_segments; between them the "
+        description="Instead of segments: 0 is one segment, 0.5 automatic_segments, 1 max_segments; between them the "
         "number grows by equal factors for equal steps.",
         examples=[0.7],
     ),
@@ -69,9 +69,9 @@ async def _level(
         str | None,
         Query(
             pattern=r"^([0-9]{1,5}(,[0-9]{1,5})*)?$",
-            max_length=6 * _MOST_SPLITS,
-            description="In place of segments: the splits that are made, with commas between them. Split s makes the "
-            "nodes 2 s + 1 and 2 s + 2 of the hierarchy.",
+            max_length=6 * _MAX_SPLITS,
+            description="Instead of segments: the splits to be made, separated by commas. Split s creates the nodes "
+            "2 s + 1 and 2 s + 2 of the hierarchy.",
             examples=["0,1,4"],
         ),
     ] = None,

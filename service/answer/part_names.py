@@ -1,4 +1,4 @@
-"""Names of segments, as a client gives them for a file."""
+"""Names of segments that a client gives for a file."""
 
 import hashlib
 import re
@@ -9,15 +9,15 @@ from fastapi import Depends, Query
 from segcore.errors import InvalidParameters
 
 _NAME = re.compile(r"([0-9]{1,5}):(\S.*)", re.DOTALL)
-_LONGEST = 200  # characters, with the label
+_MAX_LENGTH = 200  # characters, with the label; set by hand
 
 
 async def _names(
     name: Annotated[
-        list[Annotated[str, Query(max_length=_LONGEST)]] | None,
+        list[Annotated[str, Query(max_length=_MAX_LENGTH)]] | None,
         Query(
             max_length=1000,
-            description="What a segment is called in the file, LABEL:NAME; may be given again for other labels.",
+            description="The name of a segment in the file, LABEL:NAME; may be repeated for other labels.",
             examples=[["3:left arm"]],
         ),
     ] = None,
@@ -31,6 +31,6 @@ async def _names(
 PartNames = Annotated[dict[int, str], Depends(_names)]
 
 
-def named(names: dict[int, str]) -> str:
-    """What names add to the address of a file: the same for the same names, nothing for none."""
+def names_digest(names: dict[int, str]) -> str:
+    """Return the query part that identifies a set of names, empty if there are none."""
     return f"&names={hashlib.sha256(repr(sorted(names.items())).encode()).hexdigest()}" if names else ""

@@ -1,31 +1,34 @@
-"""Answers that a client may have already, or wants a part of: RFC 9110, sections 13 (conditions) and 14 (ranges)."""
+"""Responses with ETags, byte ranges and compression (RFC 9110, sections 13 and 14)."""
 
 import gzip
 import hashlib
+import io
 import re
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
-from typing import Any
+from typing import Any, BinaryIO
 
 from fastapi import Request
 from starlette.responses import Response
 
-from service.problems import Problem
+from service.lookup import RESULT_PROBLEMS
+from service.problems import Problem, documented
 
-# Results never change, but who may read them does.
-FOR_EVER = "private, max-age=31536000, immutable"
+# Results never change, but access to them does, so that shared caches must not store them.
+IMMUTABLE = "private, max-age=31536000, immutable"
 _RESULT_HEADERS = {
-    "ETag": {"schema": {"type": "string"}, "description": "Of these bytes; for If-None-Match and If-Range."},
+    "ETag": {"schema": {"type": "string"}, "description": "Identifies these bytes; for If-None-Match and If-Range."},
     "Accept-Ranges": {"schema": {"const": "bytes"}},
     "Content-Encoding": {
         "schema": {"const": "gzip"},
-        "description": "Of labels and the hierarchy, where Accept-Encoding takes it and no range is asked for.",
+        "description": "Of labels and the hierarchy, if Accept-Encoding allows it and no range is requested.",
     },
 }
-NOT_MODIFIED = "The client has it already: If-None-Match names its ETag."
-# What shrinks to a part of itself in a moment; models and pictures hardly shrink, or take long.
-_SHRINKS = re.compile(r"text/.*|application/(.*\+)?json|application/x-npy|application/octet-stream")
-_GZIP_LEVEL = 1
+LEVEL_PROBLEMS = ("invalid_parameters", "invalid_request")  # codes for a level that does not exist
+NOT_MODIFIED = "Not modified: If-None-Match contains its ETag."
+# Media types that compress well and fast; models and pictures do not.
+_COMPRESSIBLE = re.compile(r"text/.*|application/(.*\+)?json|application/x-npy|application/octet-stream")
+_GZIP_LEVEL = 1  # the fastest, because results are compressed for every response
 _NO_QUALITY = re.compile(r"q\s*=\s*0(\.0*)?", re.IGNORECASE)
 _ONE_RANGE = re.compile(r"bytes=(\d{0,18})-(\d{0,18})", re.ASCII)
 
@@ -34,35 +37,43 @@ _ONE_RANGE = re.compile(r"bytes=(\d{0,18})-(\d{0,18})", re.ASCII)
 class Rendition:
     """One form of a result."""
 
-    identity: str  # equal for equal bytes only
+    identity: str  # determines the bytes
     media_type: str
     render: Callable[[], bytes]
-    file_name: str | None = None  # where it is to be saved rather than shown
-    vary: str | None = None  # the request header that chose it
+    file_name: str | None = None  # if browsers should save it rather than show it
+    vary: str | None = None  # the request header that selected it
 
 
-def rendition_responses(content: dict[str, Any], description: str) -> dict[int | str, dict[str, Any]]:
-    """The ways in which a result is answered, for the OpenAPI document."""
+def rendition_responses(content: dict[str, Any], description: str, *problems: str) -> dict[int | str, dict[str, Any]]:
+    """Return the ``responses`` of a route that answers with a rendition, for the OpenAPI document."""
     return {
         200: {"content": content, "description": description, "headers": _RESULT_HEADERS},
         206: {
             "content": {media_type: {"schema": {"type": "string", "format": "binary"}} for media_type in content},
-            "description": "The range of it that was asked for.",
+            "description": "The requested range.",
         },
         304: {"description": NOT_MODIFIED},
+        **documented(*RESULT_PROBLEMS, "range_not_satisfiable", *problems),
     }
 
 
+def to_bytes(write: Callable[[BinaryIO], object]) -> bytes:
+    """Return the bytes that a function writes to a file."""
+    target = io.BytesIO()
+    write(target)
+    return target.getvalue()
+
+
 def answer_rendition(request: Request, rendition: Rendition) -> Response:
-    """The bytes of a result, a range of them, or that the client has them."""
-    shrinks = _SHRINKS.fullmatch(rendition.media_type.partition(";")[0]) is not None
-    # A range is one of the bytes themselves: most who ask for it would take a piece of a compressed file for them.
-    is_gzip = shrinks and "range" not in request.headers and takes_gzip(request.headers.get("accept-encoding", ""))
+    """Return the response with the bytes of a rendition, a range of them, or status 304."""
+    compressible = _COMPRESSIBLE.fullmatch(rendition.media_type.partition(";")[0]) is not None
+    # Ranges refer to the uncompressed bytes: most clients would not recognize a piece of a compressed file as one.
+    is_gzip = compressible and "range" not in request.headers and takes_gzip(request.headers.get("accept-encoding", ""))
     tag = entity_tag(f"{rendition.identity}{';gzip' if is_gzip else ''}".encode())
-    headers = {"ETag": tag, "Cache-Control": FOR_EVER, "Accept-Ranges": "bytes"}
-    chosen_by = [rendition.vary, "Accept-Encoding" if shrinks else None]
-    if any(chosen_by):
-        headers["Vary"] = ", ".join(filter(None, chosen_by))
+    headers = {"ETag": tag, "Cache-Control": IMMUTABLE, "Accept-Ranges": "bytes"}
+    varies_by = [rendition.vary, "Accept-Encoding" if compressible else None]
+    if any(varies_by):
+        headers["Vary"] = ", ".join(filter(None, varies_by))
     if is_current(request, tag):
         return Response(status_code=304, headers=headers)
     if rendition.file_name:
@@ -75,12 +86,12 @@ def answer_rendition(request: Request, rendition: Rendition) -> Response:
             return Response(body[part.start : part.stop], 206, headers, rendition.media_type)
     if is_gzip:
         headers["Content-Encoding"] = "gzip"
-        body = gzip.compress(body, _GZIP_LEVEL, mtime=0)  # without the time: equal tags are of equal bytes
+        body = gzip.compress(body, _GZIP_LEVEL, mtime=0)  # no time stamp, so that equal tags mean equal bytes
     return Response(body, 200, headers, rendition.media_type)
 
 
 def takes_gzip(accept_encoding: str) -> bool:
-    """Whether an Accept-Encoding header takes gzip by its name (RFC 9110, section 12.5.3)."""
+    """Return whether an Accept-Encoding header names gzip as acceptable (RFC 9110, section 12.5.3)."""
     for coding in accept_encoding.split(","):
         name, _, weight = coding.partition(";")
         if name.strip().lower() in ("gzip", "x-gzip"):
@@ -89,7 +100,7 @@ def takes_gzip(accept_encoding: str) -> bool:
 
 
 def answer_json(request: Request, body: bytes, status: int = 200, headers: Mapping[str, str] | None = None) -> Response:
-    """What may have changed since the client asked last."""
+    """Return a response with JSON that may change, or status 304 if the client has it."""
     tag = entity_tag(body)
     all_headers = {"ETag": tag, "Cache-Control": "private, no-cache", **(headers or {})}
     if request.method == "GET" and is_current(request, tag):
@@ -98,16 +109,18 @@ def answer_json(request: Request, body: bytes, status: int = 200, headers: Mappi
 
 
 def entity_tag(identity: bytes) -> str:
+    """Return the ETag for an identity."""
     return f'"{hashlib.sha256(identity).hexdigest()[:32]}"'
 
 
 def is_current(request: Request, tag: str) -> bool:
+    """Return whether If-None-Match contains a tag."""
     known = [candidate.strip().removeprefix("W/") for candidate in request.headers.get("if-none-match", "").split(",")]
     return tag in known or known == ["*"]
 
 
 def _range(header: str | None, length: int) -> range | None:
-    """The bytes that are asked for; None where that is everything, or several ranges, which nobody has to serve."""
+    """Return the requested range, None for all bytes. Several ranges are answered with all bytes, as the RFC allows."""
     match = _ONE_RANGE.fullmatch(header.strip()) if header else None
     if match is None or match.groups() == ("", ""):
         return None

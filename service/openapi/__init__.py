@@ -1,1 +1,1 @@
-"""The OpenAPI document and the API reference made from it."""
+"""The OpenAPI document, the API reference and the lists of the page."""

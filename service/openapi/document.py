@@ -1,4 +1,4 @@
-"""The OpenAPI document: what FastAPI finds in the routes, and what it cannot know."""
+"""Completion of the OpenAPI document of FastAPI with models and errors that the routes do not declare."""
 
 from copy import deepcopy
 from typing import Any
@@ -11,7 +11,7 @@ from segcore.parameters import parameters_schema
 from service.documents import BatchJobs, HierarchyDocument, LabelsDocument, RunsDocument
 from service.problems import MEDIA_TYPE, ProblemDocument, documented
 
-# Models that are answered or taken as bytes, so that FastAPI does not see them.
+# Models of requests and responses that the routes handle as bytes, so that FastAPI does not find them.
 _HIDDEN_MODELS: tuple[type[BaseModel], ...] = (
     ProblemDocument,
     LabelsDocument,
@@ -20,26 +20,27 @@ _HIDDEN_MODELS: tuple[type[BaseModel], ...] = (
     BatchJobs,
 )
 _PLACE = "#/components/schemas/{model}"
-_OF_THE_STORE = ("/v1/jobs", "/v1/batches")  # paths whose operations need the store
+_STORE_PATHS = ("/v1/jobs", "/v1/batches")  # the operations below them need the store
 _UNUSED = ("HTTPValidationError", "ValidationError")
 
 PARAMETERS = {"$ref": _PLACE.format(model="Parameters")}
 
 _ABOUT = """\
-Submit a mesh, poll the job or listen to it, fetch labels, the hierarchy of parts, and coloured models at any number of
-segments. Labels are per face, in the order of the file: face *i* is the *i*-th triangle, polygons being cut into fans.
+Submit a mesh, poll the job or read its events, and get labels, the hierarchy of parts, and coloured models at any
+number of segments. Labels are per face, in the order of the file: face *i* is the *i*-th triangle after polygons are
+split into fans.
 
 Every error is `application/problem+json` (RFC 9457): a stable `code` for programs and a `detail` that says what to do.
 """
 
 
 def ref(model: type[BaseModel]) -> dict[str, str]:
-    """The schema of one of the hidden models."""
+    """Return a reference to the schema of a model."""
     return {"$ref": _PLACE.format(model=model.__name__)}
 
 
 def complete(app: FastAPI, *, keys_required: bool) -> None:
-    """Have an application serve the whole document."""
+    """Let an application serve the completed document."""
     app.description = _ABOUT
     original = app.openapi
 
@@ -62,7 +63,7 @@ def _completed(document: dict[str, Any], keys_required: bool) -> dict[str, Any]:
         for operation in operations.values():
             _correct(operation, keys_required)
             _add_problem(operation, "malformed_request")
-            if path.startswith(_OF_THE_STORE):
+            if path.startswith(_STORE_PATHS):
                 _add_problem(operation, "store_unavailable")
     if not keys_required:
         document["components"].pop("securitySchemes", None)
@@ -70,7 +71,7 @@ def _completed(document: dict[str, Any], keys_required: bool) -> dict[str, Any]:
 
 
 def _correct(operation: dict[str, Any], keys_required: bool) -> None:
-    """Take out errors that are answered otherwise here, and keys where none are required."""
+    """Remove the validation errors of FastAPI, and the API key if none is required."""
     responses = operation["responses"]
     for status, response in list(responses.items()):
         schema = response.get("content", {}).get("application/json", {}).get("schema", {}).get("$ref", "")
@@ -81,9 +82,9 @@ def _correct(operation: dict[str, Any], keys_required: bool) -> None:
 
 
 def _add_problem(operation: dict[str, Any], code: str) -> None:
-    """Say that an operation may answer with a problem, beside what it says already of the same status."""
+    """Add a problem to the responses of an operation, besides other problems with the same status."""
     for status, response in documented(code).items():
-        there = operation["responses"].setdefault(str(status), response)
-        if there is not response:
-            there["description"] += f" `{code}`"
-            there["content"][MEDIA_TYPE]["examples"] |= response["content"][MEDIA_TYPE]["examples"]
+        existing = operation["responses"].setdefault(str(status), response)
+        if existing is not response:
+            existing["description"] += f" `{code}`"
+            existing["content"][MEDIA_TYPE]["examples"] |= response["content"][MEDIA_TYPE]["examples"]

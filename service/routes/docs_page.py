@@ -1,4 +1,4 @@
-"""The page at /docs: the reference, from this server alone."""
+"""The API reference at /docs, which loads nothing from other servers."""
 
 from fastapi import APIRouter, Request
 from starlette.responses import HTMLResponse, Response

@@ -1,4 +1,4 @@
-"""The result file as it is stored: everything that was computed, in one piece."""
+"""The stored result file."""
 
 import os
 from collections.abc import Iterator
@@ -7,19 +7,17 @@ from typing import Annotated, BinaryIO
 from fastapi import APIRouter, Query, Request
 from starlette.responses import Response, StreamingResponse
 
-from service.answer.renditions import FOR_EVER, NOT_MODIFIED, entity_tag, is_current
+from service.answer.renditions import IMMUTABLE, NOT_MODIFIED, entity_tag, is_current
 from service.context import ContextOf
 from service.guard.callers import CallerOf
-from service.lookup import check_succeeded, known_job
+from service.lookup import RESULT_PROBLEMS, JobId, check_succeeded, find_job
 from service.problems import documented
-from service.routes.jobs import JobId
-from service.routes.results import NO_RESULT
 
 router = APIRouter(prefix="/v1/jobs/{job_id}", tags=["results"])
 
 _MEDIA_TYPE = "application/octet-stream"
-_PIECE_BYTES = 1024 * 1024
-_URL_VALID_S = 300.0
+_CHUNK_BYTES = 1024 * 1024
+_URL_VALID_S = 300.0  # set by hand: to begin the download, which may then take longer
 
 
 @router.get(
@@ -29,10 +27,10 @@ _URL_VALID_S = 300.0
         200: {"content": {_MEDIA_TYPE: {"schema": {"type": "string", "format": "binary"}}}, "description": "The file."},
         304: {"description": NOT_MODIFIED},
         307: {
-            "description": "The file is at an address of the bucket, for five minutes and for whoever knows it.",
+            "description": "The file is at a URL of the bucket, valid for five minutes and without credentials.",
             "headers": {"Location": {"schema": {"type": "string", "format": "uri"}}},
         },
-        **documented(*NO_RESULT, "invalid_request"),
+        **documented(*RESULT_PROBLEMS, "invalid_request"),
     },
 )
 def get_result_file(
@@ -40,27 +38,28 @@ def get_result_file(
     request: Request,
     context: ContextOf,
     caller: CallerOf,
-    redirect: Annotated[
-        bool, Query(description="Where the store is a bucket, answer with an address in it instead of the file.")
-    ] = False,
+    redirect: Annotated[bool, Query(description="If the store is a bucket, redirect to the file in it.")] = False,
 ) -> Response:
-    """The mesh and its whole hierarchy in one file, which `cleave convert` turns into others."""
-    job = known_job(context, caller, job_id)
+    """The mesh and its hierarchy in one file, which `cleave convert` converts to other formats."""
+    job = find_job(context, caller, job_id)
     check_succeeded(context, job)
-    headers = {"ETag": entity_tag(f"{job.id}/result.cleave".encode()), "Cache-Control": FOR_EVER}
+    headers = {"ETag": entity_tag(f"{job.id}/result.cleave".encode()), "Cache-Control": IMMUTABLE}
     if is_current(request, headers["ETag"]):
         return Response(status_code=304, headers=headers)
-    address = context.store.results.presigned_url(job.id, _URL_VALID_S) if redirect else None
-    if address is not None:
-        return Response(status_code=307, headers={"Location": address, "Cache-Control": "no-store"})
-    file = context.store.results.open(job.id)
-    headers["Content-Length"] = str(file.seek(0, os.SEEK_END))
+    url = context.store.results.presigned_url(job.id, _URL_VALID_S) if redirect else None
+    if url is not None:
+        return Response(status_code=307, headers={"Location": url, "Cache-Control": "no-store"})
     headers["Content-Disposition"] = f'attachment; filename="{job.id}.cleave"'
+    return _streamed(context.store.results.open(job.id), headers)
+
+
+def _streamed(file: BinaryIO, headers: dict[str, str]) -> StreamingResponse:
+    length = {"Content-Length": str(file.seek(0, os.SEEK_END))}
     file.seek(0)
-    return StreamingResponse(_pieces(file), media_type=_MEDIA_TYPE, headers=headers)
+    return StreamingResponse(_chunks(file), media_type=_MEDIA_TYPE, headers=headers | length)
 
 
-def _pieces(file: BinaryIO) -> Iterator[bytes]:
+def _chunks(file: BinaryIO) -> Iterator[bytes]:
     with file:
-        while piece := file.read(_PIECE_BYTES):
-            yield piece
+        while chunk := file.read(_CHUNK_BYTES):
+            yield chunk

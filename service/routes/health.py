@@ -1,4 +1,4 @@
-"""Whether the service lives, and whether it can do its work."""
+"""Health, readiness and metrics."""
 
 from fastapi import APIRouter
 from prometheus_client.exposition import CONTENT_TYPE_PLAIN_1_0_0, generate_latest
@@ -17,7 +17,7 @@ router = APIRouter(tags=["health"])
 
 @router.get("/healthz", response_model=Health)
 async def get_health() -> Health:
-    """The process answers."""
+    """The process responds."""
     return Health()
 
 
@@ -25,7 +25,7 @@ async def get_health() -> Health:
     "/readyz", response_model=Readiness, responses={503: {"model": Readiness, "description": "Something is missing."}}
 )
 def get_readiness(response: Response, context: ContextOf) -> Readiness:
-    """A job that is submitted now would be run: the queue answers, the store is writable, both queues have workers."""
+    """A submitted job would run now: the queue answers, the store is writable, and both queues have workers."""
     readiness = _readiness(context)
     response.status_code = 200 if readiness.ready else 503
     return readiness
@@ -35,12 +35,15 @@ def get_readiness(response: Response, context: ContextOf) -> Readiness:
     "/metrics",
     response_class=Response,
     responses={
-        200: {"content": {"text/plain": {"schema": {"type": "string"}}}, "description": "In the text format."},
+        200: {
+            "content": {"text/plain": {"schema": {"type": "string"}}},
+            "description": "In the text format of Prometheus.",
+        },
         **documented("unauthorized"),
     },
 )
 def get_metrics(context: ContextOf, caller: CallerOf) -> Response:  # noqa: ARG001
-    """Metrics for Prometheus. Where API keys are required, any will do."""
+    """Metrics for Prometheus. If API keys are required, any key is accepted."""
     return Response(generate_latest(context.metrics.registry), headers={"Content-Type": CONTENT_TYPE_PLAIN_1_0_0})
 
 

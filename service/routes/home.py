@@ -1,4 +1,4 @@
-"""The viewer at /: a page of static files, and meshes to try it with. Its sources are in viewer/."""
+"""The viewer at /, a page of static files, and its sample meshes. The sources of the page are in viewer/."""
 
 from functools import cache
 from hashlib import sha256
@@ -12,7 +12,7 @@ from service.samples import SAMPLES, sample_ply
 
 router = APIRouter(include_in_schema=False)
 
-# Nothing from elsewhere, nothing inline: what the page shows of a job can only come from this server.
+# No other origins and nothing inline, so that the page can only show data of this server.
 _POLICY = (
     "default-src 'none'; script-src 'self'; style-src 'self'; connect-src 'self'; img-src 'self' blob:; "
     "form-action 'self'; base-uri 'none'; frame-ancestors 'none'"
@@ -35,7 +35,7 @@ def get_home(request: Request) -> Response:
 
 @router.get("/viewer/{name}")
 def get_viewer_file(name: str, request: Request) -> Response:
-    """The page's own files; <cleave-viewer> may be loaded by pages of other origins."""
+    """The files of the page; pages of other origins may load <cleave-viewer>."""
     suffix = name[name.rfind(".") :]
     if name not in _files() or suffix not in _MEDIA_TYPES:
         raise HTTPException(404)
@@ -60,6 +60,6 @@ def _answer(request: Request, name: str, media_type: str, headers: dict[str, str
 
 @cache
 def _files() -> dict[str, tuple[bytes, str]]:
-    """The built files and their tags, by name; they are part of the installed package and do not change."""
+    """Return the built files and their ETags by name; they are part of the package and do not change."""
     contents = {entry.name: entry.read_bytes() for entry in files("service").joinpath("viewer").iterdir()}
     return {name: (content, f'"{sha256(content).hexdigest()[:32]}"') for name, content in contents.items()}

@@ -1,4 +1,4 @@
-"""Webhooks: what their receivers have to know."""
+"""The secret that receivers of webhooks need."""
 
 from fastapi import APIRouter
 
@@ -14,5 +14,5 @@ router = APIRouter(prefix="/v1/webhooks", tags=["webhooks"])
 
 @router.get("/secret", response_model=WebhookSecret, responses=documented("unauthorized"))
 async def get_webhook_secret(context: ContextOf, caller: CallerOf) -> WebhookSecret:
-    """The secret with which messages to the caller's webhooks are signed, as in Standard Webhooks 1.0."""
+    """The secret that signs the messages to webhooks of the caller, as in Standard Webhooks 1.0."""
     return WebhookSecret(secret=shown_secret(webhook_secret(context.secret, caller.owner)))

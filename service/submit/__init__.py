@@ -1,1 +1,1 @@
-"""Submitting: a request becomes meshes in the store and jobs in the queue."""
+"""Submissions: a request becomes meshes in the store and jobs in the queue."""

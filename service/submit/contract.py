@@ -1,13 +1,11 @@
-"""What the OpenAPI document says about submitting."""
+"""The OpenAPI description of submissions: bodies, shared parameters, responses and errors."""
 
-from typing import Annotated, Any
-
-from fastapi import Query
+from typing import Any
 
 from segcore.io import FORMATS
-from service.documents import JobDocument, SubmittedJobDocument
-from service.openapi.document import PARAMETERS
-from service.submit.form import MAX_PARAMETERS_BYTES
+from service.answer.archive import ZIP
+from service.documents import BatchDocument, BatchJobs, JobDocument, SubmittedJobDocument
+from service.openapi.document import PARAMETERS, ref
 from service.submit.request import FORM_TYPE
 
 SUBMISSION_PROBLEMS = (
@@ -27,55 +25,58 @@ SUBMISSION_PROBLEMS = (
     "queue_unavailable",
     "insufficient_storage",
 )
-MESH_SCHEMA = {"type": "string", "format": "binary", "minLength": 1, "description": "The bytes of a mesh file."}
-_MESH = {"schema": MESH_SCHEMA}
-_FORM = {
-    "schema": {
-        "type": "object",
-        "required": ["mesh"],
-        "additionalProperties": False,
-        "properties": {
-            "mesh": MESH_SCHEMA,
-            "parameters": PARAMETERS,
-        },
-    },
-    "encoding": {"parameters": {"contentType": "application/json"}},
-}
-PARAMETERS_IN_QUERY = {
+JSON = "application/json"
+_MESH = {"type": "string", "format": "binary", "minLength": 1, "description": "The bytes of a mesh file."}
+_PARAMETERS_IN_QUERY = {
     "name": "parameters",
     "in": "query",
-    "description": "The parameters, where the body is not a form.",
-    "content": {"application/json": {"schema": PARAMETERS, "example": {"max_segments": 32}}},
+    "description": "The parameters, if the body is not a form.",
+    "content": {JSON: {"schema": PARAMETERS, "example": {"max_segments": 32}}},
 }
-ParametersInQuery = Annotated[str | None, Query(max_length=MAX_PARAMETERS_BYTES, include_in_schema=False)]
-Webhook = Annotated[
-    str | None,
-    Query(
-        max_length=2000,
-        description="The URL that is told when the job has ended, as in Standard Webhooks.",
-        json_schema_extra={"pattern": r"^https?://[A-Za-z0-9.-]+(:[0-9]{1,4})?(/[!-~]*)?$"},
-        examples=["https://example.com/hook"],
-    ),
-]
-BODY: dict[str, Any] = {
-    "parameters": [PARAMETERS_IN_QUERY],
+
+
+def _form(mesh: dict[str, Any]) -> dict[str, Any]:
+    return {
+        "schema": {
+            "type": "object",
+            "required": ["mesh"],
+            "additionalProperties": False,
+            "properties": {"mesh": mesh, "parameters": PARAMETERS},
+        },
+        "encoding": {"parameters": {"contentType": JSON}},
+    }
+
+
+JOB_BODY: dict[str, Any] = {
+    "parameters": [_PARAMETERS_IN_QUERY],
     "requestBody": {
         "required": True,
-        "description": "The mesh file as it is, also compressed with gzip, or in a form.",
+        "description": "The mesh file, optionally compressed with gzip, or a form that contains it.",
         "content": {
-            **{form.media_types[0]: _MESH for form in FORMATS.values()},
-            "application/octet-stream": _MESH,
-            FORM_TYPE: _FORM,
+            **{form.media_types[0]: {"schema": _MESH} for form in FORMATS.values()},
+            "application/octet-stream": {"schema": _MESH},
+            FORM_TYPE: _form(_MESH),
+        },
+    },
+}
+BATCH_BODY: dict[str, Any] = {
+    "parameters": [_PARAMETERS_IN_QUERY],
+    "requestBody": {
+        "required": True,
+        "content": {
+            FORM_TYPE: _form({"type": "array", "minItems": 1, "items": _MESH}),
+            ZIP: {"schema": {"type": "string", "format": "binary", "description": "A ZIP archive of mesh files."}},
+            JSON: {"schema": ref(BatchJobs)},
         },
     },
 }
 _JOB_HEADERS: dict[str, Any] = {
     "Location": {"schema": {"type": "string"}, "description": "The path of the job."},
-    "RateLimit": {"schema": {"type": "string"}, "description": "What is left of the caller's limits."},
-    "RateLimit-Policy": {"schema": {"type": "string"}, "description": "The caller's limits."},
-    "Preference-Applied": {"schema": {"type": "string"}, "description": "The part of Prefer that was followed."},
+    "RateLimit": {"schema": {"type": "string"}, "description": "The remaining limits of the caller."},
+    "RateLimit-Policy": {"schema": {"type": "string"}, "description": "The limits of the caller."},
+    "Preference-Applied": {"schema": {"type": "string"}, "description": "The preference that was applied."},
 }
-_FOLLOWERS = (
+_JOB_OPERATIONS = (
     "get_job",
     "get_events",
     "get_labels",
@@ -87,20 +88,31 @@ _FOLLOWERS = (
 )
 _LINKS = {
     name: {"operationId": name, "parameters": {"job_id": "$response.body#/id"}, "description": "Of this job."}
-    for name in _FOLLOWERS
+    for name in _JOB_OPERATIONS
 }
-ANSWERS: dict[int | str, dict[str, Any]] = {
+JOB_RESPONSES: dict[int | str, dict[str, Any]] = {
     200: {
         "model": SubmittedJobDocument,
-        "description": "The job has ended: within the time of Prefer: wait, or before, with the same mesh and "
+        "description": "The job has ended: within the time of Prefer: wait, or earlier, with the same mesh and "
         "parameters.",
         "headers": _JOB_HEADERS,
         "links": _LINKS,
     },
     202: {
         "model": JobDocument,
-        "description": "The job is accepted and durable. Poll its Location, or listen to its events.",
+        "description": "The job is accepted and stored. Poll its Location, or read its events.",
         "headers": {**_JOB_HEADERS, "Retry-After": {"schema": {"type": "integer"}, "description": "Seconds."}},
         "links": _LINKS,
     },
+}
+BATCH_RESPONSES: dict[int | str, dict[str, Any]] = {
+    202: {
+        "model": BatchDocument,
+        "description": "All jobs of the batch are accepted.",
+        "headers": {"Location": {"schema": {"type": "string"}, "description": "The path of the batch."}},
+        "links": {
+            name: {"operationId": name, "parameters": {"batch_id": "$response.body#/id"}}
+            for name in ("get_batch", "get_batch_results", "delete_batch")
+        },
+    }
 }

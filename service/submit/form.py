@@ -1,4 +1,4 @@
-"""A multipart/form-data body, read as it comes: the meshes go to their uploads, the parameters are kept."""
+"""A streaming parser for multipart/form-data: meshes are written to uploads, parameters are kept in memory."""
 
 from collections.abc import Callable
 from dataclasses import dataclass, field
@@ -11,25 +11,27 @@ from service.problems import Problem
 from worker.jobs.store.upload import MeshUpload
 
 MAX_PARAMETERS_BYTES = 16 * 1024
-MAX_ENVELOPE_BYTES = 64 * 1024  # boundaries and headers of a form with one mesh
+MAX_ENVELOPE_BYTES = 64 * 1024  # of boundaries and headers per mesh; set by hand
 
 
 @dataclass(frozen=True, slots=True)
 class ReceivedMesh:
-    """A mesh that was sent, not yet accepted."""
+    """An uploaded mesh that is not yet accepted."""
 
     upload: MeshUpload
-    file_name: str | None  # as the client says
+    file_name: str | None  # as given by the client, unchecked
 
 
 @dataclass(slots=True)
 class Form:
+    """The fields of a parsed form."""
+
     meshes: list[ReceivedMesh] = field(default_factory=list)
     parameters: bytearray = field(default_factory=bytearray)  # JSON text
 
 
 class FormReader:
-    """The state of one form between the pieces of its body."""
+    """A parser of one form, fed with the chunks of its body."""
 
     def __init__(
         self, boundary: bytes, begin_upload: Callable[[], MeshUpload], max_mesh_bytes: int, max_meshes: int = 1
@@ -46,14 +48,28 @@ class FormReader:
         self._parser = MultipartParser(boundary, self._callbacks())
 
     def feed(self, data: bytes) -> None:
+        """Parse the next chunk.
+
+        Raises
+        ------
+        Problem
+            If the form is malformed, has an unknown field, or exceeds a limit.
+        """
         try:
             self._parser.write(data)
         except FormParserError as error:
             raise Problem("malformed_request", "The body is not well-formed multipart/form-data.") from error
 
     def finish(self) -> Form:
+        """Return the form after the last chunk.
+
+        Raises
+        ------
+        Problem
+            If the form is incomplete or has no mesh.
+        """
         if not self._is_complete:
-            raise Problem("malformed_request", "The form is cut short: its last boundary is missing.")
+            raise Problem("malformed_request", "The form is incomplete: its last boundary is missing.")
         if not self._form.meshes:
             raise Problem("malformed_request", "The form has no field mesh: send the mesh file in it.")
         return self._form
@@ -85,16 +101,16 @@ class FormReader:
         if self._field == "mesh":
             self._begin_mesh(options.get(b"filename"))
         elif self._field != "parameters":
-            _refuse(f"There is no field {self._field[:80]!r}: the fields are mesh and parameters.")
+            _refuse(f"The field {self._field[:80]!r} is unknown: the fields are mesh and parameters.")
         elif "parameters" in self._seen:
-            _refuse("The field parameters is there twice.")
+            _refuse("The form has two fields parameters: send one.")
         self._seen.add(self._field)
 
     def _begin_mesh(self, file_name: bytes | None) -> None:
         if len(self._form.meshes) == self._max_meshes:
             if self._max_meshes == 1:
-                _refuse("The field mesh is there twice: send one job per request, or many to /v1/batches.")
-            raise Problem("too_large", f"A batch has at most {self._max_meshes} jobs: send the rest in another.")
+                _refuse("The form has two fields mesh: send one job per request, or many to /v1/batches.")
+            raise Problem("too_large", f"A batch has at most {self._max_meshes} jobs: send the rest in another one.")
         name = None if file_name is None else file_name.decode("utf-8", "replace")
         self._form.meshes.append(ReceivedMesh(self._begin_upload(), name))
 
@@ -115,14 +131,21 @@ class FormReader:
 
 
 def write_capped(upload: MeshUpload, data: bytes, max_mesh_bytes: int) -> None:
-    """Write on, unless the mesh would become larger than it may be."""
+    """Append data to an upload.
+
+    Raises
+    ------
+    Problem
+        If the mesh becomes larger than ``max_mesh_bytes``.
+    """
     if upload.size_bytes + len(data) > max_mesh_bytes:
         refuse_size(max_mesh_bytes)
     upload.write(data)
 
 
 def refuse_size(max_mesh_bytes: int) -> NoReturn:
-    raise Problem("too_large", f"The mesh is larger than the {max_mesh_bytes} bytes that this server takes.")
+    """Raise the problem for a mesh that is too large."""
+    raise Problem("too_large", f"The mesh is larger than the {max_mesh_bytes} bytes that this server accepts.")
 
 
 def _refuse(sentence: str) -> NoReturn:

@@ -1,4 +1,4 @@
-"""A received mesh becomes a job: a new one, or the one that has computed the same before."""
+"""Creation of a job for an uploaded mesh, or reuse of one with the same mesh and parameters."""
 
 import logging
 from dataclasses import asdict, dataclass
@@ -19,90 +19,87 @@ log = logging.getLogger("cleave.intake")
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class Wish:
-    """What a client wants done with a mesh."""
+class JobRequest:
+    """A validated request for a job."""
 
     parameters: SegmentationParameters
     mesh_format: str | None = None
     file_name: str | None = None
     webhook_url: str | None = None
     idempotency_key: str | None = None
-    may_reuse: bool = True  # a result that was computed before will do
+    may_reuse: bool = True  # the result of an earlier job with the same mesh and parameters is sufficient
 
 
 @dataclass(frozen=True, slots=True)
-class Taken:
-    """The job that a client gets."""
+class Receipt:
+    """The job of a request."""
 
     job: Job
-    is_new: bool
+    is_new: bool  # not reused, and not the job of an earlier request with the same Idempotency-Key
 
 
-def take_in(context: Context, caller: Caller, received: ReceivedMesh, wish: Wish) -> Taken:
-    """Accept a mesh into the store and let it wait.
+def accept_job(context: Context, caller: Caller, mesh: ReceivedMesh, wanted: JobRequest) -> Receipt:
+    """Accept a job into the store and enqueue it, unless an existing job serves the request.
 
     Raises
     ------
     Problem
-        Where the mesh is empty, or the Idempotency-Key stands for another request or a deleted job.
+        If the mesh is empty, or the Idempotency-Key belongs to another request or a deleted job.
     """
-    job = _candidate(context, caller, received, wish)
-    if wish.may_reuse and not (wish.idempotency_key and context.store.records.job(job.id)):
+    job = _new_job(context, caller, mesh, wanted)
+    if wanted.may_reuse and not (wanted.idempotency_key and context.store.records.job(job.id)):
         known = context.store.computed_before(job)
         if known is not None:
-            return Taken(known, is_new=False)
-    if wish.idempotency_key and context.store.deletions.was_deleted(job.id, caller.owner):
-        raise Problem("idempotency_key_spent", "The job of this Idempotency-Key was deleted: use another key.")
+            return Receipt(known, is_new=False)
+    if wanted.idempotency_key and context.store.deletions.was_deleted(job.id, caller.owner):
+        raise Problem("idempotency_key_spent")
     try:
-        context.store.accept(job, received.upload)
+        context.store.accept(job, mesh.upload)
     except JobExists:
-        return _replayed(context, job)
+        return _existing(context, job)
     with about(job.id, job.traceparent):
         log.info("accepted", extra={"fields": {"bytes": job.size_bytes, "owner": job.owner}})
-        enqueue(context, job)
-    return Taken(job, is_new=True)
+        _enqueue(context, job)
+    return Receipt(job, is_new=True)
 
 
-def enqueue(context: Context, job: Job) -> None:
-    """Let a job into the queue as far as its owner may have jobs there."""
+def _enqueue(context: Context, job: Job) -> None:
+    """Enqueue a job, if its owner may have one more in the queue."""
     try:
         context.admit(job.owner, job)
     except QueueError:
-        log.warning("the queue did not take the job; the janitor will see to it")
+        log.warning("the job could not be enqueued; the janitor will enqueue it")
 
 
-def _candidate(context: Context, caller: Caller, received: ReceivedMesh, wish: Wish) -> Job:
-    upload = received.upload
+def _new_job(context: Context, caller: Caller, mesh: ReceivedMesh, wanted: JobRequest) -> Job:
+    upload = mesh.upload
     if upload.size_bytes == 0:
-        raise Problem("invalid_mesh", "The mesh file is empty: send one with faces.")
-    name = wish.file_name or received.file_name
+        raise Problem("invalid_mesh")
+    name = wanted.file_name or mesh.file_name
     return Job(
-        id=_job_id(context, caller, wish.idempotency_key),
+        id=_job_id(context, caller, wanted.idempotency_key),
         sha256=upload.sha256,
         size_bytes=upload.size_bytes,
-        mesh_format=wish.mesh_format or mesh_format(name),
-        parameters=asdict(wish.parameters),
+        mesh_format=wanted.mesh_format or mesh_format(name),
+        parameters=asdict(wanted.parameters),
         created_at=now(),
         file_name=file_label(name),
         owner=caller.owner,
         version=context.version,
-        webhook_url=wish.webhook_url,
+        webhook_url=wanted.webhook_url,
         traceparent=current_traceparent(),
     )
 
 
 def _job_id(context: Context, caller: Caller, idempotency_key: str | None) -> str:
-    """The same for the same key of the same caller, so that the store itself keeps a second job from being made."""
+    """Return an id that is derived from the Idempotency-Key, so that the store itself prevents a second job."""
     if idempotency_key is None:
         return new_job_id()
     return context.secret.derive("job", caller.owner or "", idempotency_key).hex()[:32]
 
 
-def _replayed(context: Context, job: Job) -> Taken:
+def _existing(context: Context, job: Job) -> Receipt:
     first = context.store.records.job(job.id)
     if first is None or fingerprint(first) != fingerprint(job):
-        raise Problem(
-            "idempotency_key_reused",
-            "This Idempotency-Key was sent with another mesh or other parameters: use a new key.",
-        )
-    return Taken(first, is_new=False)
+        raise Problem("idempotency_key_reused")
+    return Receipt(first, is_new=False)

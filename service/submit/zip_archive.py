@@ -1,4 +1,4 @@
-"""A ZIP archive of meshes, unpacked member by member under limits: nothing in it is believed, no name is a path."""
+"""Extraction of an untrusted ZIP archive of meshes: sizes are limited, and names are never used as paths."""
 
 import os
 import struct
@@ -11,20 +11,20 @@ from service.problems import Problem
 from service.submit.form import ReceivedMesh, write_capped
 from worker.jobs.store.upload import MeshUpload
 
-_PIECE_BYTES = 1024 * 1024
-_END = b"PK\5\6"  # of the central directory, with its size 12 bytes further on
-_LONGEST_END = 22 + 65_535  # with the longest comment
-_ENTRY_BYTES = 1024  # of the central directory, for one member; names are not longer than that
-_SPARE_ENTRIES = 1024  # folders and what systems add
+_CHUNK_BYTES = 1024 * 1024
+_END = b"PK\5\6"  # end of central directory record; the size of the directory is 12 bytes after it
+_MAX_END_BYTES = 22 + 65_535  # of that record, with the longest comment
+_ENTRY_BYTES = 1024  # of the central directory per member, with a name of usual length; set by hand
+_SPARE_ENTRIES = 1024  # for folders and files that operating systems add; set by hand
 
 
-def unpack(path: Path, settings: Settings, begin_upload: Callable[[], MeshUpload]) -> list[ReceivedMesh]:
-    """The meshes in an archive, in its order.
+def extract(path: Path, settings: Settings, begin_upload: Callable[[], MeshUpload]) -> list[ReceivedMesh]:
+    """Write the meshes of an archive to uploads, in the order of the archive.
 
     Raises
     ------
     Problem
-        Where it is no readable ZIP archive, has no members, or is larger than a limit, packed or unpacked.
+        If the file is not a readable ZIP archive, contains no files, or exceeds a limit, compressed or not.
     """
     _check_directory(path, settings)
     meshes: list[ReceivedMesh] = []
@@ -36,20 +36,22 @@ def unpack(path: Path, settings: Settings, begin_upload: Callable[[], MeshUpload
                     raise Problem("too_large", f"A batch has at most {settings.max_batch_jobs} jobs.")
                 upload = begin_upload()
                 with archive.open(member) as source:
-                    while piece := source.read(_PIECE_BYTES):
-                        write_capped(upload, piece, min(settings.max_upload_bytes, left))
+                    while chunk := source.read(_CHUNK_BYTES):
+                        write_capped(upload, chunk, min(settings.max_upload_bytes, left))
                 upload.close()
                 left -= upload.size_bytes
                 meshes.append(ReceivedMesh(upload, member.filename))
     except (zipfile.BadZipFile, NotImplementedError, RuntimeError, EOFError, ValueError) as error:
-        raise Problem("malformed_request", "The archive is damaged, encrypted or not ZIP: make it again.") from error
+        raise Problem(
+            "malformed_request", "The archive is damaged, encrypted or not a ZIP archive: create it again."
+        ) from error
     if not meshes:
-        raise Problem("malformed_request", "The archive holds no files: put the meshes into it.")
+        raise Problem("malformed_request", "The archive contains no files: add the meshes to it.")
     return meshes
 
 
 def _members(archive: zipfile.ZipFile) -> Iterator[zipfile.ZipInfo]:
-    """The files that a person put in, without folders and without what systems add."""
+    """Yield the files of an archive, without folders, hidden files and files that operating systems add."""
     for member in archive.infolist():
         parts = PurePosixPath(member.filename).parts
         if not member.is_dir() and not any(part.startswith(".") or part == "__MACOSX" for part in parts):
@@ -57,14 +59,20 @@ def _members(archive: zipfile.ZipFile) -> Iterator[zipfile.ZipInfo]:
 
 
 def _check_directory(path: Path, settings: Settings) -> None:
-    """Refuse a list of contents that would take much memory to read."""
+    """Check the size of the central directory, which zipfile reads into memory.
+
+    Raises
+    ------
+    Problem
+        If the directory is missing or too large.
+    """
     with path.open("rb") as file:
         size = file.seek(0, os.SEEK_END)
-        file.seek(max(0, size - _LONGEST_END))
+        file.seek(max(0, size - _MAX_END_BYTES))
         tail = file.read()
     at = tail.rfind(_END)
     if at < 0 or len(tail) < at + 16:
-        raise Problem("malformed_request", "The archive is damaged or not ZIP: make it again.")
+        raise Problem("malformed_request", "The archive is damaged or not a ZIP archive: create it again.")
     (directory_bytes,) = struct.unpack_from("<I", tail, at + 12)
     if directory_bytes > (settings.max_batch_jobs + _SPARE_ENTRIES) * _ENTRY_BYTES:
         raise Problem(

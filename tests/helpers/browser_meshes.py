@@ -1,23 +1,9 @@
 """Mesh files for the tests of the viewer."""
 
-import io
-
-import numpy as np
-
-from segcore.mesh import Mesh
+from helpers.files.written import mesh_bytes
 from segcore.shapes import burr
 
 
 def small_burr() -> bytes:
     """A ball with six arms, 5120 faces, as PLY."""
-    return ply(burr(4).mesh)
-
-
-def ply(mesh: Mesh) -> bytes:
-    text = io.StringIO()
-    text.write(f"ply\nformat ascii 1.0\nelement vertex {len(mesh.vertices)}\n")
-    text.write("property float x\nproperty float y\nproperty float z\n")
-    text.write(f"element face {len(mesh.faces)}\nproperty list uchar int vertex_indices\nend_header\n")
-    np.savetxt(text, mesh.vertices, fmt="%.6f")
-    np.savetxt(text, np.insert(mesh.faces, 0, 3, axis=1), fmt="%d")
-    return text.getvalue().encode()
+    return mesh_bytes(burr(4).mesh, "ply")

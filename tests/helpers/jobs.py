@@ -1,9 +1,9 @@
 """Meshes and jobs for the tests of store, queue and workers."""
 
-import io
-
 import numpy as np
 
+from helpers.files.written import mesh_bytes
+from segcore.mesh import Mesh
 from worker.jobs.job import Job, new_job_id, now
 from worker.jobs.size_class import SizeClass
 from worker.jobs.store.store import JobStore
@@ -32,11 +32,7 @@ def sphere(rows: int, bumps: float = 0.25) -> bytes:
             np.stack([np.full(columns, south), following[-1], index[-1]], axis=-1),
         ]
     )
-    text = io.StringIO()
-    text.write(f"OFF\n{len(vertices)} {len(faces)} 0\n")
-    np.savetxt(text, vertices, fmt="%.6f")
-    np.savetxt(text, np.insert(faces, 0, 3, axis=1), fmt="%d")
-    return text.getvalue().encode()
+    return mesh_bytes(Mesh(vertices.round(6), faces), "off")
 
 
 def accepted(store: JobStore, mesh: bytes, **parameters: object) -> Job:

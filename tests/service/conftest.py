@@ -1,4 +1,4 @@
-"""The application on a real server, without workers: tests do their work by hand."""
+"""The application on a real server, without workers: tests call the task themselves."""
 
 from collections.abc import Callable, Iterator
 from pathlib import Path
@@ -29,14 +29,14 @@ def client(settings: Settings) -> Iterator[httpx.Client]:
 
 @pytest.fixture
 def client_without_queue(settings: Settings, tmp_path: Path) -> Iterator[httpx.Client]:
-    """A client of a second application on the same store, whose queue server is down."""
+    """A client of a second application on the same store, with a queue server that is down."""
     with serving(settings.model_copy(update={"redis_url": f"unix://{tmp_path}/nowhere.sock"})) as client:
         yield client
 
 
 @pytest.fixture
 def finished_job(client: httpx.Client, settings: Settings, store: JobStore) -> Callable[..., str]:
-    """Submit a mesh, do the work, and give the path of the job."""
+    """Return a function that submits a mesh, runs its job and returns the path of the job."""
 
     def submit_and_perform(mesh: bytes | None = None) -> str:
         answer = client.post("/v1/jobs", files={"mesh": ("mesh.off", mesh or sphere(12))}, headers=AGAIN)

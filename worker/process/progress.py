@@ -3,8 +3,12 @@
 import time
 from collections.abc import Callable
 
+from segcore.progress import STAGES as SEGMENTATION_STAGES
 from worker.jobs.queue.connection import QueueError
 from worker.jobs.queue.queue import JobQueue, Progress
+
+STAGES = ("reading", *SEGMENTATION_STAGES, "storing")  # of a job, in order
+REPORTED_STAGES = STAGES[:-1]  # to the queue; storing a result is only measured
 
 _INTERVAL_S = 0.25  # between two reports: the shortest at which the API polls for them
 _PAUSE_AFTER_ERROR_S = 5.0  # a report to a Redis that hangs takes 1.8 s; set by hand

@@ -1,4 +1,4 @@
-"""What an OBJ file says beside the shape; what is not understood is left out, never refused."""
+"""The appearance of an OBJ file; anything that cannot be read is left out, never refused."""
 
 import numpy as np
 from numpy.typing import NDArray
@@ -13,11 +13,11 @@ from segcore.io.text.words import Words
 
 _UV, _NORMAL = b"vt", b"vn"
 _WIDTHS = {_UV: 2, _NORMAL: 3}  # numbers on a line
-_PLACES = {_UV: 0, _NORMAL: 1}  # slashes before, in a corner such as 7/8/9
+_PLACES = {_UV: 0, _NORMAL: 1}  # column of picks: the number after the first or second slash of a corner 7/8/9
 
 
 def obj_appearance(words: Words, is_vertex: BoolArray, is_face: BoolArray, polygons: Polygons) -> Appearance | None:
-    """The appearance of the faces that the polygons are cut into."""
+    """Return the appearance of the faces that the polygons are triangulated into, or None if there is none."""
     tables = {key: table for key, width in _WIDTHS.items() if (table := _table(words, key, width)) is not None}
     picks = _picks(words, is_face, polygons, tables)
     vertex_count = int(is_vertex.sum())
@@ -38,7 +38,7 @@ def obj_appearance(words: Words, is_vertex: BoolArray, is_face: BoolArray, polyg
 
 
 def _table(words: Words, keyword: bytes, width: int) -> FloatArray | None:
-    """(N, width) the numbers on the lines with a keyword, further ones left out; None where they make no table."""
+    """(N, width) the first numbers of each line with a keyword; None if the lines do not form a table."""
     selected = words.lines_with(keyword)
     counts = np.diff(words.line_start)[selected] - 1
     if len(counts) == 0 or (counts != counts[0]).any() or counts[0] < width:
@@ -52,12 +52,12 @@ def _table(words: Words, keyword: bytes, width: int) -> FloatArray | None:
 def _picks(
     words: Words, is_face: BoolArray, polygons: Polygons, tables: dict[bytes, FloatArray]
 ) -> dict[bytes, LongArray]:
-    """For each table the row of every corner; nothing where there are corners that name none."""
+    """The row of each corner in each table; a table is left out if a corner has no row in it."""
     if not tables:
         return {}
     lines = np.flatnonzero(is_face)
     indices = np.empty((len(polygons.corners), 2), dtype=np.int64)
-    parse_corner_picks(words.letters, words.start, words.line_start, lines, indices)
+    parse_corner_picks(words.lines, lines, indices)
     picks = {
         keyword: _resolved(words, indices[:, _PLACES[keyword]], lines, polygons.sizes, keyword) for keyword in tables
     }
@@ -65,7 +65,7 @@ def _picks(
 
 
 def _resolved(words: Words, indices: LongArray, lines: LongArray, sizes: LongArray, keyword: bytes) -> LongArray:
-    """Indices counted from 0, and -1 for none; negative ones count back from the line that they are on."""
+    """(C,) indices counted from 0, and -1 for none; negative indices count back from their line."""
     rows = indices - 1
     is_backward = indices < 0
     if is_backward.any():
@@ -93,14 +93,14 @@ def _uvs(table: FloatArray | None, pick: LongArray | None, rows: CornerRows) -> 
 
 
 def _colors(words: Words, is_vertex: BoolArray) -> NDArray[np.uint8] | None:
-    """(V, 4) where every vertex has red, green and blue after its coordinates."""
+    """(V, 4) colours, or None unless each vertex has red, green and blue after its coordinates."""
     table = _table(words, b"v", 6)
     counts = np.diff(words.line_start)[is_vertex]
     return None if table is None or counts[0] != 7 else color_bytes(table[:, 3:])
 
 
 def _groups(words: Words, is_face: BoolArray, sizes: LongArray) -> tuple[IntArray | None, tuple[str, ...]]:
-    """(F,) the group or object line that every face comes after, and the names; a face before all has no name."""
+    """(F,) the group or object of each face, and the names; faces before the first group have an empty name."""
     marks = np.flatnonzero(words.lines_with(b"g") | words.lines_with(b"o"))
     if len(marks) == 0:
         return None, ()

@@ -1,4 +1,4 @@
-"""Corners that look alike share a row of the appearance."""
+"""Rows of an appearance that corners with equal attributes share."""
 
 from dataclasses import dataclass
 
@@ -9,24 +9,24 @@ from segcore.arrays import BoolArray, IntArray, LongArray
 
 @dataclass(frozen=True, slots=True, eq=False)
 class CornerRows:
-    """Rows of an appearance: one for each vertex, then one for each other look that a vertex has."""
+    """Rows of an appearance: one for each vertex, then one for each further combination of attributes of a vertex."""
 
-    of_corner: IntArray  # (C,) the row of every corner
-    extra_vertex: IntArray  # (A - V,) the vertex of every further row
-    corner: LongArray  # (A,) a corner that looks like the row; -1 where no corner has the vertex
+    of_corner: IntArray  # (C,) the row of each corner
+    extra_vertex: IntArray  # (A - V,) the vertex of each further row
+    corner: LongArray  # (A,) a corner with the attributes of the row; -1 if no corner has the vertex
 
 
 def rows_of_corners(vertices: LongArray | IntArray, picks: list[LongArray], vertex_count: int) -> CornerRows:
-    """Give corners of the same vertex and the same picks the same row; the first corner of a vertex gets its own.
+    """Give corners with the same vertex and the same picks one row; row v is that of the first corner of vertex v.
 
     Parameters
     ----------
-    vertices : (C,) the vertex of every corner.
-    picks : (C,) each: what else every corner picks, such as a texture coordinate.
+    vertices : (C,) the vertex of each corner.
+    picks : (C,) each, the entry of each corner in another table, such as the texture coordinates.
     """
     corner = np.full(vertex_count, -1, dtype=np.int64)
     every = np.arange(len(vertices))
-    corner[vertices[::-1]] = every[::-1]  # the first corner of every vertex, as the last value stays
+    corner[vertices[::-1]] = every[::-1]  # the first corner of each vertex, because the last assignment stays
     of_corner = vertices.astype(np.int32)
     others = np.flatnonzero(_differ(picks, corner[vertices]))
     order = others[np.lexsort([*(pick[others] for pick in picks), vertices[others]])]
@@ -39,7 +39,7 @@ def rows_of_corners(vertices: LongArray | IntArray, picks: list[LongArray], vert
 
 
 def _differ(picks: list[LongArray], other: LongArray) -> BoolArray:
-    """(C,): the corners of which a pick is not that of the corner ``other``."""
+    """(C,) True for each corner that has another pick than the corner ``other``."""
     differ = np.zeros(len(other), dtype=bool)
     for pick in picks:
         differ |= pick != pick[other]

@@ -8,7 +8,7 @@ from segcore.arrays import BoolArray, FloatArray, LongArray
 from segcore.errors import InvalidMesh
 from segcore.io.limits import ReadLimits
 from segcore.io.obj.appearance import obj_appearance
-from segcore.io.obj.kernels import parse_face_lines, parse_vertex_lines
+from segcore.io.obj.kernels import FaceLines, parse_face_lines, parse_vertex_lines
 from segcore.io.polygons import Polygons, mesh_of_polygons
 from segcore.io.text.words import Words, find_words, plain_text, without_comments
 from segcore.mesh import Mesh
@@ -20,11 +20,11 @@ _CORNER = re.compile(r"[-+]?\d+(/-?\d*){0,2}", re.ASCII)
 def read_obj(data: bytes, limits: ReadLimits, with_appearance: bool = False) -> Mesh:
     """Read the vertices and polygons of an OBJ file.
 
-    Materials, points and lines are passed over, and no file that is named in it is ever opened. A negative index counts
-    back from the last vertex before its line. The appearance is the texture coordinates and normals of the corners, the
+    Materials, points and lines are ignored, and no file that is named in it is opened. A negative index counts back
+    from the last vertex before its line. The appearance is the texture coordinates and normals of the corners, the
     colours of the vertices and the names of groups and objects.
 
-    An OBJ file does not say how long it is: one that is cut short between two lines cannot be told from a whole one.
+    An OBJ file does not specify its length: a file that is cut short between two lines cannot be detected.
 
     Raises
     ------
@@ -44,7 +44,7 @@ def read_obj(data: bytes, limits: ReadLimits, with_appearance: bool = False) -> 
 
 
 def _values_per_line(words: Words, lines: LongArray, what: str) -> LongArray:
-    """(N,) the number of words after the keyword of each line, at least three."""
+    """(N,) the number of words after the keyword of each line, which must be at least three."""
     counts = (words.line_start[lines + 1] - words.line_start[lines] - 1).astype(np.int64)
     if (counts < 3).any():
         first = words.line_start[lines[int(np.argmax(counts < 3))]]
@@ -56,7 +56,7 @@ def _vertices(words: Words, is_vertex: BoolArray) -> FloatArray:
     lines = np.flatnonzero(is_vertex)
     _values_per_line(words, lines, "a vertex")
     vertices, unread = np.empty((len(lines), 3)), np.empty(len(lines), dtype=bool)
-    if parse_vertex_lines(words.letters, words.start, words.line_start, lines, vertices, unread):
+    if parse_vertex_lines(words.lines, lines, vertices, unread):
         for i in np.flatnonzero(unread).tolist():
             first, last = words.line_start[lines[i] : lines[i] + 2].tolist()
             vertices[i] = [words.float(word) for word in range(first + 1, last)][:3]
@@ -68,8 +68,7 @@ def _polygons(words: Words, is_vertex: BoolArray, is_face: BoolArray) -> Polygon
     sizes = _values_per_line(words, lines, "a face")
     before = np.cumsum(is_vertex, dtype=np.int32)[lines]
     corners = np.empty(int(sizes.sum()), dtype=np.int32)
-    vertex_count = int(np.count_nonzero(is_vertex))
-    bad = parse_face_lines(words.letters, words.start, words.line_start, lines, before, vertex_count, corners)
+    bad = parse_face_lines(words.lines, FaceLines(lines, before, int(np.count_nonzero(is_vertex))), corners)
     if bad >= 0:
         word, line = words.word(bad)[:40], words.line_number(bad)
         if _CORNER.fullmatch(word):

@@ -1,4 +1,4 @@
-"""The OBJ writer: a group for every segment."""
+"""The OBJ writer: plain meshes, and segmented ones with a group for each segment."""
 
 from collections.abc import Iterator
 from typing import BinaryIO
@@ -14,6 +14,13 @@ from segcore.io.text.rows import format_rows
 from segcore.mesh import Mesh
 
 
+def encode_obj(mesh: Mesh) -> Iterator[bytes]:
+    """An OBJ file without groups in pieces; vertices and corners are written as :func:`write_obj` does."""
+    appearance = mesh.appearance or Appearance()
+    yield from _vertex_lines(mesh, appearance)
+    yield from _face_lines(mesh, appearance, np.arange(len(mesh.faces), dtype=np.int32))
+
+
 def write_obj(
     target: BinaryIO,
     mesh: Mesh,
@@ -22,21 +29,20 @@ def write_obj(
     *,
     names: SegmentNames | None = None,
 ) -> None:
-    """Write an OBJ file: all vertices in input order, then group ``segment_k`` for every segment.
+    """Write an OBJ file: all vertices in input order, then a group ``segment_k`` for each segment.
 
-    A group holds its faces in input order, so triangle t of group k is the t-th input face with label k. Coordinates
-    are written as decimal numbers that give the same floating point numbers back. Normals, texture coordinates and the
-    colours of vertices stand where the input had them. A comment after the name of a group says which groups of the
-    input reach into it.
+    A group has its faces in input order, so triangle t of group k is the t-th input face with label k. Coordinates are
+    decimal numbers that read back as the same float64 numbers. Normals, texture coordinates and the colours of vertices
+    are those of the input. Comments after the name of a group list the groups of the input that its faces are in.
 
     Parameters
     ----------
-    names : what segments are called in place of ``segment_k``, see :func:`segcore.io.names.group_names`.
+    names : names of segments by label, in place of ``segment_k``; see :func:`segcore.io.names.group_names`.
 
     Raises
     ------
     InvalidParameters
-        Where ``segments`` is not in 1..max_segments.
+        If ``segments`` is not in 1..max_segments.
     """
     slices = segment_slices(hierarchy, segments)
     appearance = mesh.appearance or Appearance()

@@ -1,24 +1,42 @@
-"""The PLY writer: a colour and a label on every face."""
+"""The PLY writer, binary: plain meshes, and segmented ones with a colour and a label for each face."""
 
-from typing import Any, BinaryIO
+from collections.abc import Iterator, Sequence
+from typing import Any, BinaryIO, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
 from segcore.appearance import Appearance
+from segcore.arrays import IntArray
 from segcore.hierarchy import Hierarchy
 from segcore.io.names import SegmentNames, segment_names
 from segcore.io.palette import color_bytes
 from segcore.mesh import Mesh
 
-_ROWS = 2**16  # that are put together at a time
+_ROWS = 2**16  # vertices or faces in a piece, about 1 MB
 _NAMES = {"<f4": "float", "<f8": "double", "<i4": "int", "u1": "uchar"}
 _APPEARANCE = {
     "normals": (("nx", "ny", "nz"), "<f4"),
     "uvs": (("s", "t"), "<f4"),
     "colors": (("red", "green", "blue", "alpha"), "u1"),
 }
-_FACE = np.dtype([("size", "u1"), ("corners", "<i4", 3), ("color", "u1", 3), ("label", "<i4")])
+_COLOR = ("red", "green", "blue")
+
+
+class _Column(NamedTuple):
+    """One or more properties of an element, as a column of its table."""
+
+    name: str
+    dtype: str
+    values: NDArray[Any]  # (N,) or (N, properties)
+
+
+def encode_ply(mesh: Mesh) -> Iterator[bytes | memoryview]:
+    """A binary little-endian PLY file of a mesh in pieces; the vertices are written as :func:`write_ply` does."""
+    vertices = _vertex_columns(mesh)
+    yield _header(mesh, vertices)
+    yield from _records(vertices)
+    yield from _records(_corner_columns(mesh))
 
 
 def write_ply(
@@ -32,36 +50,47 @@ def write_ply(
     """Write a binary little-endian PLY file: all vertices and all faces in input order.
 
     A face has the properties ``vertex_indices``, ``red``, ``green``, ``blue`` and ``int label``. Coordinates are
-    ``float`` where that holds them exactly, else ``double``. A vertex keeps its normal, its texture coordinates
-    (``s``, ``t``) and its colour where the input had them and had one of each for every vertex.
+    ``float`` if that is exact, else ``double``. A vertex keeps its normal, its texture coordinates (``s``, ``t``) and
+    its colour if the input has one of each for every vertex.
 
     Parameters
     ----------
-    names : what segments are called, for comments such as ``comment label 3 is wheel``.
+    names : names of segments by label, for comments such as ``comment label 3 is wheel``.
 
     Raises
     ------
     InvalidParameters
-        Where ``segments`` is not in 1..max_segments.
+        If ``segments`` is not in 1..max_segments.
     """
     labels = hierarchy.labels(segments)
-    columns = _vertex_columns(mesh)
-    header = [
-        "ply",
-        "format binary_little_endian 1.0",
+    vertices = _vertex_columns(mesh)
+    comments = [
         "comment written by Cleave: label is the segment of a face",
         *_name_comments(names, len(hierarchy.segment_nodes(segments))),
+    ]
+    properties = [*(f"property uchar {channel}" for channel in _COLOR), "property int label"]
+    target.write(_header(mesh, vertices, comments, properties))
+    for piece in _records(vertices):
+        target.write(piece)
+    for piece in _records([*_corner_columns(mesh), *_label_columns(labels)]):
+        target.write(piece)
+
+
+def _header(
+    mesh: Mesh, vertices: list[_Column], comments: Sequence[str] = (), face_properties: Sequence[str] = ()
+) -> bytes:
+    lines = [
+        "ply",
+        "format binary_little_endian 1.0",
+        *comments,
         f"element vertex {len(mesh.vertices)}",
-        *(f"property {_NAMES[dtype]} {name}" for name, dtype, _ in columns),
+        *(f"property {_NAMES[column.dtype]} {column.name}" for column in vertices),
         f"element face {len(mesh.faces)}",
         "property list uchar int vertex_indices",
-        *(f"property uchar {channel}" for channel in ("red", "green", "blue")),
-        "property int label",
+        *face_properties,
         "end_header\n",
     ]
-    target.write("\n".join(header).encode("ascii", "backslashreplace"))
-    _write_vertices(target, columns, len(mesh.vertices))
-    _write_faces(target, mesh, labels)
+    return "\n".join(lines).encode("ascii", "backslashreplace")
 
 
 def _name_comments(names: SegmentNames | None, count: int) -> list[str]:
@@ -69,37 +98,37 @@ def _name_comments(names: SegmentNames | None, count: int) -> list[str]:
     return [f"comment label {label} is {called[label]}" for label in sorted(names or {}) if 0 <= label < count]
 
 
-def _vertex_columns(mesh: Mesh) -> list[tuple[str, str, NDArray[Any]]]:
-    """Name, type and values of every property of a vertex."""
+def _vertex_columns(mesh: Mesh) -> list[_Column]:
+    """A column for each property of a vertex."""
     with np.errstate(over="ignore"):
         is_single = bool((mesh.vertices == mesh.vertices.astype(np.float32)).all())
-    columns = [(axis, "<f4" if is_single else "<f8", mesh.vertices[:, i]) for i, axis in enumerate("xyz")]
+    columns = [_Column(axis, "<f4" if is_single else "<f8", mesh.vertices[:, i]) for i, axis in enumerate("xyz")]
     appearance = mesh.appearance or Appearance()
     if len(appearance.extra_vertex) == 0:
         for kind, values in appearance.row_arrays.items():
             names, dtype = _APPEARANCE[kind]
             if kind == "uvs":  # PLY counts from the lower left of the image
                 values = values * np.array([1, -1], np.float32) + np.array([0, 1], np.float32)
-            columns += [(name, dtype, values[:, i]) for i, name in enumerate(names)]
+            columns += [_Column(name, dtype, values[:, i]) for i, name in enumerate(names)]
     return columns
 
 
-def _write_vertices(target: BinaryIO, columns: list[tuple[str, str, NDArray[Any]]], count: int) -> None:
-    rows = np.dtype([(name, dtype) for name, dtype, _ in columns])
-    for first in range(0, count, _ROWS):
-        table = np.empty(min(_ROWS, count - first), rows)
-        for name, _, values in columns:
-            table[name] = values[first : first + _ROWS]
-        target.write(table.data.cast("B"))
+def _corner_columns(mesh: Mesh) -> list[_Column]:
+    sizes = np.broadcast_to(np.uint8(3), len(mesh.faces))
+    return [_Column("size", "u1", sizes), _Column("corners", "<i4", mesh.faces)]
 
 
-def _write_faces(target: BinaryIO, mesh: Mesh, labels: NDArray[np.int32]) -> None:
+def _label_columns(labels: IntArray) -> list[_Column]:
     colors = color_bytes(int(labels.max()) + 1)
-    for first in range(0, len(labels), _ROWS):
-        of_rows = labels[first : first + _ROWS]
-        table = np.empty(len(of_rows), _FACE)
-        table["size"] = 3
-        table["corners"] = mesh.faces[first : first + _ROWS]
-        table["color"] = colors[of_rows]
-        table["label"] = of_rows
-        target.write(table.data.cast("B"))
+    return [_Column("color", "u1", colors[labels]), _Column("label", "<i4", labels)]
+
+
+def _records(columns: list[_Column]) -> Iterator[memoryview]:
+    """The rows of an element as bytes, in pieces."""
+    record = np.dtype([(column.name, column.dtype, column.values.shape[1:]) for column in columns])
+    count = len(columns[0].values)
+    for first in range(0, count, _ROWS):
+        table = np.empty(min(_ROWS, count - first), record)
+        for column in columns:
+            table[column.name] = column.values[first : first + _ROWS]
+        yield table.data.cast("B")

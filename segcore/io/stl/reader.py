@@ -10,15 +10,15 @@ from segcore.io.limits import ReadLimits
 from segcore.io.stl.text_reader import read_ascii_stl
 from segcore.mesh import Mesh
 
-_HEADER = 84  # bytes: 80 for anything, 4 for the number of faces
-_FACE = np.dtype([("normal", "<f4", 3), ("corners", "<f4", (3, 3)), ("attribute", "<u2")])
+HEADER = 84  # bytes: 80 for anything, 4 for the number of faces
+FACE = np.dtype([("normal", "<f4", 3), ("corners", "<f4", (3, 3)), ("attribute", "<u2")])
 
 
 def read_stl(data: bytes, limits: ReadLimits, with_appearance: bool = False) -> Mesh:
-    """Read an STL file; face i has the vertices 3 i, 3 i + 1 and 3 i + 2, as nothing in the format joins faces.
+    """Read an STL file; face i has the vertices 3 i, 3 i + 1 and 3 i + 2, because the format does not join faces.
 
-    What follows the faces that a binary file announces is passed over. The appearance is the names of the solids of a
-    file in text.
+    Bytes after the faces that a binary file announces are ignored. The appearance is the names of the solids of a file
+    in text.
 
     Raises
     ------
@@ -28,16 +28,16 @@ def read_stl(data: bytes, limits: ReadLimits, with_appearance: bool = False) -> 
 
 
 def _read_binary(data: bytes, limits: ReadLimits) -> Mesh:
-    if len(data) < _HEADER:
-        raise InvalidMesh(f"The STL file ends within its header of {_HEADER} bytes: it is cut short.")
-    (count,) = struct.unpack_from("<I", data, _HEADER - 4)
+    if len(data) < HEADER:
+        raise InvalidMesh(f"The STL file ends within its header of {HEADER} bytes: it is cut short.")
+    (count,) = struct.unpack_from("<I", data, HEADER - 4)
     limits.check_faces(count)
     limits.check_vertices(3 * count)
-    if len(data) < _HEADER + count * _FACE.itemsize:
+    if len(data) < HEADER + count * FACE.itemsize:
         raise InvalidMesh(
-            f"The STL file announces {count} faces, which take {_HEADER + count * _FACE.itemsize} bytes, but it has "
-            f"{len(data)}: it is cut short or no STL file."
+            f"The STL file announces {count} faces, which take {HEADER + count * FACE.itemsize} bytes, but it has "
+            f"{len(data)}: it is cut short or not an STL file."
         )
     corners = np.empty((count, 3, 3))
-    corners[:] = np.frombuffer(data, _FACE, count, _HEADER)["corners"]
+    corners[:] = np.frombuffer(data, FACE, count, HEADER)["corners"]
     return Mesh(corners.reshape(-1, 3), np.arange(3 * count, dtype=np.int32).reshape(-1, 3))

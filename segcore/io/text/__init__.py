@@ -1,1 +1,1 @@
-"""Numbers and words in text files, read and written in bulk."""
+"""Words and numbers of text files, read and written in bulk."""

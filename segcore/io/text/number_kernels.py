@@ -1,4 +1,4 @@
-"""Compiled kernels that turn words into numbers. Arrays in, arrays out."""
+"""Compiled kernels that parse the words of a text as numbers, correctly rounded."""
 
 from fractions import Fraction
 
@@ -10,11 +10,12 @@ from segcore.io.text.word_kernels import SPACE, Bytes, Offsets
 
 _PLUS, _MINUS, _POINT, _ZERO, _NINE = 43, 45, 46, 48, 57
 _UPPER_E, _LOWER_E = 69, 101
-_DIGITS = 18  # that int64 holds, whatever they are
-_EXACT_POWER = 22  # 10**22 is the largest power of ten that float64 holds exactly
-_LARGEST_POWER = 270  # beyond that, products might leave the range of float64
-_SPLIT = 134217729.0  # 2**27 + 1, which cuts a float64 in two halves
-_DOUBT = 2.0**-98  # relative error of a product of two double-doubles, with some to spare
+_DIGITS = 18  # any number of 18 digits fits into int64
+_EXACT_POWER = 22  # 10**22 is the largest power of ten that is exact in float64
+_LARGEST_POWER = 270  # beyond that, products and their errors could leave the normal range of float64
+_LARGEST_EXPONENT = 1000  # in the text; float64 ends at 10**308
+_SPLIT = 134217729.0  # 2**27 + 1, splits a float64 into two halves (Dekker 1971)
+_DOUBT = 2.0**-98  # bound of the relative error of a product of two double-doubles
 
 _POWERS = [Fraction(10) ** k for k in range(-_LARGEST_POWER, _LARGEST_POWER + 1)]
 _POWER = np.array([float(power) for power in _POWERS])
@@ -23,7 +24,7 @@ _POWER_REST = np.array([float(power - Fraction(float(power))) for power in _POWE
 
 @njit(cache=True)
 def parse_integers(text: Bytes, start: Offsets, values: LongArray) -> bool:
-    """Fill ``values`` with the whole numbers that begin at ``start``; False where a word is no such number."""
+    """Fill ``values`` (N,) with the whole numbers at ``start`` (N,); return False if a word is not one."""
     for i in range(len(start)):
         end, value = whole_number(text, start[i])
         if end < 0 or (end < len(text) and text[end] > SPACE):
@@ -34,12 +35,12 @@ def parse_integers(text: Bytes, start: Offsets, values: LongArray) -> bool:
 
 @njit(cache=True)
 def parse_floats(text: Bytes, start: Offsets, values: FloatArray, unread: BoolArray) -> int:
-    """Fill ``values`` with the nearest floats to the decimal numbers that begin at ``start``.
+    """Fill ``values`` (N,) with the floats nearest to the decimal numbers at ``start`` (N,).
 
     Returns
     -------
-    How many could not be read here, as they are no plain numbers, very long or very near the middle between two
-    floats; these are marked in ``unread``.
+    The number of words that are marked in ``unread`` (N,): they are not plain decimal numbers, or have more than 18
+    digits, or are too close to the midpoint of two floats.
     """
     count = 0
     for i in range(len(start)):
@@ -52,7 +53,7 @@ def parse_floats(text: Bytes, start: Offsets, values: FloatArray, unread: BoolAr
 
 @njit(cache=True)
 def whole_number(text: Bytes, at: int) -> tuple[int, int]:
-    """Where a whole number of at most 18 digits ends, or -1, and the number."""
+    """The end of a whole number of at most 18 digits at ``at``, and the number; the end is -1 if there is none."""
     negative = text[at] == _MINUS
     if negative or text[at] == _PLUS:
         at += 1
@@ -69,7 +70,7 @@ def whole_number(text: Bytes, at: int) -> tuple[int, int]:
 
 @njit(cache=True)
 def decimal_number(text: Bytes, at: int) -> tuple[bool, float]:
-    """Whether a word is a decimal number that is read here, and the nearest float to it."""
+    """Whether the word at ``at`` could be parsed as a decimal number, and the float nearest to it."""
     negative = text[at] == _MINUS
     if negative or text[at] == _PLUS:
         at += 1
@@ -92,7 +93,7 @@ def decimal_number(text: Bytes, at: int) -> tuple[bool, float]:
         return False, 0.0
     if at < len(text) and (text[at] == _LOWER_E or text[at] == _UPPER_E):
         at, exponent = whole_number(text, at + 1) if at + 1 < len(text) else (-1, 0)
-        if at < 0 or abs(exponent) > 1000:
+        if at < 0 or abs(exponent) > _LARGEST_EXPONENT:
             return False, 0.0
         power += exponent
     if at < len(text) and text[at] > SPACE:
@@ -103,10 +104,14 @@ def decimal_number(text: Bytes, at: int) -> tuple[bool, float]:
 
 @njit(cache=True)
 def _scaled(mantissa: int, power: int) -> tuple[bool, float]:
-    """The nearest float to mantissa * 10**power, where that is beyond doubt.
+    """Whether the float nearest to mantissa * 10**power is certain, and that float.
 
-    Small numbers by one rounded operation (Clinger, How to read floating point numbers accurately, 1990), others as
-    the product of two double-doubles (Dekker, A floating-point technique for extending the available precision, 1971).
+    One rounded operation if mantissa and power are small, else the product of two double-doubles.
+
+    References
+    ----------
+    Clinger, How to read floating point numbers accurately, 1990.
+    Dekker, A floating-point technique for extending the available precision, 1971.
     """
     if mantissa == 0:
         return True, 0.0
@@ -128,7 +133,7 @@ def _scaled(mantissa: int, power: int) -> tuple[bool, float]:
 
 @njit(cache=True)
 def _product_error(a: float, b: float, product: float) -> float:
-    """a * b - product, exactly."""
+    """a * b - product, exact (Dekker 1971)."""
     a_high = a * _SPLIT - (a * _SPLIT - a)
     b_high = b * _SPLIT - (b * _SPLIT - b)
     a_low, b_low = a - a_high, b - b_high

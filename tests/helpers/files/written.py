@@ -7,7 +7,7 @@ import zipfile
 import numpy as np
 
 from segcore.hierarchy import Hierarchy
-from segcore.io.writing import WRITERS
+from segcore.io import WRITERS, write_mesh
 from segcore.mesh import Mesh
 
 
@@ -23,6 +23,13 @@ class Pipe:
 
     def flush(self) -> None:
         pass
+
+
+def mesh_bytes(mesh: Mesh, format: str) -> bytes:  # noqa: A002
+    """A mesh without a segmentation as a file."""
+    target = Pipe()
+    write_mesh(target, mesh, format)
+    return b"".join(target.pieces)
 
 
 def written(kind: str, mesh: Mesh, hierarchy: Hierarchy, segments: int | None = None, **options: object) -> bytes:

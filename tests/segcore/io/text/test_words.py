@@ -32,7 +32,7 @@ def test_many_random_numbers_are_read_without_python() -> None:
     texts = [repr(rng.uniform(-1, 1) * 10 ** rng.randint(-60, 60)) for _ in range(20_000)]
     words = find_words("\n".join(texts).encode())
     values, unread = np.empty(words.count), np.empty(words.count, dtype=bool)
-    assert parse_floats(words.letters, words.start, values, unread) < len(texts) / 20
+    assert parse_floats(words.characters, words.start, values, unread) < len(texts) / 20
     np.testing.assert_array_equal(values[~unread], np.array([float(text) for text in texts])[~unread])
 
 

@@ -1,4 +1,4 @@
-"""Labels in every form say the same, and the client chooses the form."""
+"""Labels are the same in all formats, and the client selects the format."""
 
 import io
 from collections.abc import Callable
@@ -12,7 +12,7 @@ from service.answer.label_formats import LABELS, LabelsFormat, negotiate
 from service.problems import Problem
 
 
-def test_every_form_says_the_same(client: httpx.Client, finished_job: Callable[..., str]) -> None:
+def test_all_formats_contain_the_same_labels(client: httpx.Client, finished_job: Callable[..., str]) -> None:
     url = f"{finished_job()}/labels?segments=5"
     labels = np.array(client.get(url).json()["labels"])
     runs = client.get(f"{url}&format=runs").json()
@@ -23,7 +23,7 @@ def test_every_form_says_the_same(client: httpx.Client, finished_job: Callable[.
 
 
 @pytest.mark.parametrize("name", LABELS)
-def test_a_form_is_chosen_by_query_or_by_accept(
+def test_a_format_is_selected_by_query_or_by_accept(
     client: httpx.Client, finished_job: Callable[..., str], name: LabelsFormat
 ) -> None:
     url, media_type = f"{finished_job()}/labels", LABELS[name].media_type
@@ -48,17 +48,17 @@ def test_a_form_is_chosen_by_query_or_by_accept(
         ("APPLICATION/OCTET-STREAM", "raw"),
     ],
 )
-def test_the_best_liked_form_is_sent(accept: str, expected: str) -> None:
+def test_the_preferred_format_is_selected(accept: str, expected: str) -> None:
     assert negotiate(accept) == expected
 
 
 @pytest.mark.parametrize("accept", ["image/png", "*/*;q=0", "application/json;q=x", ",", ";", "q=1"])
-def test_who_likes_no_form_is_told_which_there_are(accept: str) -> None:
+def test_a_refusal_lists_the_available_formats(accept: str) -> None:
     with pytest.raises(Problem, match="application/x-npy"):
         negotiate(accept)
 
 
-def test_a_form_that_is_none_is_refused(client: httpx.Client, finished_job: Callable[..., str]) -> None:
+def test_an_unknown_format_is_refused(client: httpx.Client, finished_job: Callable[..., str]) -> None:
     path = finished_job()
     problem(client.get(f"{path}/labels", headers={"Accept": "image/png"}), 406, "not_acceptable")
     problem(client.get(f"{path}/labels?format=xml"), 422, "invalid_request")

@@ -1,4 +1,4 @@
-"""Server-sent events: every change once, growing ids, an end, and no way to come back for nothing."""
+"""Server-sent events: every change once, increasing ids, and an end."""
 
 import json
 import threading
@@ -11,7 +11,7 @@ from worker.jobs.queue.queue import JobQueue, Progress
 
 
 def events(client: httpx.Client, path: str, **headers: str) -> list[tuple[int, dict[str, object]]]:
-    """All events of a job until the stream ends, with their ids."""
+    """Return all events of a job until the stream ends, with their ids."""
     with client.stream("GET", f"{path}/events", headers=headers) as answer:
         assert answer.status_code == 200
         assert answer.headers["Content-Type"].startswith("text/event-stream")
@@ -24,7 +24,7 @@ def events(client: httpx.Client, path: str, **headers: str) -> list[tuple[int, d
     return found
 
 
-def test_a_job_is_told_from_its_queue_to_its_end(client: httpx.Client, queue: JobQueue) -> None:
+def test_events_follow_a_job_from_the_queue_to_its_end(client: httpx.Client, queue: JobQueue) -> None:
     path = submit(client)
     job_id = path.rpartition("/")[2]
     seen: list[tuple[int, dict[str, object]]] = []
@@ -44,7 +44,9 @@ def test_a_job_is_told_from_its_queue_to_its_end(client: httpx.Client, queue: Jo
     assert seen[-1][1]["status"] == "canceled"
 
 
-def test_a_client_that_saw_the_end_need_not_come_back(client: httpx.Client, finished_job: Callable[..., str]) -> None:
+def test_a_client_that_received_the_last_event_does_not_reconnect(
+    client: httpx.Client, finished_job: Callable[..., str]
+) -> None:
     path = finished_job()
     ((number, job),) = events(client, path)
     assert job["status"] == "succeeded"

@@ -1,4 +1,4 @@
-"""The OpenAPI document is kept: by the service, as schemathesis finds out, and from one commit to the next."""
+"""The service conforms to its OpenAPI document, checked with schemathesis."""
 
 import json
 from collections.abc import Iterator
@@ -24,7 +24,7 @@ from worker.jobs.store.opening import open_store
 
 @pytest.fixture(scope="module")
 def service(tmp_path_factory: pytest.TempPathFactory, queue_url: str) -> Iterator[httpx.Client]:
-    """A service with a worker, that waits for nobody for long."""
+    """A service with a worker and short timeouts."""
     limits = Settings(
         data_dir=tmp_path_factory.mktemp("contract"),
         redis_url=queue_url,
@@ -37,13 +37,13 @@ def service(tmp_path_factory: pytest.TempPathFactory, queue_url: str) -> Iterato
     with Redis.from_url(queue_url) as connection:
         connection.flushall()
         for size in SizeClass:
-            connection.sadd(f"rq:workers:{QUEUE_NAMES[size]}", "rq:worker:tester")  # so that it is ready
+            connection.sadd(f"rq:workers:{QUEUE_NAMES[size]}", "rq:worker:tester")  # makes it ready
         connection.hset("rq:worker:tester", "state", "idle")
     with working(open_store(limits), limits), serving(limits) as client:
         yield client
 
 
-pytestmark = pytest.mark.timeout(900)  # with as many examples as CI asks for
+pytestmark = pytest.mark.timeout(900)  # for the number of examples in CI
 KEY = new_key()
 _STARTS, _STEPS = 20, 8
 COMMITTED = json.loads((DOCS / "openapi.json").read_text())
@@ -52,8 +52,8 @@ OPERATIONS = [(method, path) for path, operations in COMMITTED["paths"].items() 
 
 @pytest.fixture(scope="module")
 def schema(service: httpx.Client) -> Any:
-    # Which parameters go together, how many segments a mesh has, which Idempotency-Key was sent before and which job is
-    # gone is more than a schema can say: what it allows may be refused as invalid, too large or gone.
+    # A schema cannot express which parameters exclude each other, how many segments a mesh has, which Idempotency-Key
+    # was used before and which jobs are deleted. So valid requests may be refused as invalid, too large or gone.
     accepting = {"expected-statuses": ["2xx", 304, 401, 403, 404, 409, 410, 413, 422, 429]}
     config = SchemathesisConfig.from_dict(
         {
@@ -72,7 +72,7 @@ def max_examples(request: pytest.FixtureRequest) -> int:
 
 
 @pytest.mark.parametrize(("method", "path"), OPERATIONS)
-def test_every_answer_is_as_documented(schema: Any, max_examples: int, method: str, path: str) -> None:
+def test_every_response_is_as_documented(schema: Any, max_examples: int, method: str, path: str) -> None:
     @settings(max_examples=max_examples, suppress_health_check=list(HealthCheck))
     @given(case=schema[path][method].as_strategy())
     def check(case: schemathesis.Case) -> None:
@@ -81,7 +81,7 @@ def test_every_answer_is_as_documented(schema: Any, max_examples: int, method: s
     check()
 
 
-def test_every_answer_is_as_documented_in_any_order_of_requests(schema: Any, max_examples: int) -> None:
+def test_every_response_is_as_documented_in_any_order_of_requests(schema: Any, max_examples: int) -> None:
     failures: list[Exception] = []
     answers = 0
 
@@ -95,8 +95,8 @@ def test_every_answer_is_as_documented_in_any_order_of_requests(schema: Any, max
                 failures.append(failure)
                 raise
 
-    # A service that has moved on answers the same requests otherwise, which confuses the search now and then: it begins
-    # again elsewhere. What was found to be wrong stays found.
+    # The state of the service changes, so that the same requests may get other responses, which hypothesis reports as
+    # Flaky. The search then restarts with another seed; failures are kept.
     for start in range(_STARTS):
         with suppress(Flaky):
             seed(start)(Workflow).run(
@@ -108,4 +108,4 @@ def test_every_answer_is_as_documented_in_any_order_of_requests(schema: Any, max
             raise failures[0]
         if answers >= max_examples * _STEPS / 2:
             return
-    raise AssertionError(f"only {answers} answers were looked at")
+    raise AssertionError(f"only {answers} responses were checked")

@@ -1,4 +1,4 @@
-"""Webhooks: signed so that the standard's own library believes them, tried again, and never sent inwards."""
+"""Webhooks: signed as in the standard, retried, and never sent to private addresses."""
 
 import socket
 import threading
@@ -27,7 +27,7 @@ from worker.webhooks.message import Undeliverable, objection_to, send
 
 
 class Receiver:
-    """An HTTP server that keeps what it is sent and answers with given statuses, at last with 200."""
+    """An HTTP server that records requests and responds with the given statuses, then with 200."""
 
     def __init__(self, *statuses: int) -> None:
         self.received: list[tuple[dict[str, str], bytes]] = []
@@ -63,7 +63,7 @@ def receiving(*statuses: int) -> Iterator[Receiver]:
 
 @pytest.fixture
 def inside(settings: Settings) -> Settings:
-    """Settings that let webhooks go to this machine."""
+    """Settings that allow webhooks to this machine."""
     return settings.model_copy(update={"webhook_private_targets": True})
 
 
@@ -75,7 +75,7 @@ def sender(store: JobStore, queue: JobQueue, inside: Settings) -> WebhookSender:
 @pytest.fixture
 def finished_with_webhook(inside: Settings, store: JobStore) -> Callable[[str], tuple[str, str]]:
     def submit(url: str) -> tuple[str, str]:
-        """The id of a finished job, and the secret of its webhooks."""
+        """Return the id of a finished job and the secret of its webhooks."""
         with serving(inside) as client:
             answer = client.post("/v1/jobs", params={"webhook": url}, content=sphere(12))
             assert answer.status_code == 202, answer.text
@@ -101,7 +101,7 @@ def test_a_webhook_is_told_once_and_can_verify_who_told_it(
         Webhook(secret).verify(body.replace(b"succeeded", b"failed"), headers)
 
 
-def test_a_webhook_that_fails_is_tried_again_later_and_later_with_the_same_id(
+def test_a_failed_webhook_is_retried_with_growing_pauses_and_the_same_id(
     sender: WebhookSender, finished_with_webhook: Callable[[str], tuple[str, str]]
 ) -> None:
     with receiving(500, 302) as receiver:
@@ -116,7 +116,7 @@ def test_a_webhook_that_fails_is_tried_again_later_and_later_with_the_same_id(
     assert sender.store.outbox.deliveries() == {}
 
 
-def test_a_webhook_that_always_fails_is_given_up(
+def test_a_webhook_that_always_fails_is_abandoned(
     sender: WebhookSender, finished_with_webhook: Callable[[str], tuple[str, str]]
 ) -> None:
     job_id, _ = finished_with_webhook("http://127.0.0.1:1/nobody")
@@ -128,7 +128,7 @@ def test_a_webhook_that_always_fails_is_given_up(
     assert sender.store.outbox.deliveries() == {}
 
 
-def test_nothing_is_told_before_the_end(sender: WebhookSender, inside: Settings) -> None:
+def test_no_message_is_sent_before_the_job_has_ended(sender: WebhookSender, inside: Settings) -> None:
     with receiving() as receiver, serving(inside) as client:
         answer = client.post("/v1/jobs", params={"webhook": receiver.url}, content=b"abc")
         sender.send_due(now().timestamp())
@@ -174,7 +174,7 @@ def test_a_name_that_leads_inwards_is_not_followed(monkeypatch: pytest.MonkeyPat
         send("http://harmless.example/", "msg_1", b"secret", b"{}", now(), private_targets=False)
 
 
-def test_what_is_sent_is_kept_until_it_has_arrived(tmp_path: Path, sender: WebhookSender, inside: Settings) -> None:
+def test_a_message_is_stored_until_it_is_delivered(tmp_path: Path, sender: WebhookSender, inside: Settings) -> None:
     """A sender that dies in the middle does not lose the message."""
     with serving(inside) as client:
         client.post("/v1/jobs", params={"webhook": "http://127.0.0.1:1/"}, content=b"abc")

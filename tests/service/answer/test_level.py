@@ -1,4 +1,4 @@
-"""Results at a granularity, or at a cut made by hand, in place of a number of segments."""
+"""Results at a granularity or a set of splits, instead of a number of segments."""
 
 from collections.abc import Callable
 
@@ -25,7 +25,7 @@ def test_the_first_splits_give_the_level(client: httpx.Client, job: str) -> None
         assert by_hand.json() == client.get(f"{job}/labels", params={"segments": segments}).json()
 
 
-def test_a_cut_that_is_no_level_parts_faces_where_its_splits_do(
+def test_splits_that_are_no_level_separate_faces_like_the_hierarchy(
     client: httpx.Client, job: str, store: JobStore
 ) -> None:
     with store.results.open(job.rpartition("/")[2]) as file:
@@ -46,7 +46,7 @@ def test_a_cut_that_is_no_level_parts_faces_where_its_splits_do(
 
 
 @pytest.mark.parametrize("form", FORMS)
-def test_every_form_of_the_result_takes_splits(client: httpx.Client, job: str, form: str) -> None:
+def test_every_result_accepts_splits(client: httpx.Client, job: str, form: str) -> None:
     answer = client.get(f"{job}/{form}", params={"splits": "0"})
     assert answer.status_code == 200
     assert answer.content
@@ -54,7 +54,7 @@ def test_every_form_of_the_result_takes_splits(client: httpx.Client, job: str, f
 
 
 @pytest.mark.parametrize("splits", ["1", "0,9999", "99999"])
-def test_splits_that_cannot_be_made_are_refused(client: httpx.Client, job: str, splits: str) -> None:
+def test_splits_that_do_not_exist_are_refused(client: httpx.Client, job: str, splits: str) -> None:
     problem(client.get(f"{job}/labels", params={"splits": splits}), 422, "invalid_parameters")
 
 
@@ -65,7 +65,7 @@ def test_splits_and_a_level_together_are_refused(client: httpx.Client, job: str,
 
 
 @pytest.mark.parametrize("granularity", [0, 0.3, 0.5, 0.7, 1])
-def test_a_granularity_is_the_number_of_segments_that_the_hierarchy_says(
+def test_a_granularity_selects_the_number_of_segments_of_the_hierarchy(
     client: httpx.Client, job: str, store: JobStore, granularity: float
 ) -> None:
     with store.results.open(job.rpartition("/")[2]) as file:
@@ -88,5 +88,5 @@ def test_a_granularity_outside_of_its_range_is_refused(client: httpx.Client, job
     problem(client.get(f"{job}/labels", params={"granularity": granularity}), 422, "invalid_request")
 
 
-def test_text_that_names_no_splits_is_refused(client: httpx.Client, job: str) -> None:
+def test_malformed_splits_are_refused(client: httpx.Client, job: str) -> None:
     problem(client.get(f"{job}/labels", params={"splits": "0;1"}), 422, "invalid_request")

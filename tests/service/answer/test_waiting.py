@@ -1,4 +1,4 @@
-"""Waiting for the end of a job: the answer follows soon, and a long wait is no busy loop."""
+"""Waiting for the end of a job: short delays without a busy loop."""
 
 import asyncio
 from typing import cast
@@ -10,12 +10,12 @@ from worker.jobs.store.store import JobStore
 
 
 class Clock:
-    """Time that passes only while somebody sleeps, and a store in which a job ends at some time."""
+    """A clock that advances only in sleep, and a store with a job that ends at a given time."""
 
     poll_interval_s = 0.0
 
     def __init__(self, ends_at: float) -> None:
-        self.now, self.looks = 0.0, 0
+        self.now, self.polls = 0.0, 0
         self._ends_at = ends_at
         self.records = self.objects = self
 
@@ -26,7 +26,7 @@ class Clock:
         self.now += pause_s
 
     def has_ended(self, _: str) -> bool:
-        self.looks += 1
+        self.polls += 1
         return self.now >= self._ends_at
 
 
@@ -37,7 +37,7 @@ def wait(monkeypatch: pytest.MonkeyPatch, clock: Clock, at_most_s: float) -> boo
 
 
 @pytest.mark.parametrize("takes_s", [0.004, 0.3, 0.7, 5.0, 20.0])
-def test_the_answer_is_late_by_a_hundredth_of_what_the_job_takes(
+def test_the_delay_is_at_most_a_hundredth_of_the_duration_of_the_job(
     monkeypatch: pytest.MonkeyPatch, takes_s: float
 ) -> None:
     clock = Clock(takes_s)
@@ -45,8 +45,8 @@ def test_the_answer_is_late_by_a_hundredth_of_what_the_job_takes(
     assert clock.now - takes_s <= max(0.0101, 0.0101 * takes_s)
 
 
-def test_who_waits_in_vain_waits_as_long_as_was_said_and_looks_now_and_then(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_a_timeout_is_exact_and_the_polling_is_not_a_busy_loop(monkeypatch: pytest.MonkeyPatch) -> None:
     clock = Clock(float("inf"))
     assert not wait(monkeypatch, clock, 60.0)
     assert clock.now == pytest.approx(60.0)
-    assert clock.looks < 1000
+    assert clock.polls < 1000

@@ -1,16 +1,11 @@
-"""Results as a client fetches them: any level, once, in parts, as a picture."""
+"""Responses with ETags, byte ranges and compression."""
 
-import io
-import json
-import struct
-import zipfile
 from collections.abc import Callable
 
 import httpx
-import matplotlib.image
 import pytest
 
-from helpers.api import FACES, problem
+from helpers.api import problem
 
 PATHS = [
     "labels",
@@ -27,7 +22,7 @@ PATHS = [
 
 
 @pytest.mark.parametrize("result", PATHS)
-def test_a_result_is_sent_once_and_in_any_part(
+def test_a_result_supports_conditional_requests_and_ranges(
     client: httpx.Client, finished_job: Callable[..., str], result: str
 ) -> None:
     url = f"{finished_job()}/{result}"
@@ -58,7 +53,7 @@ def test_a_result_is_sent_once_and_in_any_part(
 @pytest.mark.parametrize(
     "result", ["labels", "labels?format=seg", "labels?format=raw", "labels?format=npy", "hierarchy"]
 )
-def test_what_shrinks_is_compressed_for_those_who_take_it(
+def test_labels_and_the_hierarchy_are_compressed_if_accepted(
     client: httpx.Client, finished_job: Callable[..., str], result: str
 ) -> None:
     url = f"{finished_job()}/{result}"
@@ -75,7 +70,7 @@ def test_what_shrinks_is_compressed_for_those_who_take_it(
     assert client.get(url, headers=known).status_code == 304
 
 
-def test_a_range_is_never_of_compressed_bytes(client: httpx.Client, finished_job: Callable[..., str]) -> None:
+def test_ranges_refer_to_uncompressed_bytes(client: httpx.Client, finished_job: Callable[..., str]) -> None:
     url = f"{finished_job()}/labels"
     packed = client.get(url, headers={"Accept-Encoding": "gzip"})
     asked = {"Accept-Encoding": "gzip", "Range": "bytes=1-9"}
@@ -88,7 +83,7 @@ def test_a_range_is_never_of_compressed_bytes(client: httpx.Client, finished_job
 
 
 @pytest.mark.parametrize("result", ["model.glb", "model.3mf", "preview.png"])
-def test_what_hardly_shrinks_is_sent_as_it_is(
+def test_models_and_pictures_are_not_compressed(
     client: httpx.Client, finished_job: Callable[..., str], result: str
 ) -> None:
     answer = client.get(f"{finished_job()}/{result}", headers={"Accept-Encoding": "gzip"})
@@ -99,66 +94,3 @@ def test_different_results_have_different_tags(client: httpx.Client, finished_jo
     paths = [finished_job(), finished_job()]
     tags = [client.get(f"{path}/{result}").headers["ETag"] for path in paths for result in PATHS]
     assert len(set(tags)) == len(tags)
-
-
-def test_the_curve_has_a_point_for_every_cut(client: httpx.Client, finished_job: Callable[..., str]) -> None:
-    document = client.get(f"{finished_job()}/hierarchy").json()
-    assert [point["segments"] for point in document["curve"]] == list(range(2, document["max_segments"] + 1))
-    assert [point["cut_value"] for point in document["curve"]] == document["cut_values"]
-    for point in document["curve"]:
-        assert document["nodes"][point["node"]]["cut_value"] == point["cut_value"]
-
-
-def test_one_model_can_hold_every_level(client: httpx.Client, finished_job: Callable[..., str]) -> None:
-    path = finished_job()
-    data = client.get(f"{path}/model.glb", params={"levels": "all", "features": True}).content
-    (length,) = struct.unpack_from("<I", data, 12)
-    model = json.loads(data[20 : 20 + length])
-    most = client.get(path).json()["max_segments"]
-    assert len(model["nodes"]) == 2 * most - 1
-    assert len(model["extensions"]["KHR_materials_variants"]["variants"]) == most
-    (table,) = model["extensions"]["EXT_structural_metadata"]["propertyTables"]
-    assert table["count"] == 2 * most - 1
-    plain = client.get(f"{path}/model.glb", params={"levels": "all"}).content
-    assert b"EXT_structural_metadata" not in plain
-    problem(client.get(f"{path}/model.glb?levels=some"), 422, "invalid_request")
-
-
-def test_the_preview_shows_the_segments(client: httpx.Client, finished_job: Callable[..., str]) -> None:
-    path = finished_job()
-    answer = client.get(f"{path}/preview.png", params={"size": 64})
-    assert answer.headers["Content-Type"] == "image/png"
-    picture = matplotlib.image.imread(io.BytesIO(answer.content))
-    assert picture.shape == (64, 64, 4)
-    assert picture[32, 32, 3] == 1
-    assert picture[0, 0, 3] == 0
-    assert client.get(f"{path}/preview.png", params={"segments": 5, "size": 64}).content != answer.content
-    problem(client.get(f"{path}/preview.png", params={"size": 100_000}), 422, "invalid_request")
-    problem(client.get(f"{path}/preview.png", params={"segments": FACES}), 422, "invalid_parameters")
-
-
-@pytest.mark.parametrize(
-    ("result", "media_type", "begins"),
-    [
-        ("model.glb", "model/gltf-binary", b"glTF"),
-        ("model.ply", "model/ply", b"ply"),
-        ("model.obj", "model/obj", b""),
-        ("model.3mf", "model/3mf", b"PK"),
-        ("parts.zip", "application/zip", b"PK"),
-    ],
-)
-def test_models_are_files_to_be_saved(
-    client: httpx.Client, finished_job: Callable[..., str], result: str, media_type: str, begins: bytes
-) -> None:
-    answer = client.get(f"{finished_job()}/{result}", params={"segments": 3})
-    assert answer.headers["Content-Type"] == media_type
-    assert answer.headers["Content-Disposition"].startswith("attachment; filename=")
-    assert answer.content.startswith(begins)
-
-
-def test_parts_are_a_file_per_segment(client: httpx.Client, finished_job: Callable[..., str]) -> None:
-    path = finished_job()
-    for form in ("stl", "obj"):
-        data = client.get(f"{path}/parts.zip", params={"segments": 3, "part_format": form}).content
-        names = zipfile.ZipFile(io.BytesIO(data)).namelist()
-        assert names == [f"segment_{number}.{form}" for number in range(3)]

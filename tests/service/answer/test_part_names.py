@@ -1,4 +1,4 @@
-"""Names that a client gives to segments stand in the files that it fetches."""
+"""Names of segments that a client gives are written to the files."""
 
 import io
 import zipfile
@@ -12,7 +12,7 @@ from helpers.api import problem
 NAMES = [("segments", "2"), ("name", "1:left arm"), ("name", "7:nobody")]
 
 
-def test_every_model_holds_the_names(client: httpx.Client, finished_job: Callable[..., str]) -> None:
+def test_every_model_contains_the_names(client: httpx.Client, finished_job: Callable[..., str]) -> None:
     job = finished_job()
     for path, words in {
         "model.glb": b'"left arm"',
@@ -31,13 +31,13 @@ def test_every_model_holds_the_names(client: httpx.Client, finished_job: Callabl
 
 
 @pytest.mark.parametrize("name", ["left arm", "1:", "-1:x", ":x", "1: "])
-def test_what_names_nothing_is_refused(client: httpx.Client, finished_job: Callable[..., str], name: str) -> None:
+def test_a_malformed_name_is_refused(client: httpx.Client, finished_job: Callable[..., str], name: str) -> None:
     answer = client.get(f"{finished_job()}/model.obj", params={"name": name})
     problem(answer, 422, "invalid_parameters")
     assert "LABEL:NAME" in answer.json()["detail"]
 
 
-def test_a_name_cannot_leave_its_place(client: httpx.Client, finished_job: Callable[..., str]) -> None:
+def test_a_name_is_escaped(client: httpx.Client, finished_job: Callable[..., str]) -> None:
     name = '0:../../etc/x"\n<a b="'
     job = finished_job()
     with zipfile.ZipFile(io.BytesIO(client.get(f"{job}/parts.zip", params={"name": name}).content)) as archive:

@@ -1,0 +1,39 @@
+"""The STL writer, binary."""
+
+from collections.abc import Iterator
+
+import numpy as np
+
+from segcore.arrays import FloatArray, IntArray
+from segcore.errors import InvalidParameters
+from segcore.io.stl.reader import FACE, HEADER
+from segcore.mesh import face_normals_and_areas
+
+_LARGEST = float(np.finfo(np.float32).max)
+_ROWS = 2**14  # faces in a piece, 0.8 MB
+_NOTE = b"binary STL, written by Cleave"  # must not begin with "solid", as STL in text does
+
+
+def encode_stl(vertices: FloatArray, faces: IntArray, note: bytes = _NOTE) -> Iterator[bytes]:
+    """A binary STL file in pieces, its coordinates rounded to float32.
+
+    Parameters
+    ----------
+    vertices : (V, 3), within the range of float32 (see :func:`check_coordinates`).
+    faces : (F, 3).
+    note : what the file begins with, at most 80 bytes.
+    """
+    yield note.ljust(HEADER - 4) + np.uint32(len(faces)).astype("<u4").tobytes()
+    for first in range(0, len(faces), _ROWS):
+        corners = vertices[faces[first : first + _ROWS]]
+        table = np.zeros(len(corners), FACE)
+        with np.errstate(over="ignore", invalid="ignore"):
+            table["normal"] = np.nan_to_num(face_normals_and_areas(corners)[0])
+        table["corners"] = corners
+        yield table.tobytes()
+
+
+def check_coordinates(vertices: FloatArray) -> None:
+    """Raise InvalidParameters if a coordinate is outside the range of float32."""
+    if np.abs(vertices).max() > _LARGEST:
+        raise InvalidParameters(f"STL files hold coordinates up to {_LARGEST:.3g}: choose OBJ.")

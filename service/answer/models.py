@@ -1,0 +1,60 @@
+"""The segmented mesh as a file for other programs, and as a picture."""
+
+from collections.abc import Callable, Mapping
+from typing import Any, BinaryIO
+
+from segcore.io import draw, write_png
+from service.answer.level import ChosenCut
+from service.answer.model_formats import MODELS
+from service.answer.part_names import names_digest
+from service.answer.renditions import Rendition, to_bytes
+from service.result_cache import ResultCache
+
+PNG = "image/png"
+
+
+def model_rendition(
+    cache: ResultCache, cut: ChosenCut, name: str, names: dict[int, str], options: Mapping[str, Any]
+) -> Rendition:
+    """Return the segmented mesh in a format.
+
+    Parameters
+    ----------
+    name : a key of MODELS.
+    names : names of segments by label.
+    options : further keyword arguments of the writer.
+    """
+    writer = MODELS[name]
+    mesh, hierarchy = cut.result.mesh, cut.result.hierarchy
+    query = cut.name + "".join(f"&{option}={value}" for option, value in options.items()) + names_digest(names)
+
+    def write(target: BinaryIO) -> None:
+        writer.write(target, mesh, hierarchy, cut.segments, names=names, **options)
+
+    file_name = f"{cut.job_id}{writer.extension}"
+    return _cached(cache, cut.job_id, f"{name}?{query}", writer.media_type, write, file_name)
+
+
+def preview_rendition(cache: ResultCache, cut: ChosenCut, size: int) -> Rendition:
+    """Return a picture of ``size`` x ``size`` pixels with a transparent background."""
+
+    def write(target: BinaryIO) -> None:
+        write_png(target, draw(cut.result.mesh, cut.result.hierarchy.labels(cut.segments), size))
+
+    return _cached(cache, cut.job_id, f"preview.png?{cut.name}&size={size}", PNG, write)
+
+
+def _cached(
+    cache: ResultCache,
+    job_id: str,
+    name: str,
+    media_type: str,
+    write: Callable[[BinaryIO], object],
+    file_name: str | None = None,
+) -> Rendition:
+    return Rendition(
+        identity=f"{job_id}/{name}",
+        media_type=media_type,
+        render=lambda: cache.rendered(job_id, name, lambda: to_bytes(write)),
+        file_name=file_name,
+    )

@@ -1,0 +1,82 @@
+"""The segmented mesh as files and as a picture."""
+
+import io
+import json
+import struct
+import zipfile
+from collections.abc import Callable
+
+import httpx
+import matplotlib.image
+import pytest
+
+from helpers.api import FACES, problem
+from service.answer.model_formats import MODELS
+from service.routes.models import OPTIONS
+
+
+def test_the_model_is_a_glb_of_the_segments(client: httpx.Client, finished_job: Callable[..., str]) -> None:
+    answer = client.get(f"{finished_job()}/model.glb", params={"segments": 3})
+    assert answer.headers["Content-Type"] == "model/gltf-binary"
+    assert answer.content[:4] == b"glTF"
+    assert b"segment 2" in answer.content
+    assert b"segment 3" not in answer.content
+
+
+def test_a_glb_can_contain_every_level(client: httpx.Client, finished_job: Callable[..., str]) -> None:
+    path = finished_job()
+    data = client.get(f"{path}/model.glb", params={"levels": "all", "features": True}).content
+    (length,) = struct.unpack_from("<I", data, 12)
+    model = json.loads(data[20 : 20 + length])
+    most = client.get(path).json()["max_segments"]
+    assert len(model["nodes"]) == 2 * most - 1
+    assert len(model["extensions"]["KHR_materials_variants"]["variants"]) == most
+    (table,) = model["extensions"]["EXT_structural_metadata"]["propertyTables"]
+    assert table["count"] == 2 * most - 1
+    plain = client.get(f"{path}/model.glb", params={"levels": "all"}).content
+    assert b"EXT_structural_metadata" not in plain
+    problem(client.get(f"{path}/model.glb?levels=some"), 422, "invalid_request")
+
+
+@pytest.mark.parametrize(
+    ("result", "media_type", "begins"),
+    [
+        ("model.glb", "model/gltf-binary", b"glTF"),
+        ("model.ply", "model/ply", b"ply"),
+        ("model.obj", "model/obj", b""),
+        ("model.3mf", "model/3mf", b"PK"),
+        ("parts.zip", "application/zip", b"PK"),
+    ],
+)
+def test_models_are_sent_as_attachments(
+    client: httpx.Client, finished_job: Callable[..., str], result: str, media_type: str, begins: bytes
+) -> None:
+    answer = client.get(f"{finished_job()}/{result}", params={"segments": 3})
+    assert answer.headers["Content-Type"] == media_type
+    assert answer.headers["Content-Disposition"].startswith("attachment; filename=")
+    assert answer.content.startswith(begins)
+
+
+def test_parts_are_a_file_per_segment(client: httpx.Client, finished_job: Callable[..., str]) -> None:
+    path = finished_job()
+    for form in ("stl", "obj"):
+        data = client.get(f"{path}/parts.zip", params={"segments": 3, "part_format": form}).content
+        names = zipfile.ZipFile(io.BytesIO(data)).namelist()
+        assert names == [f"segment_{number}.{form}" for number in range(3)]
+
+
+def test_the_preview_shows_the_segments(client: httpx.Client, finished_job: Callable[..., str]) -> None:
+    path = finished_job()
+    answer = client.get(f"{path}/preview.png", params={"size": 64})
+    assert answer.headers["Content-Type"] == "image/png"
+    picture = matplotlib.image.imread(io.BytesIO(answer.content))
+    assert picture.shape == (64, 64, 4)
+    assert picture[32, 32, 3] == 1
+    assert picture[0, 0, 3] == 0
+    assert client.get(f"{path}/preview.png", params={"segments": 5, "size": 64}).content != answer.content
+    problem(client.get(f"{path}/preview.png", params={"size": 100_000}), 422, "invalid_request")
+    problem(client.get(f"{path}/preview.png", params={"segments": FACES}), 422, "invalid_parameters")
+
+
+def test_every_option_of_a_writer_is_a_query_parameter() -> None:
+    assert {option for writer in MODELS.values() for option in writer.options} == {"names", *OPTIONS}

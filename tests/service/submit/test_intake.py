@@ -1,0 +1,91 @@
+"""Jobs are reused, repeated requests create no second job, and accepted jobs stay accepted."""
+
+import threading
+from collections.abc import Callable
+
+import httpx
+import pytest
+
+from helpers.api import AGAIN, problem, submit
+from helpers.jobs import SMALL, sphere
+from worker.jobs.queue.queue import JobQueue
+from worker.jobs.store.store import JobStore
+
+MESH = sphere(12)
+
+
+def test_a_computed_result_is_reused(client: httpx.Client, finished_job: Callable[..., str], queue: JobQueue) -> None:
+    path = finished_job(MESH)
+    before = queue.entries[SMALL].get_job_ids()
+    form = {"files": {"mesh": ("other.off", MESH)}}
+    again = client.post("/v1/jobs", **form)  # type: ignore[arg-type]
+    assert again.status_code == 200
+    assert again.headers["Location"] == path
+    assert again.json()["labels"] is None
+    waited = client.post("/v1/jobs", **form, headers={"Prefer": "wait=1"})  # type: ignore[arg-type]
+    assert len(waited.json()["labels"]) == waited.json()["mesh"]["faces"]
+    assert queue.entries[SMALL].get_job_ids() == before
+    for other in (
+        client.post("/v1/jobs", **form, headers=AGAIN),  # type: ignore[arg-type]
+        client.post("/v1/jobs", **form, data={"parameters": '{"seed": 3}'}),  # type: ignore[arg-type]
+        client.post("/v1/jobs", content=sphere(11)),
+    ):
+        assert other.status_code == 202
+
+
+def test_failed_and_deleted_jobs_are_not_reused(client: httpx.Client, finished_job: Callable[..., str]) -> None:
+    finished_job(b"PK\3\4")
+    assert client.post("/v1/jobs", files={"mesh": ("mesh.off", b"PK\3\4")}).status_code == 202
+    client.delete(finished_job(MESH))
+    assert client.post("/v1/jobs", files={"mesh": ("mesh.off", MESH)}).status_code == 202
+
+
+def test_a_repeated_request_creates_no_second_job(client: httpx.Client, queue: JobQueue) -> None:
+    headers = {"Idempotency-Key": "order 66"}
+    first = client.post("/v1/jobs", content=MESH, headers=headers)
+    again = client.post("/v1/jobs", content=MESH, headers=headers)
+    assert first.json() == again.json()
+    assert len(queue.entries[SMALL].get_job_ids()) == 1
+    assert len(client.get("/v1/jobs").json()["jobs"]) == 1
+    problem(client.post("/v1/jobs", content=sphere(11), headers=headers), 422, "idempotency_key_reused")
+    other = client.post('/v1/jobs?parameters={"seed":1}', content=MESH, headers=headers)
+    problem(other, 422, "idempotency_key_reused")
+    client.delete(first.headers["Location"])
+    problem(client.post("/v1/jobs", content=MESH, headers=headers), 409, "idempotency_key_spent")
+
+
+def test_concurrent_requests_with_one_key_create_one_job(client: httpx.Client, queue: JobQueue) -> None:
+    answers: list[httpx.Response] = []
+
+    def send() -> None:
+        answers.append(client.post("/v1/jobs", content=MESH, headers={"Idempotency-Key": "k"}))
+
+    threads = [threading.Thread(target=send) for _ in range(8)]
+    for thread in threads:
+        thread.start()
+    for thread in threads:
+        thread.join()
+    assert {answer.status_code for answer in answers} == {202}
+    assert len({answer.headers["Location"] for answer in answers}) == 1
+    assert len(queue.entries[SMALL].get_job_ids()) == 1
+
+
+def test_a_key_of_a_reused_job_can_be_repeated(client: httpx.Client, finished_job: Callable[..., str]) -> None:
+    path = finished_job(MESH)
+    for _ in range(2):
+        answer = client.post("/v1/jobs", files={"mesh": ("mesh.off", MESH)}, headers={"Idempotency-Key": "k"})
+        assert (answer.status_code, answer.headers["Location"]) == (200, path)
+
+
+def test_a_job_stays_accepted_if_the_queue_fails_during_its_submission(
+    client: httpx.Client, monkeypatch: pytest.MonkeyPatch, store: JobStore, queue: JobQueue
+) -> None:
+    from redis.exceptions import ConnectionError as QueueConnectionError
+
+    def fail(*_: object, **__: object) -> None:
+        raise QueueConnectionError
+
+    monkeypatch.setattr(JobQueue, "enqueue", fail)
+    path = submit(client)
+    assert list(store.pending.all()) == [path.rpartition("/")[2]]
+    assert queue.entries[SMALL].get_job_ids() == []
