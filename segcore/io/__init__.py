@@ -1,7 +1,51 @@
-"""Meshes in, segmentations out: the only code that knows file formats."""
+"""Read meshes and write segmentations; no other package knows a file format.
 
-from segcore.io.formats import FORMATS, Format
+Everything that the service, the worker and the command line use is exported here: the formats that can be read
+(``FORMATS``, ``read_mesh``, ``ReadLimits``), the formats that can be written (``WRITERS``, ``writer_for``), the writers
+by name, labels and the hierarchy as JSON values, ``.cleave`` files, and pictures.
+"""
+
+from segcore.io.formats import FORMATS, Format, declared_format
+from segcore.io.gltf.writer import write_glb
+from segcore.io.labels import hierarchy_document, labels_document, runs_document, write_json, write_npy, write_seg
 from segcore.io.limits import ReadLimits
+from segcore.io.names import SegmentNames
+from segcore.io.obj.writer import write_obj
+from segcore.io.parts.writer import PartFormat, write_parts
+from segcore.io.picture import draw, write_png
+from segcore.io.ply.writer import write_ply
 from segcore.io.reading import read_mesh
+from segcore.io.result import Segmentation, read_result, write_result
+from segcore.io.threemf.writer import write_3mf
+from segcore.io.writing import WRITE_OPTIONS, WRITERS, WriteOption, Writer, writer_for
 
-__all__ = ["FORMATS", "Format", "ReadLimits", "read_mesh"]
+__all__ = [
+    "FORMATS",
+    "WRITERS",
+    "WRITE_OPTIONS",
+    "Format",
+    "PartFormat",
+    "ReadLimits",
+    "SegmentNames",
+    "Segmentation",
+    "WriteOption",
+    "Writer",
+    "declared_format",
+    "draw",
+    "hierarchy_document",
+    "labels_document",
+    "read_mesh",
+    "read_result",
+    "runs_document",
+    "write_3mf",
+    "write_glb",
+    "write_json",
+    "write_npy",
+    "write_obj",
+    "write_parts",
+    "write_ply",
+    "write_png",
+    "write_result",
+    "write_seg",
+    "writer_for",
+]

@@ -1,12 +1,11 @@
-"""WRITERS: every file that a segmented mesh can be written as, by name."""
+"""WRITERS, the list of every format that a segmented mesh can be written in, by name."""
 
 from collections.abc import Callable
 from dataclasses import dataclass
 from pathlib import PurePath
-from typing import BinaryIO, TypeAlias
+from typing import Literal, TypeAlias
 
 from segcore.errors import UnsupportedFormat
-from segcore.hierarchy import Hierarchy
 from segcore.io.gltf.writer import write_glb
 from segcore.io.labels import write_json, write_npy, write_seg
 from segcore.io.obj.writer import write_obj
@@ -14,33 +13,50 @@ from segcore.io.parts.writer import write_parts
 from segcore.io.ply.writer import write_ply
 from segcore.io.result import write_result
 from segcore.io.threemf.writer import write_3mf
-from segcore.mesh import Mesh
 
-Write: TypeAlias = Callable[[BinaryIO, Mesh, Hierarchy, int | None], None]
+WriteOption: TypeAlias = Literal["names", "all_levels", "features", "capped", "part_format"]
+
+WRITE_OPTIONS: dict[WriteOption, str] = {
+    "names": "the name of each segment, by its label",
+    "all_levels": "every number of segments in one file",
+    "features": "the hierarchy as EXT_structural_metadata, with EXT_mesh_features",
+    "capped": "close every part, for printing",
+    "part_format": "the files in it",
+}
+_MODEL: frozenset[WriteOption] = frozenset({"names"})
 
 
 @dataclass(frozen=True, slots=True)
 class Writer:
-    """One kind of output.
+    """An output format.
 
-    ``write(target, mesh, hierarchy, segments)`` writes the level of ``segments`` segments, by default (None) the
-    automatic one, to a binary file that needs ``write`` and ``flush`` only, from its first byte to its last; it raises
-    InvalidParameters, before anything is written, where there is no such level. The same input gives the same bytes.
-    The functions that some of them are (write_glb, write_3mf, write_parts) have more options under their own names.
+    ``write(target, mesh, hierarchy, segments, **options)`` writes the level of ``segments`` segments, or the automatic
+    level if it is None, to a binary file from its first byte to its last. It needs only ``write`` and ``flush`` of the
+    file. If there is no such level, it raises InvalidParameters before it writes anything. The same input gives the
+    same bytes.
     """
 
     title: str
     extension: str  # with the dot
     media_type: str
-    write: Write
+    write: Callable[..., None]
+    options: frozenset[WriteOption] = frozenset()  # keyword arguments of ``write``; formats of models take ``names``
 
 
 WRITERS: dict[str, Writer] = {
-    "glb": Writer("GLB, a coloured node per segment", ".glb", "model/gltf-binary", write_glb),
-    "ply": Writer("PLY, a colour and a label per face", ".ply", "model/ply", write_ply),
-    "obj": Writer("OBJ, a group per segment", ".obj", "model/obj", write_obj),
-    "3mf": Writer("3MF, an object per segment", ".3mf", "model/3mf", write_3mf),
-    "zip": Writer("ZIP archive, an STL file per segment", ".zip", "application/zip", write_parts),
+    "glb": Writer(
+        "GLB, a coloured node per segment", ".glb", "model/gltf-binary", write_glb, _MODEL | {"all_levels", "features"}
+    ),
+    "ply": Writer("PLY, a colour and a label per face", ".ply", "model/ply", write_ply, _MODEL),
+    "obj": Writer("OBJ, a group per segment", ".obj", "model/obj", write_obj, _MODEL),
+    "3mf": Writer("3MF, an object per segment", ".3mf", "model/3mf", write_3mf, _MODEL | {"capped"}),
+    "zip": Writer(
+        "ZIP archive, an STL file per segment",
+        ".zip",
+        "application/zip",
+        write_parts,
+        _MODEL | {"part_format", "capped"},
+    ),
     "seg": Writer(
         "label of every face, one per line",
         ".seg",
@@ -69,12 +85,12 @@ WRITERS: dict[str, Writer] = {
 
 
 def writer_for(name: str) -> Writer:
-    """The writer for the name of a file, by its extension.
+    """Return the writer for a file name, chosen by its extension.
 
     Raises
     ------
     UnsupportedFormat
-        Where there is none.
+        If no format has this extension.
     """
     extension = PurePath(name).suffix.lower()
     for writer in WRITERS.values():

@@ -2,8 +2,8 @@
 
 import zipfile
 from collections.abc import Iterator
+from html import escape
 from typing import BinaryIO
-from xml.sax.saxutils import escape, quoteattr  # nosec B406  # it writes XML, and reads none
 
 from segcore.appearance import Appearance
 from segcore.hierarchy import Hierarchy
@@ -62,7 +62,7 @@ def write_3mf(
     """
     count = len(hierarchy.segment_nodes(segments))
     parts = (closed_parts if capped else segment_parts)(mesh, hierarchy, segments)
-    called = [quoteattr(name) for name in segment_names(names, count)]
+    called = [_quoted(name) for name in segment_names(names, count)]
     described = _descriptions(mesh.appearance or Appearance(), segment_slices(hierarchy, segments))
     with zipfile.ZipFile(target, "w", compresslevel=FAST) as archive:
         for name, text in _PACKAGE.items():
@@ -76,9 +76,17 @@ def _descriptions(look: Appearance, slices: Slices) -> list[str]:
     result = []
     for label in range(len(slices)):
         groups = ", ".join(map(one_line, look.groups_of(slices[label])))
-        text = f'<metadata name="Description">groups of the input: {escape(groups)}</metadata>'
+        text = f'<metadata name="Description">groups of the input: {escape(groups, quote=False)}</metadata>'
         result.append(f"<metadatagroup>{text}</metadatagroup>\n" if groups else "")
     return result
+
+
+def _quoted(text: str) -> str:
+    """An attribute value in quotation marks, or in apostrophes if it contains quotation marks and no apostrophes."""
+    value = escape(text, quote=False)
+    if '"' in value and "'" not in value:
+        return f"'{value}'"
+    return '"' + value.replace('"', "&quot;") + '"'
 
 
 def _model(parts: Iterator[Part], names: list[str], descriptions: list[str]) -> Iterator[bytes]:
