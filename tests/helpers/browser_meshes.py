@@ -1,4 +1,4 @@
-"""Mesh files for the tests of the viewer."""
+"""Mesh files for the browser tests."""
 
 import io
 
@@ -9,7 +9,7 @@ from segcore.shapes import burr
 
 
 def small_burr() -> bytes:
-    """A ball with six arms, 5120 faces, as PLY."""
+    """Return a ball with six arms and 5120 faces as a PLY file."""
     return ply(burr(4).mesh)
 
 

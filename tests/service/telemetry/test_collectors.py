@@ -38,11 +38,11 @@ def test_every_service_reports_the_counters_of_the_workers(
     job_id = submit(client).rpartition("/")[2]
     work = perform(store, settings, job_id, lambda *_: None)
     assert work is not None
-    tallies = Tallies(queue.connection)
-    tallies.job_ended(work.job, work.outcome, work.stage_seconds)
-    tallies.attempt_lost("worker_lost")
-    tallies.job_recovered()
-    tallies.store_failed("worker")
+    counters = Tallies(queue.connection)
+    counters.job_ended(work.job, work.outcome, work.stage_seconds)
+    counters.attempt_lost("worker_lost")
+    counters.job_recovered()
+    counters.store_failed("worker")
     found = samples(client)
     assert found['cleave_jobs_finished_total{code="",status="succeeded"}'] == 1
     assert found["cleave_faces_total"] == 4 * 12 * 11
