@@ -33,7 +33,7 @@ def run(choices: argparse.Namespace) -> None:
     segments = fineness.segments_of(result.hierarchy)
     for path in outputs:
         write_model(path, result.mesh, result.hierarchy, segments, output_options(choices))
-    chosen = "chosen automatically" if fineness.is_automatic else "as asked"
+    chosen = "chosen automatically" if fineness.is_automatic else "as requested"
     say(f"{segments} segments, {chosen}; 1 to {result.hierarchy.max_segments} are possible")
     for path in outputs:
         say(f"wrote {path}")

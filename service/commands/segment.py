@@ -52,7 +52,7 @@ def run(choices: argparse.Namespace) -> None:
         hierarchy = segcore.segment(mesh, parameters, bar)
         segments = fineness.segments_of(hierarchy)
         _write(choices, mesh, hierarchy, segments)
-    chosen = "chosen automatically" if fineness.is_automatic else "as asked"
+    chosen = "chosen automatically" if fineness.is_automatic else "as requested"
     say(f"{choices.mesh.name}: {len(mesh.faces)} faces, {len(mesh.vertices)} vertices")
     say(f"{segments} segments, {chosen}; 1 to {hierarchy.max_segments} are possible")
     for path in outputs:

@@ -110,7 +110,7 @@ def _access(settings: Settings, host: str) -> Iterator[Finding]:
         yield warning(
             "access",
             f"everyone who can reach {host} can use the service: CLEAVE_AUTH is off.",
-            "Make API keys with `cleave key NAME`, unless something else keeps strangers out.",
+            "Make API keys with `cleave key NAME`, unless access is restricted by other means.",
         )
     else:
         yield ok("access", f"on {host} the service accepts only those that it should.")

@@ -26,5 +26,5 @@ def check_exposure(settings: Settings, address: str) -> None:
     if not ipaddress.ip_address(address).is_loopback:
         raise InvalidSettings(
             f"Other machines can reach {address}: make API keys with `cleave key NAME`, or set CLEAVE_AUTH=off if "
-            "something else keeps strangers out."
+            "access is restricted by other means."
         )

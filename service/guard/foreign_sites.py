@@ -26,7 +26,7 @@ class HostCheckMiddleware:
             problem = Problem(
                 "foreign_site",
                 "Without API keys only requests for localhost and IP addresses are accepted: make a key with "
-                "`cleave key NAME`, or set CLEAVE_AUTH=off if something else keeps strangers out.",
+                "`cleave key NAME`, or set CLEAVE_AUTH=off if access is restricted by other means.",
             )
             await problem.response()(scope, receive, send)
             return

@@ -15,7 +15,7 @@ def embed(visit: Visit, job: str, attributes: str = "", query: str = "?levels=al
     visit.page.wait_for_function("() => document.querySelector('cleave-viewer').tree !== null")
 
 
-def ask(visit: Visit, expression: str) -> object:
+def evaluate(visit: Visit, expression: str) -> object:
     value: object = visit.page.evaluate(
         f"() => {{ const v = document.querySelector('cleave-viewer'); return {expression} }}"
     )
@@ -24,15 +24,15 @@ def ask(visit: Visit, expression: str) -> object:
 
 def test_attributes_set_what_is_shown(visit: Visit, job: str) -> None:
     embed(visit, job, 'segments="4" label="A burr"')
-    assert ask(visit, "v.parts.length") == 4
-    assert str(ask(visit, "v.shadowRoot.querySelector('canvas').ariaLabel")).startswith("A burr: 4 parts. ")
-    assert ask(visit, "(v.setAttribute('segments', '9'), v.parts.length)") == 9
-    assert ask(visit, "(v.setAttribute('selected', '1 2'), [...v.selected])") == [1, 2]
+    assert evaluate(visit, "v.parts.length") == 4
+    assert str(evaluate(visit, "v.shadowRoot.querySelector('canvas').ariaLabel")).startswith("A burr: 4 parts. ")
+    assert evaluate(visit, "(v.setAttribute('segments', '9'), v.parts.length)") == 9
+    assert evaluate(visit, "(v.setAttribute('selected', '1 2'), [...v.selected])") == [1, 2]
 
 
 def test_a_file_of_one_level_is_shown_too(visit: Visit, job: str) -> None:
     embed(visit, job, query="?segments=5")
-    assert ask(visit, "[v.parts.length, v.tree.maxSegments]") == [5, 5]
+    assert evaluate(visit, "[v.parts.length, v.tree.maxSegments]") == [5, 5]
 
 
 def test_events_report_loading_hovering_and_selecting(visit: Visit, job: str) -> None:
@@ -79,4 +79,4 @@ def test_a_moved_element_shows_its_model_again(visit: Visit, job: str) -> None:
           box.append(viewer);
         })"""
     )
-    assert ask(visit, "v.partAt(200, 150 + v.getBoundingClientRect().top)") != -1
+    assert evaluate(visit, "v.partAt(200, 150 + v.getBoundingClientRect().top)") != -1

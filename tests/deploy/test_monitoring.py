@@ -77,11 +77,11 @@ def test_the_dashboard_shows_every_metric_and_its_panels_do_not_overlap(labels_o
     }
     there = {re.sub(r"_(bucket|count|sum|created)$", "", name) for name in labels_of}
     assert shown == {name for name in there if f"{name}_total" not in there}
-    taken: set[tuple[int, int]] = set()
+    occupied: set[tuple[int, int]] = set()
     for place in (panel["gridPos"] for panel in DASHBOARD["panels"]):
         cells = {(place["x"] + x, place["y"] + y) for x in range(place["w"]) for y in range(place["h"])}
-        assert not cells & taken
-        taken |= cells
+        assert not cells & occupied
+        occupied |= cells
     assert len({panel["id"] for panel in DASHBOARD["panels"]}) == len(DASHBOARD["panels"])
 
 

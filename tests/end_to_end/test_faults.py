@@ -69,8 +69,8 @@ def test_a_second_service_on_the_same_data_is_refused() -> None:
 
 def test_a_port_in_use_is_an_error_before_anything_starts() -> None:
     installation = Installation()
-    with socket.create_server(("127.0.0.1", 0)) as taken:
-        process = installation.command("serve", "--port", str(taken.getsockname()[1]))
+    with socket.create_server(("127.0.0.1", 0)) as other:
+        process = installation.command("serve", "--port", str(other.getsockname()[1]))
         output, _ = process.communicate(timeout=60)
         assert (process.returncode, output) == (2, "")
     assert list(installation.data_dir.iterdir()) == []

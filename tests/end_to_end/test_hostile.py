@@ -45,7 +45,7 @@ def target() -> Iterator[socket.socket]:
 
 def test_hostile_files_affect_only_their_jobs(tmp_path: Path, target: socket.socket) -> None:
     secret, notes = tmp_path / "secret", tmp_path / "notes"
-    secret.write_text("nobody may read this")
+    secret.write_text("not to be read")
     with AuditedInstallation(notes) as installation:
         submit(installation, "warm.off", sphere(12))
         wait_until(lambda: ended(installation))

@@ -49,5 +49,5 @@ def test_several_outputs_at_once_and_the_options_of_formats(
             assert trimesh.load(io.BytesIO(parts.read(name)), file_type="obj").is_watertight
     hierarchy = read_result(ball / "ball.cleave").hierarchy
     assert np.load(labels).tolist() == hierarchy.labels(4).tolist()
-    expected = [f"4 segments, as asked; 1 to {hierarchy.max_segments} are possible"]
+    expected = [f"4 segments, as requested; 1 to {hierarchy.max_segments} are possible"]
     assert capsys.readouterr().out.splitlines() == expected + [f"wrote {path}" for path in (glb, archive, labels)]

@@ -44,7 +44,7 @@ def test_a_granularity_can_be_given_instead_of_a_number(
     assert main(["convert", str(result), "--granularity", "0.7", "-o", str(converted)]) == 0
     labels = [str(label) for label in expected.labels(expected.segments_at(0.7)).tolist()]
     assert direct.read_text().split() == converted.read_text().split() == labels
-    assert capsys.readouterr().out.count(f"{expected.segments_at(0.7)} segments, as asked") == 2
+    assert capsys.readouterr().out.count(f"{expected.segments_at(0.7)} segments, as requested") == 2
 
 
 def test_the_hierarchy_grows_to_the_number_of_segments(mesh: Path, tmp_path: Path) -> None:

@@ -22,8 +22,8 @@ def test_pages_of_other_sites_cannot_submit_unless_they_are_allowed(settings: Se
         assert allowed.status_code == 202
         assert allowed.headers["Access-Control-Allow-Origin"] == "https://other.example"
         assert "Location" in allowed.headers["Access-Control-Expose-Headers"]
-        stranger = foreign | {"Origin": "https://third.example"}
-        problem(client.post("/v1/jobs", content=b"abc", headers=stranger), 403, "foreign_site")
+        refused = foreign | {"Origin": "https://third.example"}
+        problem(client.post("/v1/jobs", content=b"abc", headers=refused), 403, "foreign_site")
         preflight = {"Origin": "https://other.example", "Access-Control-Request-Method": "POST"}
         assert client.options("/v1/jobs", headers=preflight).status_code == 200
 

@@ -69,9 +69,9 @@ def test_requests_for_a_job_are_logged_with_its_id(client: httpx.Client, logged:
     path = submit(client)
     client.get(path)
     client.head(path)
-    asked = lines_of(logged, "/v1/jobs/{job_id}", 2)
-    assert [line["method"] for line in asked] == ["GET", "GET"]  # HEAD is handled as GET
-    assert {(line["job_id"], line["level"]) for line in asked} == {(path.rpartition("/")[2], "debug")}
+    lines = lines_of(logged, "/v1/jobs/{job_id}", 2)
+    assert [line["method"] for line in lines] == ["GET", "GET"]  # HEAD is handled as GET
+    assert {(line["job_id"], line["level"]) for line in lines} == {(path.rpartition("/")[2], "debug")}
 
 
 def test_an_internal_error_is_counted_and_logged_with_its_trace(
