@@ -1,4 +1,4 @@
-"""The examples of the README work as they are printed."""
+"""The README's examples do what they say, as pasted."""
 
 import os
 import re
@@ -18,7 +18,7 @@ BLOCKS = re.findall(r"```(\w+)\n(.*?)```", README.read_text(), re.DOTALL)
 
 
 def block(language: str, mark: str) -> str:
-    """Return the only code block in a language that contains a text."""
+    """The only block of code in a language that has a mark."""
     (text,) = [text for name, text in BLOCKS if name == language and mark in text]
     return str(text)
 
@@ -34,9 +34,9 @@ def run(command: list[str], folder: Path) -> str:
     return done.stdout
 
 
-def test_the_examples_with_curl_the_clients_and_the_library_work(tmp_path: Path) -> None:
+def test_the_walk_through_with_curl_works_as_pasted_and_so_do_the_ways_without_a_server(tmp_path: Path) -> None:
     if shutil.which("curl") is None or shutil.which("bash") is None:
-        pytest.skip("the examples need bash and curl")
+        pytest.skip("the walk-through needs bash and curl")
     walk = block("sh", "curl")
     with Installation(workers=1) as installation:
         printed = run(["bash", "-euc", walk.replace(ADDRESS, installation.url)], tmp_path)
@@ -58,7 +58,7 @@ def test_the_examples_with_curl_the_clients_and_the_library_work(tmp_path: Path)
 
 
 def check_the_clients(url: str, folder: Path) -> None:
-    """Run the examples of the other clients of a service, in a folder with burr.stl."""
+    """The other ways to use a running service, in a folder with burr.stl."""
     (folder / "parts.glb").unlink()
     python = block("python", "cleave.client").replace(ADDRESS, url)
     assert run([sys.executable, "-c", python], folder).startswith("7 [")
@@ -79,7 +79,7 @@ def test_the_two_commands_are_in_the_readme() -> None:
     assert block("sh", "pytest") == "pip install '.[test]' && pytest\n"
 
 
-def test_the_table_of_settings_is_complete_and_correct() -> None:
+def test_the_table_of_settings_is_complete_and_true() -> None:
     rows = dict(re.findall(r"^\| `(CLEAVE_\w+)` \| .*? \| (.*) \|$", README.read_text(), re.MULTILINE))
     defaults = dict(re.findall(r"^\| `(CLEAVE_\w+)` \| (.*?) \|", README.read_text(), re.MULTILINE))
     fields = {f"CLEAVE_{name.upper()}": field for name, field in Settings.model_fields.items()}
