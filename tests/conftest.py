@@ -10,6 +10,8 @@ import pytest
 from hypothesis import settings
 from hypothesis.configuration import set_hypothesis_home_dir
 from redis import Redis
+from xdist.remote import Producer
+from xdist.scheduler import LoadScopeScheduling
 
 from helpers.buckets import CREDENTIALS, s3_server
 from helpers.waiting import wait_until
@@ -24,6 +26,22 @@ settings.load_profile("repeatable")
 _HYPOTHESIS = tempfile.TemporaryDirectory(prefix="hypothesis-")
 set_hypothesis_home_dir(_HYPOTHESIS.name)
 
+_TESTS = Path(__file__).parent
+_BROWSER = "tests/browser/"
+_SLOW_FOLDERS = {"end_to_end", "browser", "fuzz"}
+# Measured with --durations=0; the order only shortens the run.
+_LONGEST = (
+    "end_to_end/test_soak.py",
+    "browser/*",
+    "end_to_end/test_faults.py",
+    "worker/process/test_process.py",
+    "end_to_end/*",
+    "bench/test_train_command.py",
+    "worker/*",
+    "service/test_contract.py",
+    "segcore/test_laws.py",
+)
+
 
 def pytest_addoption(parser: pytest.Parser) -> None:
     parser.addoption(
@@ -34,9 +52,36 @@ def pytest_addoption(parser: pytest.Parser) -> None:
     )
 
 
+def pytest_xdist_auto_num_workers(config: pytest.Config) -> int:
+    """One process more than there are processors, because many tests wait; this process alone for a single file."""
+    if len(config.args) == 1 and config.args[0].partition("::")[0].endswith(".py"):
+        return 0
+    return len(os.sched_getaffinity(0)) + 1 if hasattr(os, "sched_getaffinity") else (os.cpu_count() or 1) + 1
+
+
+def pytest_xdist_make_scheduler(config: pytest.Config, log: Producer) -> LoadScopeScheduling:
+    return _FileByFile(config, log)
+
+
+class _FileByFile(LoadScopeScheduling):
+    """All tests of a file run in one process, and so do all tests of the browser, which share one installation."""
+
+    def _split_scope(self, nodeid: str) -> str:
+        path = nodeid.partition("::")[0]
+        return _BROWSER if path.startswith(_BROWSER) else path
+
+
 def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
-    """Put the tests of the browser last: what drives it keeps an event loop running in the main thread."""
-    items.sort(key=lambda item: "browser" in item.path.parts)
+    """Start the files that take longest first, and mark the tests that are left out with ``-m "not slow"``."""
+    items.sort(key=lambda item: _order(item.path))
+    for item in items:
+        if _SLOW_FOLDERS & set(item.path.relative_to(_TESTS).parts):
+            item.add_marker("slow")
+
+
+def _order(path: Path) -> int:
+    """The position of the first pattern that matches a file; files that match none come in the middle."""
+    return next((i for i, pattern in enumerate(_LONGEST) if path.match(pattern)), len(_LONGEST))
 
 
 def pytest_unconfigure() -> None:

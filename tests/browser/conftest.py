@@ -23,13 +23,13 @@ class _Limited(Installation):
     settings = Installation.settings | {"CLEAVE_MAX_UPLOAD_BYTES": str(MAX_UPLOAD_BYTES)}
 
 
-@pytest.fixture(scope="session")
+@pytest.fixture(scope="package")
 def installation() -> Iterator[Installation]:
     with _Limited(workers=1) as installation:
         yield installation
 
 
-@pytest.fixture(scope="session")
+@pytest.fixture(scope="package")
 def browser() -> Iterator[Browser]:
     if not _CHROMIUM.exists() and "CI" not in os.environ:
         pytest.skip(f"there is no {_CHROMIUM}: install Debian's package chromium to run the tests of the viewer")
@@ -62,7 +62,7 @@ def visit(new_visit: NewVisit) -> Visit:
     return new_visit()
 
 
-@pytest.fixture(scope="session")
+@pytest.fixture(scope="package")
 def job(installation: Installation) -> str:
     """The id of a finished job: a ball with six arms, which has seven parts at the automatic level."""
     files = {"mesh": ("burr.ply", small_burr())}
@@ -74,7 +74,7 @@ def job(installation: Installation) -> str:
     return str(answer.json()["id"])
 
 
-@pytest.fixture(scope="session")
+@pytest.fixture(scope="package")
 def axe(tmp_path_factory: pytest.TempPathFactory) -> str:
     """The script of axe-core, which checks accessibility."""
     folder = programs.install("axe", tmp_path_factory.mktemp("axe"))

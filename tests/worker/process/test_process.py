@@ -94,8 +94,8 @@ def test_a_killed_work_horse_costs_an_attempt_and_not_the_job(
 def poison(statement: str) -> tuple[str, str]:
     """A worker whose work is a statement for one kind of mesh, and next to nothing for others."""
     source = f"""
-import ctypes, os, tempfile, worker.process
-from worker.jobs import Canceled, now
+import ctypes, os, tempfile, worker.process.process
+from worker.jobs.job import Canceled, now
 def perform(store, settings, job_id, on_progress):
     if store.open_mesh(job_id).read() == b"poison":
         {statement}

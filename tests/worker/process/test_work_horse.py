@@ -56,8 +56,8 @@ def test_a_kill_while_the_kernel_killed_for_memory_is_put_down_to_memory() -> No
 def test_a_work_horse_cannot_lift_its_limits_and_leaves_no_core() -> None:
     source = """
 import resource
-from worker.settings import Settings
-from worker.work_horse import limit_resources
+from cleave.settings import Settings
+from worker.process.work_horse import limit_resources
 resource.setrlimit(resource.RLIMIT_FSIZE, (1000, 1000))  # an operator's own is never raised
 limit_resources(Settings(job_memory_bytes=2**33, job_cpu_s=77, job_file_bytes=2000))
 for name in ("AS", "CPU", "FSIZE", "CORE"):
