@@ -7,7 +7,7 @@ COPY segcore segcore
 COPY worker worker
 COPY service service
 RUN python -m venv /opt/cleave && /opt/cleave/bin/pip install --no-cache-dir ".[cloud,draco]"
-# The kernels are compiled here, so that no container compiles them again.
+# The kernels are compiled here, so that containers do not compile them.
 ENV NUMBA_CACHE_DIR=/opt/cleave/kernels \
     NUMBA_CPU_NAME=generic
 RUN /opt/cleave/bin/python -P -c "import segcore; segcore.warm_up()"
@@ -26,7 +26,7 @@ USER 10001:10001
 VOLUME /data
 EXPOSE 8000
 STOPSIGNAL SIGTERM
-# What runs workers alone answers no HTTP: docker-compose.yml has their check.
+# A container of workers serves no HTTP: docker-compose.yml replaces its health check.
 HEALTHCHECK --interval=10s --timeout=5s --start-period=60s \
     CMD ["python", "-c", "import urllib.request; urllib.request.urlopen('http://127.0.0.1:8000/healthz', timeout=4)"]
 ENTRYPOINT ["cleave"]

@@ -1,4 +1,4 @@
-"""Which files of a folder a Dockerfile may copy, as its .dockerignore says."""
+"""The build context: the files of a folder that .dockerignore lets a Dockerfile copy."""
 
 from fnmatch import fnmatch
 from pathlib import Path
@@ -7,7 +7,12 @@ _ANYWHERE = "**/"
 
 
 def is_sent(path: str, patterns: list[str]) -> bool:
-    """Whether a file, by its path below the folder, is sent to the builder; the last pattern that matches decides."""
+    """Whether a file is sent to the builder. The last pattern that matches decides.
+
+    Parameters
+    ----------
+    path : of the file, relative to the folder.
+    """
     sent = True
     for pattern in patterns:
         if _matches(path, pattern.removeprefix("!")):
@@ -16,12 +21,13 @@ def is_sent(path: str, patterns: list[str]) -> bool:
 
 
 def read_patterns(ignore_file: Path) -> list[str]:
+    """Return the patterns of a .dockerignore file, without comments."""
     lines = [line.strip() for line in ignore_file.read_text().splitlines()]
     return [line for line in lines if line and not line.startswith("#")]
 
 
 def _matches(path: str, pattern: str) -> bool:
-    """Whether a path or one of the folders that it is in matches."""
+    """Whether a path or one of its parent folders matches a pattern."""
     parts = path.split("/")
     if pattern.startswith(_ANYWHERE):
         return any(fnmatch(part, pattern.removeprefix(_ANYWHERE)) for part in parts)

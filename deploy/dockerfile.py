@@ -1,4 +1,4 @@
-"""What a Dockerfile says, as values: the instructions of each of its stages, in order."""
+"""A parser of Dockerfiles: stages, and the instructions of each stage in their order."""
 
 import json
 import re
@@ -8,30 +8,30 @@ from dataclasses import dataclass, field
 
 _CONTINUED = re.compile(r"\\\s*\n")
 _VARIABLE = re.compile(r"\$(?:\{(\w+)\}|(\w+))")
-_CARRIED_OUT = ("FROM", "RUN", "COPY", "ENV", "WORKDIR", "USER")
-_TOLD = ("VOLUME", "EXPOSE", "STOPSIGNAL", "HEALTHCHECK", "ENTRYPOINT", "CMD", "LABEL")
+_EXECUTED = ("FROM", "RUN", "COPY", "ENV", "WORKDIR", "USER")
+_METADATA = ("VOLUME", "EXPOSE", "STOPSIGNAL", "HEALTHCHECK", "ENTRYPOINT", "CMD", "LABEL")
 
 
 class UnknownInstruction(ValueError):  # noqa: N818
-    """The Dockerfile has something that is not understood here."""
+    """The Dockerfile has an instruction that this parser does not support."""
 
 
 @dataclass(frozen=True, slots=True)
 class Instruction:
     name: str  # in capitals
-    text: str  # what follows, on one line
+    text: str  # the rest of the instruction, on one line
 
     def words(self) -> list[str]:
-        """The parts of the text, of a JSON array as of a command line."""
+        """Split the text, which is a JSON array or a command line."""
         return list(json.loads(self.text)) if self.text.startswith("[") else shlex.split(self.text)
 
     def flags(self) -> dict[str, str]:
-        """The options that come first, such as ``--from=build``."""
+        """Return the options, such as ``--from=build``."""
         leading = [word for word in self.text.split() if word.startswith("--")]
         return dict(word[2:].split("=", 1) for word in leading)
 
     def arguments(self) -> list[str]:
-        """The words without the options."""
+        """Return the words that are not options."""
         return [word for word in self.words() if not word.startswith("--")]
 
 
@@ -42,12 +42,12 @@ class Stage:
     instructions: list[Instruction] = field(default_factory=list)
 
     def last(self, name: str) -> Instruction:
-        """The instruction of a name that holds.
+        """Return the last instruction of a name, which overrides the earlier ones.
 
         Raises
         ------
         UnknownInstruction
-            Where there is none.
+            If there is none.
         """
         found = [instruction for instruction in self.instructions if instruction.name == name]
         if not found:
@@ -56,12 +56,12 @@ class Stage:
 
 
 def parse(text: str) -> list[Stage]:
-    """The stages of a Dockerfile.
+    """Return the stages of a Dockerfile.
 
     Raises
     ------
     UnknownInstruction
-        Where an instruction is not one of those that are understood here.
+        If an instruction is not supported.
     """
     lines = [line for line in text.splitlines() if not line.lstrip().startswith("#")]
     stages: list[Stage] = []
@@ -69,8 +69,8 @@ def parse(text: str) -> list[Stage]:
         name, _, rest = line.strip().partition(" ")
         if not name:
             continue
-        if name not in (*_CARRIED_OUT, *_TOLD) or (name != "FROM" and not stages):
-            raise UnknownInstruction(f"{name} is not understood.")
+        if name not in (*_EXECUTED, *_METADATA) or (name != "FROM" and not stages):
+            raise UnknownInstruction(f"{name} is not supported.")
         if name == "FROM":
             base, *alias = rest.split()
             stages.append(Stage(alias[1] if alias else str(len(stages)), base))
@@ -80,10 +80,11 @@ def parse(text: str) -> list[Stage]:
 
 
 def assignments(instruction: Instruction, environment: Mapping[str, str]) -> dict[str, str]:
-    """The variables that an ENV sets; what it refers to has its value from before."""
+    """Return the variables that an ENV instruction sets; references are expanded in the environment before it."""
     pairs = (word.split("=", 1) for word in instruction.words())
     return {name: expand(value, environment) for name, value in pairs}
 
 
 def expand(text: str, environment: Mapping[str, str]) -> str:
+    """Expand ``$NAME`` and ``${NAME}``; an unknown variable is empty."""
     return _VARIABLE.sub(lambda match: environment.get(match[1] or match[2], ""), text)

@@ -1,4 +1,4 @@
-"""Carries out a Dockerfile in folders, without a container engine."""
+"""Builds the stages of a Dockerfile in folders, without a container engine."""
 
 import os
 from collections.abc import Callable, Mapping
@@ -16,7 +16,7 @@ _PATH = "/usr/local/sbin:/usr/local/bin:/usr/sbin:/usr/bin:/sbin:/bin"
 
 @dataclass(slots=True)
 class BuiltStage:
-    """The root of a stage, and what its containers start with."""
+    """The root of a stage, and the environment, folder and user of its commands."""
 
     stage: Stage
     root: Root
@@ -27,22 +27,24 @@ class BuiltStage:
 
 @dataclass(frozen=True, slots=True)
 class Builder:
+    """Builds a Dockerfile."""
+
     context: Path  # the folder of the Dockerfile
-    base: Path  # a root that stands for the images that the stages begin with
-    work: Path  # where the roots of the stages go
-    binds: tuple[Path, ...]  # files and folders of this machine that commands see, for the index of packages
-    variables: Mapping[str, str]  # that commands see, for the same end
+    base: Path  # a root that is used instead of the base image of every stage
+    work: Path  # folder of the roots of the stages
+    binds: tuple[Path, ...]  # files and folders of this machine that commands can read, to find the package index
+    variables: Mapping[str, str]  # environment variables of commands, for the same purpose
     say: Say
 
     def build(self) -> BuiltStage:
-        """Every stage; the last is the image."""
+        """Build every stage, and return the last one, which is the image."""
         built: dict[str, BuiltStage] = {}
         for number, stage in enumerate(parse((self.context / "Dockerfile").read_text())):
             built[stage.name] = self._build_stage(stage, number, built)
         return built[stage.name]
 
     def _build_stage(self, stage: Stage, number: int, before: Mapping[str, BuiltStage]) -> BuiltStage:
-        self.say(f"stage {stage.name}: {stage.base}, for which {self.base} stands")
+        self.say(f"stage {stage.name}: {stage.base}, replaced by {self.base}")
         made = BuiltStage(stage, copy_of(self.base, self.work / f"stage-{number}"))
         made.root.mount_system()
         made.root.bind_network()
@@ -50,10 +52,10 @@ class Builder:
             made.root.bind(path, str(path))
         for instruction in stage.instructions:
             self.say(f"  {instruction.name} {instruction.text}")
-            self._carry_out(instruction, made, before)
+            self._execute(instruction, made, before)
         return made
 
-    def _carry_out(self, instruction: Instruction, made: BuiltStage, before: Mapping[str, BuiltStage]) -> None:
+    def _execute(self, instruction: Instruction, made: BuiltStage, before: Mapping[str, BuiltStage]) -> None:
         match instruction.name:
             case "RUN":
                 words = ["/bin/sh", "-c", instruction.text]
@@ -70,21 +72,21 @@ class Builder:
 
     def _copy(self, instruction: Instruction, made: BuiltStage, before: Mapping[str, BuiltStage]) -> None:
         *sources, target = instruction.arguments()
-        where = made.root.path(os.path.join(made.folder, target))
+        folder = made.root.path(os.path.join(made.folder, target))
         stage = instruction.flags().get("from")
         for source in sources:
             if stage is not None:
-                copy_into(before[stage].root.path(source), where)
+                copy_into(before[stage].root.path(source), folder)
             else:
-                self._copy_from_context(source, where)
+                self._copy_from_context(source, folder)
 
     def _copy_from_context(self, source: str, target: Path) -> None:
-        """Copy a file into a folder, or what is in a folder, as far as .dockerignore lets it through."""
+        """Copy a file, or the content of a folder, into a folder; files that .dockerignore excludes are skipped."""
         patterns = read_patterns(self.context / ".dockerignore")
         path = self.context / source
         files = [path] if path.is_file() else sorted(file for file in path.rglob("*") if file.is_file())
         sent = [file for file in files if is_sent(str(file.relative_to(self.context)), patterns)]
         if not sent:
-            raise FileNotFoundError(f"COPY {source}: .dockerignore sends nothing of it.")
+            raise FileNotFoundError(f"COPY {source}: .dockerignore excludes all of it.")
         for file in sent:
             copy_into(file, target / file.relative_to(path if path.is_dir() else path.parent))

@@ -1,9 +1,9 @@
-"""Builds the image without a container engine, serves from it as its user on a read-only root, and segments a mesh.
+"""Builds the image without a container engine, runs it as its user on a read-only root, and segments a mesh.
 
     python -m deploy.image_check BASE
 
-BASE is the root of a Debian with Python, which stands for the image that the Dockerfile begins with; `make image-check`
-makes one. It needs root, and leaves nothing mounted.
+BASE is the root of a Debian system with Python, which replaces the base image of the Dockerfile; `make image-check`
+creates one. The check must be run as root. Nothing stays mounted afterwards.
 """
 
 import argparse
@@ -25,7 +25,7 @@ from segcore.io import write_mesh
 from segcore.shapes import burr
 
 _WORK = "CLEAVE_IMAGE_CHECK_WORK"
-_START_S, _STOP_S = 120.0, 30.0
+_START_S, _STOP_S = 120.0, 30.0  # as in tests/helpers/installation.py; stop_grace_period of docker-compose.yml
 _PORT = 8000
 
 
@@ -40,19 +40,19 @@ def main() -> int:
 
 
 def check(image: BuiltStage) -> None:
-    """Start a container's command in the image and use it.
+    """Start the command of the image and send requests to it.
 
     Raises
     ------
     AssertionError
-        Where it does not do what an image must.
+        If the image does not work.
     """
     user, _, group = image.user.partition(":")
     volume = {image.stage.last("VOLUME").text: f"mode=700,uid={user},gid={group}"}
     image.root.make_read_only({"/tmp": "mode=1777", **volume})
     entry = image.stage.last("ENTRYPOINT").words()
-    said = image.root.run([*entry, "key", "check"], image.environment, user=image.user)
-    key, digest = (line.split()[1] for line in said.splitlines()[:2])
+    printed = image.root.run([*entry, "key", "check"], image.environment, user=image.user)
+    key, digest = (line.split()[1] for line in printed.splitlines()[:2])
     environment = {**image.environment, "CLEAVE_API_KEYS": digest}
     command = [*entry, *image.stage.last("CMD").words()]
     began_at = time.monotonic()
@@ -61,7 +61,7 @@ def check(image: BuiltStage) -> None:
             _wait_until_ready(process)
             _say(f"ready after {time.monotonic() - began_at:.1f} s")
             _use(image, process, key)
-            _examine(image, environment)
+            _run_checks(image, environment)
         finally:
             process.send_signal(signal.SIGTERM)
             status = process.wait(_STOP_S)
@@ -83,16 +83,16 @@ def _use(image: BuiltStage, process: "subprocess.Popen[bytes]", key: str) -> Non
     _say(f"cut a mesh of {len(job['labels'])} faces into 7 segments in one request")
     shipped = _kernels(image.root.path(image.environment["NUMBA_CACHE_DIR"]))
     used = _kernels(image.root.path(image.stage.last("VOLUME").text))
-    assert used == shipped, f"kernels were compiled anew: {sorted(used - shipped)}"
-    _say(f"compiled no kernel: all {len(shipped)} came with the image")
+    assert used == shipped, f"kernels were compiled again: {sorted(used - shipped)}"
+    _say(f"compiled no kernel: all {len(shipped)} are part of the image")
 
 
 def _kernels(folder: Path) -> set[str]:
     return {f"{path.parent.name}/{path.name}" for path in folder.rglob("*.nbi")}
 
 
-def _examine(image: BuiltStage, environment: dict[str, str]) -> None:
-    """What a health check of a worker and an operator ask."""
+def _run_checks(image: BuiltStage, environment: dict[str, str]) -> None:
+    """Run the health check of a worker, and cleave doctor."""
     entry = image.stage.last("ENTRYPOINT").words()
     queue = f"unix://{image.stage.last('VOLUME').text}/queue/queue.sock"
     _say(image.root.run([*entry, "worker", "--check", "--redis-url", queue], environment, user=image.user).strip())
@@ -100,17 +100,17 @@ def _examine(image: BuiltStage, environment: dict[str, str]) -> None:
 
 
 def burr_in_off() -> bytes:
-    """A ball with six arms."""
+    """Return a ball with six arms as an OFF file."""
     target = io.BytesIO()
     write_mesh(target, burr().mesh, "off")
     return target.getvalue()
 
 
 def _wait_until_ready(process: "subprocess.Popen[bytes]") -> None:
-    gives_up_at = time.monotonic() + _START_S
+    deadline = time.monotonic() + _START_S
     while True:
         assert process.poll() is None, f"it ended with {process.returncode}"
-        assert time.monotonic() < gives_up_at, "it did not become ready"
+        assert time.monotonic() < deadline, "it did not become ready"
         try:
             if _ask("GET", "/readyz")["ready"]:
                 return
@@ -129,15 +129,15 @@ def _ask(method: str, path: str, key: str = "", body: bytes | None = None) -> di
         connection.close()
 
 
-def _run_isolated(where: Path | None) -> int:
-    """Do all of it where mounts and processes are gone afterwards, and only then remove what was made."""
+def _run_isolated(folder: Path | None) -> int:
+    """Run this module in its own mount and process namespaces, and remove its files when they have ended."""
     own = ["unshare", "--mount", "--propagation", "private", "--pid", "--fork", "--kill-child", "--mount-proc"]
     command = [*own, sys.executable, "-m", "deploy.image_check", *sys.argv[1:]]
-    work = Path(tempfile.mkdtemp(prefix="cleave-image-", dir=where))
+    work = Path(tempfile.mkdtemp(prefix="cleave-image-", dir=folder))
     status = subprocess.run(command, env={**os.environ, _WORK: str(work)}, check=False).returncode
     if str(work) in Path("/proc/self/mountinfo").read_text():
         raise RuntimeError(
-            f"Something is still mounted in {work}: it is not removed, since that would remove it there."
+            f"Something is still mounted in {work}: the folder is kept, or the files of the mount would be removed."
         )
     shutil.rmtree(work)
     return status
@@ -146,13 +146,13 @@ def _run_isolated(where: Path | None) -> int:
 def _parser() -> argparse.ArgumentParser:
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("base", type=Path)
-    parser.add_argument("--work", type=Path, help="where the roots of the stages go (the folder for temporary files)")
+    parser.add_argument("--work", type=Path, help="folder of the roots of the stages (the temporary folder)")
     parser.add_argument(
         "--bind",
         type=Path,
         action="append",
         default=[],
-        help="a path of this machine that commands see, such as /etc/pip.conf",
+        help="a path of this machine that commands can read, such as /etc/pip.conf",
     )
     return parser
 

@@ -1,4 +1,4 @@
-"""A folder that is the root of a system: commands that run in it, and what it sees of this machine."""
+"""A folder that is the root of a system: mounts in it, and commands that run in it."""
 
 import os
 import shutil
@@ -12,16 +12,19 @@ _DEVICES = ("null", "zero", "full", "random", "urandom", "tty")
 
 @dataclass(frozen=True, slots=True)
 class Root:
-    """Needs the rights of root, and a mount namespace of its own that takes the mounts along when it ends."""
+    """The root of a system.
+
+    Mounting requires root, and a mount namespace of its own, whose end unmounts everything.
+    """
 
     folder: Path
 
     def path(self, inside: str) -> Path:
-        """Where a path of this root is from outside."""
+        """Return the path outside of this root for a path inside."""
         return self.folder / inside.lstrip("/")
 
     def mount_system(self) -> None:
-        """What every process expects: its processes, a few devices, shared memory."""
+        """Mount /proc, /dev with a few devices, and shared memory."""
         self._mount("proc", "/proc")
         self._mount("tmpfs", "/dev", "mode=755")
         for name in _DEVICES:
@@ -30,7 +33,7 @@ class Root:
         self._mount("tmpfs", "/dev/shm", "mode=1777")
 
     def bind(self, outside: Path, inside: str) -> None:
-        """Show a file or folder of this machine under a path, to be read."""
+        """Mount a file or folder of this machine at a path, read-only."""
         target = self.path(inside)
         target.parent.mkdir(parents=True, exist_ok=True)
         if outside.is_dir():
@@ -42,11 +45,16 @@ class Root:
         subprocess.run(["mount", "-o", "remount,bind,ro", target], check=True)
 
     def bind_network(self) -> None:
-        """Let commands find other machines by name."""
+        """Let commands resolve host names."""
         self.bind(Path("/etc/resolv.conf"), "/etc/resolv.conf")
 
     def make_read_only(self, writable: Mapping[str, str]) -> None:
-        """Refuse every change from now on, but in memory under these paths, whose mounts have options."""
+        """Make the root read-only, except for file systems in memory.
+
+        Parameters
+        ----------
+        writable : their paths, and the mount options of each.
+        """
         subprocess.run(["mount", "--bind", self.folder, self.folder], check=True)
         subprocess.run(["mount", "-o", "remount,bind,ro", self.folder], check=True)
         for inside, options in writable.items():
@@ -55,13 +63,13 @@ class Root:
     def command(
         self, words: Sequence[str], environment: Mapping[str, str], folder: str = "/", user: str = "0:0"
     ) -> list[str]:
-        """The command line that runs a command in here, as a user who cannot become another."""
+        """Return the command line that runs a command in this root, as a user who cannot gain privileges."""
         variables = [f"{name}={value}" for name, value in environment.items()]
         enter = ["chroot", f"--userspec={user}", f"--groups={user.partition(':')[2]}", str(self.folder)]
         return [*enter, "env", "-i", "-C", folder, *variables, "setpriv", "--no-new-privs", *words]
 
     def run(self, words: Sequence[str], environment: Mapping[str, str], folder: str = "/", user: str = "0:0") -> str:
-        """Run a command to its end; what it wrote to its standard output."""
+        """Run a command and return its standard output."""
         command = self.command(words, environment, folder, user)
         return subprocess.run(command, check=True, stdout=subprocess.PIPE, text=True).stdout
 
@@ -70,13 +78,13 @@ class Root:
 
 
 def copy_of(root: Path, folder: Path) -> Root:
-    """A root with the same files."""
+    """Copy a root."""
     subprocess.run(["cp", "-a", "--reflink=auto", "--one-file-system", root, folder], check=True)
     return Root(folder)
 
 
 def copy_into(source: Path, target: Path) -> None:
-    """Copy a file, or what is in a folder, with owners, modes and times."""
+    """Copy a file, or the content of a folder, into a folder, with owners, modes and times."""
     if source.is_dir():
         target.mkdir(parents=True, exist_ok=True)
         subprocess.run(["cp", "-a", f"{source}/.", target], check=True)

@@ -6,15 +6,15 @@ from starlette.middleware.cors import CORSMiddleware
 from cleave.settings import Settings
 from cleave.version import installed_version
 from service.context import Context, QueueView
-from service.guard.callers import ForeignSites, LocalNames
-from service.guard.headers import HeadRequests, SecurityHeaders
+from service.guard.foreign_sites import CrossSiteCheckMiddleware, HostCheckMiddleware
+from service.guard.headers import HeadMiddleware, SecurityHeadersMiddleware
 from service.keys import key_ring
 from service.openapi.document import complete
 from service.problems import handle_problems
 from service.result_cache import ResultCache
 from service.routes import about, batches, docs_page, files, health, home, jobs, models, results, submission, webhooks
 from service.telemetry.metrics import Metrics
-from service.telemetry.request_log import ObservedRequests
+from service.telemetry.request_log import RequestLogMiddleware
 from worker.jobs.queue.connection import connect
 from worker.jobs.queue.queue import JobQueue
 from worker.jobs.queue.quota import UploadQuota
@@ -79,9 +79,9 @@ def create_app(settings: Settings) -> FastAPI:
     for module in _ROUTES:
         app.include_router(module.router)
     _add_middleware(app, settings)
-    app.add_middleware(ObservedRequests, metrics=metrics)
-    app.add_middleware(SecurityHeaders)
-    app.add_middleware(HeadRequests)
+    app.add_middleware(RequestLogMiddleware, metrics=metrics)
+    app.add_middleware(SecurityHeadersMiddleware)
+    app.add_middleware(HeadMiddleware)
     handle_problems(app)
     complete(app, keys_required=app.state.context.keys_required)
     return app
@@ -89,9 +89,9 @@ def create_app(settings: Settings) -> FastAPI:
 
 def _add_middleware(app: FastAPI, settings: Settings) -> None:
     origins = [origin.strip() for origin in (settings.cors_origins or "").split(",") if origin.strip()]
-    app.add_middleware(ForeignSites, allowed_origins=origins)
+    app.add_middleware(CrossSiteCheckMiddleware, allowed_origins=origins)
     if settings.auth == "auto" and not app.state.context.keys_required:
-        app.add_middleware(LocalNames)
+        app.add_middleware(HostCheckMiddleware)
     if origins:
         app.add_middleware(
             CORSMiddleware,

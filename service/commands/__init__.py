@@ -1,1 +1,1 @@
-"""The commands of `cleave`, a module for each, and what they share. :mod:`service.commands` puts them together."""
+"""The commands of `cleave`: a module per command, listed in :mod:`service.commands.main`, and what they share."""

@@ -1,4 +1,4 @@
-"""Run the command `cleave`: ``python -m service.commands``."""
+"""Run the command `cleave` as ``python -m service.commands``."""
 
 import sys
 

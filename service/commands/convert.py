@@ -1,30 +1,39 @@
-"""`cleave convert`: a .cleave file in, the same segmentation in other formats out."""
+"""`cleave convert`: write the segmentation of a .cleave file in other formats."""
 
-from collections.abc import Sequence
+import argparse
 from pathlib import Path
 
 from segcore.io.result import read_result
 from segcore.levels import Fineness
-from service.commands.outputs import OutputOptions, check_outputs, write_model
+from service.commands.arguments import add_level
+from service.commands.console import say
+from service.commands.outputs import add_outputs, check_outputs, output_options, write_model
 
 
-def convert_file(result: Path, fineness: Fineness, outputs: Sequence[Path], options: OutputOptions) -> list[str]:
-    """Write the files, and sum up in a few lines what is in them.
+def add_arguments(parser: argparse.ArgumentParser) -> None:
+    parser.description = "Write the segmentation of a .cleave file in other formats, with any number of segments."
+    parser.add_argument("result", type=Path, metavar="MESH.cleave", help="a file that cleave segment --result wrote")
+    add_level(parser, "the automatic one")
+    add_outputs(parser, required=True)
+
+
+def run(choices: argparse.Namespace) -> None:
+    """Write the files and print a summary.
 
     Raises
     ------
     CleaveError
-        Where the file is damaged, or there is no such level.
+        If the file is damaged, or there is no such level.
     OSError
-        Where a file cannot be read or written.
+        If a file cannot be read or written.
     """
+    fineness, outputs = Fineness(choices.segments, choices.granularity), choices.output
     check_outputs(outputs)
-    opened = read_result(result)
-    count = fineness.segments_of(opened.hierarchy)
+    result = read_result(choices.result)
+    segments = fineness.segments_of(result.hierarchy)
     for path in outputs:
-        write_model(path, opened.mesh, opened.hierarchy, count, options)
-    chosen = "chosen automatically" if fineness.is_automatic else "as asked"
-    return [
-        f"{count} segments, {chosen}; 1 to {opened.hierarchy.max_segments} are possible",
-        *(f"wrote {path}" for path in outputs),
-    ]
+        write_model(path, result.mesh, result.hierarchy, segments, output_options(choices))
+    chosen = "chosen automatically" if fineness.is_automatic else "as requested"
+    say(f"{segments} segments, {chosen}; 1 to {result.hierarchy.max_segments} are possible")
+    for path in outputs:
+        say(f"wrote {path}")

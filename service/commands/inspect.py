@@ -1,32 +1,40 @@
-"""`cleave inspect`: what is in a mesh file."""
+"""`cleave inspect`: report what a mesh file contains."""
 
+import argparse
 import json
 from dataclasses import asdict
 from pathlib import Path
 
 import segcore
 from segcore.report import MeshReport, mesh_report
+from service.commands.console import say
 
 
-def inspect_file(path: Path) -> MeshReport:
-    """The report of a mesh file.
+def add_arguments(parser: argparse.ArgumentParser) -> None:
+    parser.description = "Report what a mesh file contains: components, borders, and defects that segmentation repairs."
+    parser.add_argument("mesh", type=Path, metavar="MESH", help="the mesh file")
+    parser.add_argument("--json", action="store_true", help="print the report as JSON")
+
+
+def run(choices: argparse.Namespace) -> None:
+    """Print the report of a mesh file.
 
     Raises
     ------
     CleaveError
-        Where the file cannot be used.
+        If the file cannot be used.
     OSError
-        Where it cannot be read.
+        If the file cannot be read.
     """
-    return mesh_report(segcore.read_mesh(path, appearance=True))
+    report = mesh_report(segcore.read_mesh(choices.mesh, appearance=True))
+    if choices.json:
+        say(json.dumps(asdict(report), indent=2, allow_nan=False))
+    else:
+        say("\n".join(_lines(choices.mesh.name, report)))
 
 
-def report_json(report: MeshReport) -> str:
-    return json.dumps(asdict(report), indent=2, allow_nan=False)
-
-
-def describe(name: str, report: MeshReport) -> list[str]:
-    """The report as lines for people; what is as it should be is not mentioned."""
+def _lines(name: str, report: MeshReport) -> list[str]:
+    """Format a report for people; defects are listed only if there are any."""
     size = " x ".join(f"{high - low:g}" for low, high in zip(report.lower, report.upper, strict=True))
     lines = [
         f"{name}: {report.faces} faces, {report.vertices} vertices"
@@ -34,22 +42,23 @@ def describe(name: str, report: MeshReport) -> list[str]:
         f"size {size}, area {report.area:g}" + ("" if report.volume is None else f", volume {report.volume:g}"),
         f"{_count(report.components, 'component')}, {'closed' if report.is_closed else 'not closed'}",
     ]
-    lines += [f"{_count(number, what)}{why}" for number, what, why in _findings(report) if number]
+    lines += [f"{_count(number, what)}, {meaning}" for number, what, meaning in _defects(report) if number]
     if report.groups:
         lines.append(f"{_count(len(report.groups), 'group')}: {', '.join(name or '(none)' for name in report.groups)}")
     return lines
 
 
-def _findings(report: MeshReport) -> list[tuple[int, str, str]]:
+def _defects(report: MeshReport) -> list[tuple[int, str, str]]:
+    """Return the number, the name and the meaning of each kind of defect."""
     return [
-        (report.border_edges, "border edge", ", with a face on one side only"),
-        (report.non_manifold_edges, "non-manifold edge", ", with three faces or more"),
-        (report.flipped_faces, "flipped face", ", turned round to agree with the others"),
-        (report.duplicate_faces, "duplicate face", ", with the corners of an earlier one"),
-        (report.degenerate_faces, "degenerate face", ", with two corners at one place"),
-        (report.sliver_faces, "sliver", ", a face without a reliable direction"),
-        (report.welded_vertices, "welded vertex", ", at the same place as another one"),
-        (report.unused_vertices, "unused vertex", ", which no face has"),
+        (report.border_edges, "border edge", "with a face on one side only"),
+        (report.non_manifold_edges, "non-manifold edge", "with three faces or more"),
+        (report.flipped_faces, "flipped face", "turned round to agree with the others"),
+        (report.duplicate_faces, "duplicate face", "with the corners of an earlier one"),
+        (report.degenerate_faces, "degenerate face", "with two corners at one place"),
+        (report.sliver_faces, "sliver", "a face without a reliable direction"),
+        (report.welded_vertices, "welded vertex", "at the same place as another one"),
+        (report.unused_vertices, "unused vertex", "which no face has"),
     ]
 
 

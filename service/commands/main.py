@@ -1,17 +1,30 @@
-"""The command `cleave`."""
+"""The command `cleave`: import the module of the given command, parse its arguments and run it.
+
+A command is a module of this package with the functions ``add_arguments(parser)`` and ``run(choices)``, and an entry
+in ``COMMANDS``. Only the module of the given command is imported: `cleave --help` does not wait for numpy and numba.
+"""
 
 import argparse
 import sys
 from collections.abc import Sequence
-from contextlib import suppress
+from importlib import import_module
 from pathlib import Path
 from typing import NoReturn
 
 from cleave.settings import InvalidSettings, load_settings
-from service.commands.file_arguments import add_convert, add_fineness, add_inspect, add_outputs
-from service.commands.operator_arguments import add_doctor, add_serve, add_worker
-from service.commands.submit_arguments import add_submit
+from service.commands.console import say
 from service.host.kernel_cache import prepare_kernel_cache
+
+COMMANDS = {
+    "serve": "run the service, its workers and its queue",
+    "worker": "run workers for a service elsewhere",
+    "segment": "segment one mesh without a server",
+    "convert": "write a .cleave file in other formats",
+    "inspect": "report what a mesh file contains",
+    "submit": "segment many meshes on a server",
+    "key": "make an API key",
+    "doctor": "check an installation and report what to fix",
+}
 
 _DESCRIPTION = """\
 Cuts a 3D mesh into the parts that a person would name.
@@ -19,145 +32,61 @@ Cuts a 3D mesh into the parts that a person would name.
   cleave serve                          an HTTP service with its workers, on http://127.0.0.1:8000
   cleave segment hand.off -o parts.glb  one mesh, without a server
   cleave convert hand.cleave -o a.ply   a stored result in another format
-  cleave inspect hand.off               what is in a mesh file
+  cleave inspect hand.off               what a mesh file contains
   cleave submit *.off -o results        many meshes, on a server
 """
 
 
 def main(arguments: Sequence[str] | None = None) -> int:
-    """Run a command; what was expected to go wrong is one line and exit status 2."""
-    choices = _parser().parse_args(arguments)
+    """Run a command and return its exit status. Expected errors print one line and return 2."""
+    words = sys.argv[1:] if arguments is None else list(arguments)
     try:
-        prepare_kernel_cache(lambda: load_settings(data_dir=getattr(choices, "data_dir", None)).data_dir)
+        choices = _parser(words).parse_args(words)
         return choices.run(choices) or 0
     except KeyboardInterrupt:
-        return 130
-    except _expected_errors() as error:
+        return 130  # 128 + SIGINT, as shells report it
+    except Exception as error:
+        if not isinstance(error, _expected_errors()):
+            raise
         print(f"cleave: {_sentence(error)}", file=sys.stderr)
         return 2
 
 
 class _Parser(argparse.ArgumentParser):
     def error(self, message: str) -> NoReturn:
-        self.exit(2, f"cleave: {message}; {self.prog} --help shows what there is.\n")
+        self.exit(2, f"cleave: {message}; see {self.prog} --help.\n")
 
 
-def _parser() -> argparse.ArgumentParser:
+def _parser(words: Sequence[str]) -> _Parser:
+    """Return a parser of every command name and of the arguments of the command that is given."""
     parser = _Parser(prog="cleave", description=_DESCRIPTION, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("--version", action=_Version, nargs=0, help="show the version and exit")
     commands = parser.add_subparsers(title="commands", metavar="COMMAND", required=True)
-    add_serve(commands, _say)
-    add_worker(commands, _say)
-    _add_segment(commands)
-    add_convert(commands, _say)
-    add_inspect(commands, _say)
-    _add_submit(commands)
-    _add_key(commands)
-    add_doctor(commands, _say)
+    given = next((word for word in words if not word.startswith("-")), None)
+    for name, summary in COMMANDS.items():
+        command = commands.add_parser(name, help=summary)
+        if name == given:
+            _prepare_kernel_cache(words)
+            module = import_module(f"service.commands.{name}")
+            module.add_arguments(command)
+            command.set_defaults(run=module.run)
     return parser
 
 
-def _add_segment(commands: "argparse._SubParsersAction[_Parser]") -> None:
-    segment = commands.add_parser(
-        "segment",
-        help="segment one mesh without a server",
-        description="Segment one mesh and write what is asked for; without outputs only a summary is printed.",
-    )
-    segment.add_argument("mesh", type=Path, metavar="MESH", help="the mesh file")
-    add_fineness(segment, "chosen by the mesh")
-    segment.add_argument("--max-segments", type=int, metavar="N", help="how far the hierarchy goes (64, or K)")
-    segment.add_argument("--preset", metavar="NAME", help="a published method, such as chahhou2014")
-    segment.add_argument(
-        "--set",
-        type=_parameter,
-        action="append",
-        default=[],
-        dest="parameters",
-        metavar="NAME=VALUE",
-        help="a parameter of the method, such as solver=inverse_power; may be given again",
-    )
-    add_outputs(segment)
-    segment.add_argument("--labels", type=Path, metavar="LABELS.seg", help="the segment of every face, one per line")
-    segment.add_argument("--hierarchy", type=Path, metavar="TREE.json", help="the tree of cuts")
-    segment.add_argument("--result", type=Path, metavar="MESH.cleave", help="mesh and tree, to be opened again")
-    segment.set_defaults(run=_segment)
+def _prepare_kernel_cache(words: Sequence[str]) -> None:
+    """Choose the cache of numba, which must be done before a command imports a kernel.
 
-
-def _add_submit(commands: "argparse._SubParsersAction[_Parser]") -> None:
-    submit = commands.add_parser(
-        "submit",
-        help="segment many meshes on a server",
-        description="Submit mesh files to a service and save their results. A second run goes on where the first broke "
-        "off. The environment variable CLEAVE_API_KEY has the API key, where the service requires one.",
-        epilog="exit status: 0 all done, 1 some files failed, 2 nothing was tried, 130 interrupted",
-    )
-    add_submit(submit, _parameter)
-
-
-def _add_key(commands: "argparse._SubParsersAction[_Parser]") -> None:
-    key = commands.add_parser(
-        "key",
-        help="make an API key",
-        description="Make an API key for somebody. The key itself is shown once and kept nowhere.",
-    )
-    key.add_argument("name", metavar="NAME", help="whose it is: lower-case letters, digits and dashes")
-    key.set_defaults(run=_key)
-
-
-# Each command imports what it needs when it runs: `cleave --help` does not wait for the numerics.
-
-
-def _segment(choices: argparse.Namespace) -> None:
-    from segcore.levels import Fineness
-    from service.commands.outputs import output_options
-    from service.commands.segment import SegmentRequest, segment_file
-
-    summary = segment_file(
-        SegmentRequest(
-            mesh=choices.mesh,
-            fineness=Fineness(choices.segments, choices.granularity),
-            parameters=dict(choices.parameters)
-            | ({} if choices.preset is None else {"preset": choices.preset})
-            | ({} if choices.max_segments is None else {"max_segments": choices.max_segments}),
-            outputs=tuple(choices.output),
-            options=output_options(choices),
-            labels=choices.labels,
-            hierarchy=choices.hierarchy,
-            result=choices.result,
-        )
-    )
-    _say("\n".join(summary))
-
-
-def _key(choices: argparse.Namespace) -> None:
-    from service.keys import is_owner_name, key_digest, new_key
-
-    if not is_owner_name(choices.name):
-        raise InvalidSettings("The name of a key has 1 to 32 lower-case letters, digits and dashes.")
-    key = new_key()
-    _say(f"key    {key}")
-    _say(f"entry  {choices.name}:{key_digest(key)}")
-    _say(f"Give the key to {choices.name}, and the entry to CLEAVE_API_KEYS_FILE.")
-
-
-def _parameter(text: str) -> tuple[str, object]:
-    """A name and a value: a number where it reads as one, otherwise a word."""
-    name, equals, value = text.partition("=")
-    if not name or not equals:
-        raise argparse.ArgumentTypeError(f"a parameter is NAME=VALUE, not {text!r}")
-    for number in (int, float):
-        with suppress(ValueError):
-            return name, number(value)
-    return name, value
-
-
-def _say(text: str) -> None:
-    print(text, flush=True)
+    The cache may be in the data folder, so ``--data-dir`` is read ahead of the other arguments.
+    """
+    parser = argparse.ArgumentParser(add_help=False)
+    parser.add_argument("--data-dir", type=Path, nargs="?")
+    data_dir = parser.parse_known_args(words)[0].data_dir
+    prepare_kernel_cache(lambda: load_settings(data_dir=data_dir).data_dir)
 
 
 def _expected_errors() -> tuple[type[Exception], ...]:
     from segcore.errors import CleaveError
-    from service.commands.serve import CannotListen
+    from service.host.listening import CannotListen
     from service.host.queue_server import NoQueueServer
     from service.host.supervisor import DataInUse
 
@@ -174,5 +103,5 @@ class _Version(argparse.Action):
     def __call__(self, parser: argparse.ArgumentParser, *_: object) -> None:
         from cleave.version import installed_version
 
-        _say(f"cleave {installed_version()}")
+        say(f"cleave {installed_version()}")
         parser.exit()

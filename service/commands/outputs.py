@@ -1,61 +1,75 @@
-"""Files that the command line writes: by their extension, whole or not at all."""
+"""Output files of the commands: their arguments, and files that are written completely or not at all."""
 
 import argparse
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass
 from pathlib import Path
 from typing import BinaryIO
 
 from segcore.hierarchy import Hierarchy
-from segcore.io.gltf.writer import write_glb
-from segcore.io.parts.writer import PartFormat, write_parts
-from segcore.io.threemf.writer import write_3mf
-from segcore.io.writing import writer_for
+from segcore.io.writing import WRITERS, writer_for
 from segcore.mesh import Mesh
 from worker.jobs.objects.durable import replace_file
 
-
-@dataclass(frozen=True, slots=True, kw_only=True)
-class OutputOptions:
-    """What some of the formats can do beside the usual."""
-
-    all_levels: bool = False  # GLB: every level as a variant of the materials
-    features: bool = False  # GLB: the hierarchy as a property table, and feature ids that lead to it
-    capped: bool = False  # 3MF and ZIP: every part closed
-    part_format: PartFormat = "stl"  # of the files in a ZIP archive
+_EXTENSIONS = [writer.extension for writer in WRITERS.values()]
 
 
-def output_options(choices: argparse.Namespace) -> OutputOptions:
-    return OutputOptions(
-        all_levels=choices.all_levels, features=choices.features, capped=choices.capped, part_format=choices.parts
+def add_outputs(parser: argparse.ArgumentParser, required: bool = False) -> None:
+    """Add ``--output`` and the options of the formats, which :func:`output_options` reads."""
+    parser.add_argument(
+        "-o",
+        "--output",
+        type=_output,
+        action="append",
+        required=required,
+        default=None if required else [],
+        metavar="FILE",
+        help=f"output file, in the format of its extension: {' '.join(_EXTENSIONS)}; can be repeated",
     )
+    parser.add_argument("--all-levels", action="store_true", help="GLB: every number of segments in one file")
+    parser.add_argument(
+        "--features", action="store_true", help="GLB: the hierarchy as EXT_structural_metadata, with EXT_mesh_features"
+    )
+    parser.add_argument("--capped", action="store_true", help="3MF and ZIP: close every part, for printing")
+    parser.add_argument("--parts", choices=("stl", "obj"), default="stl", help="ZIP: format of its files (%(default)s)")
+
+
+def output_options(choices: argparse.Namespace) -> dict[str, object]:
+    """Return the options that were given, by their names in ``Writer.options``."""
+    return {
+        "all_levels": choices.all_levels,
+        "features": choices.features,
+        "capped": choices.capped,
+        "part_format": choices.parts,
+    }
 
 
 def check_outputs(paths: Sequence[Path]) -> None:
-    """Say before the work, not after it, that a file could not be written.
+    """Check the folders of the outputs before a long computation.
 
     Raises
     ------
     NotADirectoryError
-        Where a folder is missing.
+        If a folder does not exist.
     """
     for path in paths:
         if not path.parent.is_dir():
             raise NotADirectoryError(20, "There is no such folder", str(path.parent))
 
 
-def write_model(path: Path, mesh: Mesh, hierarchy: Hierarchy, segments: int | None, options: OutputOptions) -> None:
-    """Write a segmented mesh in the format that the extension names.
+def write_model(path: Path, mesh: Mesh, hierarchy: Hierarchy, segments: int | None, options: dict[str, object]) -> None:
+    """Write a segmented mesh in the format of the extension, with those of the options that the format has.
 
     Raises
     ------
     UnsupportedFormat, InvalidParameters, OSError
     """
-    write_file(path, lambda target: _write(target, path, mesh, hierarchy, segments, options))
+    writer = writer_for(path.name)
+    chosen = {name: value for name, value in options.items() if name in writer.options}
+    write_file(path, lambda target: writer.write(target, mesh, hierarchy, segments, **chosen))
 
 
 def write_file(path: Path, write: Callable[[BinaryIO], object]) -> None:
-    """Write a file whole or not at all; what is not a file, a pipe for instance, is written as it is."""
+    """Write a file completely or not at all; anything but a regular file, such as a pipe, is written directly."""
     if path.exists() and not path.is_file():
         with path.open("wb") as target:
             write(target)
@@ -63,15 +77,7 @@ def write_file(path: Path, write: Callable[[BinaryIO], object]) -> None:
         replace_file(path.resolve(), write)
 
 
-def _write(
-    target: BinaryIO, path: Path, mesh: Mesh, hierarchy: Hierarchy, segments: int | None, options: OutputOptions
-) -> None:
-    match path.suffix.lower():
-        case ".glb":
-            write_glb(target, mesh, hierarchy, segments, all_levels=options.all_levels, features=options.features)
-        case ".3mf":
-            write_3mf(target, mesh, hierarchy, segments, capped=options.capped)
-        case ".zip":
-            write_parts(target, mesh, hierarchy, segments, part_format=options.part_format, capped=options.capped)
-        case _:
-            writer_for(path.name).write(target, mesh, hierarchy, segments)
+def _output(text: str) -> Path:
+    if Path(text).suffix.lower() not in _EXTENSIONS:
+        raise argparse.ArgumentTypeError(f"{text!r} must end in one of {' '.join(_EXTENSIONS)}")
+    return Path(text)

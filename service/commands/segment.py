@@ -1,9 +1,10 @@
-"""`cleave segment`: a mesh file in, its parts out, without a server."""
+"""`cleave segment`: segment one mesh file without a server."""
 
+import argparse
 import json
 import sys
 from collections.abc import Callable
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from pathlib import Path
 from typing import BinaryIO
 
@@ -11,77 +12,75 @@ import segcore
 from segcore.io.labels import hierarchy_document, write_seg
 from segcore.io.result import write_result
 from segcore.levels import Fineness
-from service.commands.outputs import OutputOptions, check_outputs, write_file, write_model
-from service.commands.progress_bar import ProgressBar
+from service.commands.arguments import add_level, add_parameters
+from service.commands.console import ProgressBar, say
+from service.commands.outputs import add_outputs, check_outputs, output_options, write_file, write_model
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class SegmentRequest:
-    """What the command line asked for; a path that is None is not written."""
+def add_arguments(parser: argparse.ArgumentParser) -> None:
+    parser.description = "Segment one mesh and write the outputs; without outputs, only a summary is printed."
+    parser.add_argument("mesh", type=Path, metavar="MESH", help="the mesh file")
+    add_level(parser, "chosen by the mesh")
+    parser.add_argument("--max-segments", type=int, metavar="N", help="number of segments of the hierarchy (64, or K)")
+    parser.add_argument("--preset", metavar="NAME", help="a published method, such as chahhou2014")
+    add_parameters(parser, "solver=inverse_power")
+    add_outputs(parser)
+    parser.add_argument("--labels", type=Path, metavar="LABELS.seg", help="the segment of every face, one per line")
+    parser.add_argument("--hierarchy", type=Path, metavar="TREE.json", help="the tree of cuts")
+    parser.add_argument("--result", type=Path, metavar="MESH.cleave", help="mesh and tree, for cleave convert")
 
-    mesh: Path
-    fineness: Fineness
-    parameters: dict[str, object]
-    outputs: tuple[Path, ...]  # in the formats that their extensions name
-    options: OutputOptions
-    labels: Path | None
-    hierarchy: Path | None
-    result: Path | None
 
-
-def segment_file(request: SegmentRequest) -> list[str]:
-    """Segment a file, write what was asked for, and sum up in a few lines what came out.
+def run(choices: argparse.Namespace) -> None:
+    """Segment the file, write the outputs and print a summary.
 
     Raises
     ------
     CleaveError
-        Where the mesh or a parameter cannot be used.
+        If the mesh or a parameter cannot be used.
     OSError
-        Where a file cannot be read or written.
+        If a file cannot be read or written.
     """
-    parameters = _parameters(request)
-    check_outputs([*request.outputs, *_named_outputs(request)])
+    fineness = Fineness(choices.segments, choices.granularity)
+    parameters = _parameters(choices)
+    outputs = [*choices.output, *filter(None, (choices.labels, choices.hierarchy, choices.result))]
+    check_outputs(outputs)
     with ProgressBar(sys.stderr) as bar:
         bar("prepare", 0.0)
         segcore.warm_up()
         bar("read", 0.0)
-        mesh = segcore.read_mesh(request.mesh, appearance=True)
+        mesh = segcore.read_mesh(choices.mesh, appearance=True)
         hierarchy = segcore.segment(mesh, parameters, bar)
-        segments = request.fineness.segments_of(hierarchy)
-        written = _write(request, mesh, hierarchy, segments)
-    chosen = "chosen automatically" if request.fineness.is_automatic else "as asked"
-    return [
-        f"{request.mesh.name}: {len(mesh.faces)} faces, {len(mesh.vertices)} vertices",
-        f"{segments} segments, {chosen}; 1 to {hierarchy.max_segments} are possible",
-        *(f"wrote {path}" for path in written),
-    ]
+        segments = fineness.segments_of(hierarchy)
+        _write(choices, mesh, hierarchy, segments)
+    chosen = "chosen automatically" if fineness.is_automatic else "as requested"
+    say(f"{choices.mesh.name}: {len(mesh.faces)} faces, {len(mesh.vertices)} vertices")
+    say(f"{segments} segments, {chosen}; 1 to {hierarchy.max_segments} are possible")
+    for path in outputs:
+        say(f"wrote {path}")
 
 
-def _parameters(request: SegmentRequest) -> segcore.SegmentationParameters:
-    """The number of segments that is wanted must be within the hierarchy, also where nobody said how far it goes."""
-    parameters = segcore.SegmentationParameters.from_mapping(request.parameters)
-    wanted = request.fineness.segments
-    if wanted is None:
+def _parameters(choices: argparse.Namespace) -> segcore.SegmentationParameters:
+    """Return the parameters, with a hierarchy that is large enough for ``--segments``."""
+    named = {"preset": choices.preset, "max_segments": choices.max_segments}
+    given = dict(choices.parameters) | {name: value for name, value in named.items() if value is not None}
+    parameters = segcore.SegmentationParameters.from_mapping(given)
+    segments = choices.segments
+    if segments is None:
         return parameters
-    if wanted < 1:
-        raise segcore.InvalidParameters(f"The number of segments must be at least 1, not {wanted}.")
-    return replace(parameters, max_segments=max(parameters.max_segments, wanted))
+    if segments < 1:
+        raise segcore.InvalidParameters(f"The number of segments must be at least 1, not {segments}.")
+    return replace(parameters, max_segments=max(parameters.max_segments, segments))
 
 
-def _named_outputs(request: SegmentRequest) -> list[Path]:
-    return [path for path in (request.labels, request.hierarchy, request.result) if path is not None]
-
-
-def _write(request: SegmentRequest, mesh: segcore.Mesh, hierarchy: segcore.Hierarchy, segments: int) -> list[Path]:
-    for model in request.outputs:
-        write_model(model, mesh, hierarchy, segments, request.options)
+def _write(choices: argparse.Namespace, mesh: segcore.Mesh, hierarchy: segcore.Hierarchy, segments: int) -> None:
+    for path in choices.output:
+        write_model(path, mesh, hierarchy, segments, output_options(choices))
     document = hierarchy_document(hierarchy)
     writers: list[tuple[Path | None, Callable[[BinaryIO], object]]] = [
-        (request.labels, lambda target: write_seg(target, hierarchy.labels(segments))),
-        (request.hierarchy, lambda target: target.write(json.dumps(document, allow_nan=False).encode())),
-        (request.result, lambda target: write_result(target, mesh, hierarchy)),
+        (choices.labels, lambda target: write_seg(target, hierarchy.labels(segments))),
+        (choices.hierarchy, lambda target: target.write(json.dumps(document, allow_nan=False).encode())),
+        (choices.result, lambda target: write_result(target, mesh, hierarchy)),
     ]
-    for path, write in writers:
-        if path is not None:
-            write_file(path, write)
-    return [*request.outputs, *_named_outputs(request)]
+    for named, write in writers:
+        if named is not None:
+            write_file(named, write)

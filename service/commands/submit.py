@@ -1,154 +1,114 @@
-"""`cleave submit`: many files to a server, their results into a folder, and no work done twice after a break."""
+"""`cleave submit`: segment many files on a server and save their results in a folder."""
 
-import hashlib
-import json
+import argparse
+import os
 import sys
 import threading
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from concurrent.futures import ThreadPoolExecutor
-from dataclasses import dataclass
 from pathlib import Path
 
 from cleave.client import Client
-from cleave.client.documents import Job
-from cleave.client.errors import ClientError, JobEnded, RequestRefused
-from service.commands.progress_board import ProgressBoard
-from service.commands.saved_results import RESULTS
+from service.commands.arguments import add_level, add_parameters
+from service.commands.console import ProgressBoard, say
+from service.commands.server_results import DEFAULT_RESULTS, RESULTS, result_names
+from service.commands.submission import Submission, submit_file
 
-_AT_A_TIME = 4
-_POLL_S = 1.0
-_RETRIES = 8  # a server that is being restarted is waited for, a minute or so
-
-_OF_ALL_LEVELS = ("json",)
-
-
-@dataclass(frozen=True, slots=True, kw_only=True)
-class SubmitRequest:
-    """What the command line asked for."""
-
-    files: Sequence[Path]
-    server: str
-    api_key: str | None
-    segments: int | None
-    granularity: float | None  # in place of the number
-    parameters: dict[str, object]
-    results: Sequence[str]  # keys of RESULTS
-    folder: Path
-    again: bool  # compute what was computed before
+_DEFAULT_SERVER = "http://127.0.0.1:8000"
+_SOME_FAILED = 1  # exit status
+_CONCURRENT_FILES = 4  # in upload or with a job that is waited for; set by hand, so that a few workers are kept busy
+_RETRIES = 8  # of a request; the client waits about a minute between them, enough for a server that is restarted
 
 
 class SomeFailed(Exception):  # noqa: N818
-    """Not every file has its results; the message says how many."""
+    """Some files have no results; the message contains how many and why."""
 
 
-def submit_files(request: SubmitRequest) -> list[str]:
-    """Submit files, wait, save their results, and sum up in a few lines.
+def add_arguments(parser: argparse.ArgumentParser) -> None:
+    parser.description = (
+        "Submit mesh files to a service and save their results. A second run resumes an interrupted one. If the "
+        "service requires an API key, set it in the environment variable CLEAVE_API_KEY."
+    )
+    parser.epilog = "exit status: 0 all done, 1 some files failed, 2 nothing was tried, 130 interrupted"
+    parser.add_argument("files", type=Path, nargs="+", metavar="FILE", help="mesh files")
+    parser.add_argument("--server", default=_DEFAULT_SERVER, metavar="URL", help="of the service (%(default)s)")
+    add_level(parser, "chosen by each mesh")
+    add_parameters(parser, "max_segments=100")
+    parser.add_argument(
+        "--results",
+        type=result_names,
+        default=DEFAULT_RESULTS,
+        metavar="LIST",
+        help=f"what to save, separated by commas: {', '.join(RESULTS)} ({','.join(DEFAULT_RESULTS)})",
+    )
+    parser.add_argument("-o", "--output", type=Path, default=Path(), metavar="DIR", help="folder of the results (here)")
+    parser.add_argument("--again", action="store_true", help="compute and save again what was done before")
 
-    A file whose results are there is left alone. A job is named after the content of its file and what is asked of it,
-    so a second run goes on with the jobs of the first.
+
+def run(choices: argparse.Namespace) -> int:
+    """Submit the files, wait for their jobs, save their results and print a summary.
+
+    A file whose results exist is skipped. The key of a job is derived from the content of the file and the parameters,
+    so a second run finds the jobs of the first.
 
     Raises
     ------
-    SomeFailed
-        Where a file was refused, its job failed, or the server was lost.
     OSError
-        Where a file cannot be read, or a result not be written.
+        If a file cannot be read, or a result cannot be written.
     """
-    names = _result_names(request.files)
-    for path in request.files:
-        path.stat()
-    request.folder.mkdir(parents=True, exist_ok=True)
+    try:
+        say(_submit_files(choices, os.environ.get("CLEAVE_API_KEY")))
+    except SomeFailed as failed:
+        print(f"cleave: {failed}", file=sys.stderr)
+        return _SOME_FAILED
+    return 0
+
+
+def _submit_files(choices: argparse.Namespace, api_key: str | None) -> str:
+    """Submit all files and return a summary; raise SomeFailed if a job failed or the server did not answer."""
+    submissions = _submissions(choices)
+    choices.output.mkdir(parents=True, exist_ok=True)
     stopping = threading.Event()
     with (
         ProgressBoard(sys.stderr) as board,
-        Client(request.server, request.api_key, retries=_RETRIES) as client,
-        ThreadPoolExecutor(_AT_A_TIME) as pool,
+        Client(choices.server, api_key, retries=_RETRIES) as client,
+        ThreadPoolExecutor(_CONCURRENT_FILES) as pool,
     ):
-        futures = [
-            pool.submit(_one, client, request, path, name, board, stopping)
-            for path, name in zip(request.files, names, strict=True)
-        ]
+        futures = [pool.submit(submit_file, client, submission, board, stopping) for submission in submissions]
         try:
-            failures = [future.result() for future in futures]
+            errors = [future.result() for future in futures]
         except BaseException:
             stopping.set()
             pool.shutdown(cancel_futures=True)
             raise
-    failed = [sentence for sentence in failures if sentence]
-    done = f"{len(names) - len(failed)} of {len(names)} files have their results in {request.folder}"
+    failed = [error for error in errors if error]
+    summary = f"{len(errors) - len(failed)} of {len(errors)} files have their results in {choices.output}"
     if failed:
-        raise SomeFailed(f"{done}; the others: {'; '.join(failed)}")
-    return [done]
+        raise SomeFailed(f"{summary}; the others: {'; '.join(failed)}")
+    return summary
 
 
-def _one(
-    client: Client, request: SubmitRequest, path: Path, name: str, board: ProgressBoard, stopping: threading.Event
-) -> str | None:
-    """Bring one file to its results; a sentence where that failed."""
-    wanted = {result: request.folder / f"{name}.{RESULTS[result][0]}" for result in request.results}
-    missing = {result: target for result, target in wanted.items() if request.again or not target.exists()}
-    if stopping.is_set() or not missing:
-        board.finish(path.name, "done before")
-        return None
-    try:
-        job = _finished(client, request, path, lambda stage, part: board.show(path.name, stage, part), stopping)
-        for result, target in missing.items():
-            _save(client, job, result, target, request)
-    except ClientError as error:
-        board.finish(path.name, str(error))
-        return f"{path.name}: {error}"
-    board.finish(path.name, _level(job, request))
-    return None
-
-
-def _finished(
-    client: Client, request: SubmitRequest, path: Path, show: Callable[[str, float], None], stopping: threading.Event
-) -> Job:
-    show("upload", 0.0)
-    parameters = request.parameters
-    key = None if request.again else _key(path, parameters)
-    try:
-        job = client.submit(path, parameters=parameters, idempotency_key=key, recompute=request.again)
-    except RequestRefused as refusal:
-        if refusal.code != "idempotency_key_spent":
-            raise
-        job = client.submit(path, parameters=parameters)  # the job of an earlier run was deleted
-    while not job.has_ended:
-        show(job.stage or job.status, job.progress)
-        if stopping.is_set():
-            raise JobEnded(job)
-        job = client.job(job.id, wait_s=_POLL_S)
-    if job.status != "succeeded":
-        raise JobEnded(job)
-    return job
-
-
-def _level(job: Job, request: SubmitRequest) -> str:
-    if request.granularity is not None:
-        return f"granularity {request.granularity:g}"
-    return f"{request.segments or job.automatic_segments} segments"
-
-
-def _save(client: Client, job: Job, result: str, target: Path, request: SubmitRequest) -> None:
-    address, _, query = RESULTS[result][1].partition("?")
-    level: dict[str, object] = {"segments": request.segments, "granularity": request.granularity}
-    params = {} if result in _OF_ALL_LEVELS else level
-    if query:
-        name, _, value = query.partition("=")
-        params[name] = value
-    client.download(job.id, address, target, **params)
-
-
-def _key(path: Path, parameters: dict[str, object]) -> str:
-    digest = hashlib.sha256(json.dumps(sorted(parameters.items())).encode())
-    with path.open("rb") as file:
-        digest.update(hashlib.file_digest(file, "sha256").digest())
-    digest.update(path.suffix.lower().encode())
-    return f"cleave-submit-{digest.hexdigest()}"
+def _submissions(choices: argparse.Namespace) -> list[Submission]:
+    names = _result_names(choices.files)
+    for path in choices.files:
+        path.stat()  # raises OSError before anything is sent
+    return [
+        Submission(
+            path,
+            name,
+            parameters=dict(choices.parameters),
+            segments=choices.segments,
+            granularity=choices.granularity,
+            results=choices.results,
+            folder=choices.output,
+            again=choices.again,
+        )
+        for path, name in zip(choices.files, names, strict=True)
+    ]
 
 
 def _result_names(files: Sequence[Path]) -> list[str]:
-    """The stem of every file; where two would overwrite each other, all get their whole names."""
+    """Return the stem of every file, or the full names if two files have the same stem."""
     stems = [path.stem for path in files]
     names = stems if len(set(stems)) == len(stems) else [path.name for path in files]
     if len(set(names)) < len(names):

@@ -1,1 +1,1 @@
-"""`cleave doctor`: whether an installation is set up so that it keeps its promises, and what to do where it is not."""
+"""The checks of `cleave doctor`: problems of an installation, and how to fix them."""

@@ -1,4 +1,4 @@
-"""What was found, and how it is told."""
+"""The findings of the checks, as text and as JSON."""
 
 import json
 from collections.abc import Iterable
@@ -10,10 +10,12 @@ Severity: TypeAlias = Literal["ok", "warning", "error"]
 
 @dataclass(frozen=True, slots=True)
 class Finding:
-    topic: str  # what was looked at
-    severity: Severity  # error: the installation does not do what it promises, or will not for long
+    """The result of one check."""
+
+    topic: str  # what was checked
+    severity: Severity  # error: the installation does not work as documented, or will soon fail to
     message: str
-    fix: str | None = None  # what to do; None where nothing is to be done
+    fix: str | None = None  # what to do; None if nothing has to be done
 
 
 def ok(topic: str, message: str) -> Finding:
@@ -38,7 +40,7 @@ def as_json(findings: list[Finding]) -> str:
 
 
 def as_text(findings: list[Finding]) -> str:
-    """A line for each, and under what is not well what to do."""
+    """Return a line for each finding, followed by its fix if there is one, and a line with the totals."""
     lines = []
     for finding in findings:
         lines.append(f"{finding.severity:<8} {finding.topic}: {finding.message}")

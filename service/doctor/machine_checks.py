@@ -1,4 +1,4 @@
-"""This machine: its limits against the settings, what is installed, and who is let in."""
+"""Checks of this machine: its limits, installed packages, access to the service, and unknown settings."""
 
 import os
 import platform
@@ -10,18 +10,20 @@ from pathlib import Path
 
 from cleave.settings import InvalidSettings, Settings
 from cleave.version import installed_version
-from service.commands.serve import check_guarded
 from service.doctor.findings import Finding, error, ok, warning
+from service.guard.exposure import check_exposure
+from service.host.listening import BACKLOG
 
-_CONNECTIONS = 1024  # that wait to be taken, besides those that are answered
-_BYTES_PER_FACE, _BYTES_AT_LEAST = 400, 500 * 2**20  # of a work-horse, measured on large meshes
+# Memory of a work-horse. bench/RESULTS.md measures 398 to 411 bytes per face on meshes of 200,000 faces and more (its
+# table of stages); the rest is what it needs on a small mesh (docs/operations.md, Sizing) and a reserve, set by hand.
+_BYTES_PER_FACE, _BASE_BYTES = 400, 500 * 2**20
 _PACKAGES = ("numpy", "scipy", "numba", "redis", "rq", "fastapi", "uvicorn", "trimesh")
-_CLIENTS_VARIABLES = ("CLEAVE_API_KEY",)  # of the commands that speak to a service
-_CONTROL_GROUP_LIMITS = ("/sys/fs/cgroup/memory.max", "/sys/fs/cgroup/memory/memory.limit_in_bytes")
+_CLIENT_VARIABLES = ("CLEAVE_API_KEY",)  # of commands that are clients of a service
+_CGROUP_LIMITS = ("/sys/fs/cgroup/memory.max", "/sys/fs/cgroup/memory/memory.limit_in_bytes")
 
 
 def check_machine(settings: Settings, host: str) -> list[Finding]:
-    """What the processes of an installation find here, which listens on ``host``."""
+    """Check this machine, on which the service listens on the address ``host``."""
     return [
         *_open_files(),
         *_file_size(settings),
@@ -35,11 +37,11 @@ def check_machine(settings: Settings, host: str) -> list[Finding]:
 
 def _open_files() -> Iterator[Finding]:
     most = resource.getrlimit(resource.RLIMIT_NOFILE)[0]
-    if most != resource.RLIM_INFINITY and most < _CONNECTIONS:
+    if most != resource.RLIM_INFINITY and most < BACKLOG:
         yield warning(
             "open files",
-            f"a process may have {most}: more clients than that are turned away.",
-            f"Raise the limit (ulimit -n {8 * _CONNECTIONS}, or LimitNOFILE of the service).",
+            f"a process can have {most}: more clients at a time are rejected.",
+            f"Raise the limit (ulimit -n {8 * BACKLOG}, or LimitNOFILE of the service).",
         )
     else:
         yield ok("open files", "enough for many clients.")
@@ -50,35 +52,35 @@ def _file_size(settings: Settings) -> Iterator[Finding]:
     if most != resource.RLIM_INFINITY and most < settings.max_upload_bytes:
         yield error(
             "file size",
-            f"a file may have {most} bytes: large meshes are cut off.",
+            f"a file can have {most} bytes: uploads of larger meshes fail.",
             "Raise the limit (ulimit -f unlimited).",
         )
 
 
 def _memory(settings: Settings) -> Iterator[Finding]:
-    needed, there = _BYTES_AT_LEAST + _BYTES_PER_FACE * settings.max_faces, memory_bytes()
-    given = min(there, settings.job_memory_bytes)
-    if given < needed:
+    needed, total = _BASE_BYTES + _BYTES_PER_FACE * settings.max_faces, memory_bytes()
+    available = min(total, settings.job_memory_bytes)
+    if available < needed:
         yield warning(
             "memory",
-            f"a job may use {given / 2**30:.1f} GiB, and {settings.max_faces} faces take about {needed / 2**30:.1f}.",
-            f"Lower CLEAVE_MAX_FACES to {max(1, (given - _BYTES_AT_LEAST) // _BYTES_PER_FACE)}, or give more memory.",
+            f"a job can use {available / 2**30:.1f} GiB, and {settings.max_faces} faces need {needed / 2**30:.1f} GiB.",
+            f"Lower CLEAVE_MAX_FACES to {max(1, (available - _BASE_BYTES) // _BYTES_PER_FACE)}, or add memory.",
         )
     else:
         yield ok("memory", f"enough for one job of {settings.max_faces} faces at a time.")
-    if settings.job_memory_bytes > there:
+    if settings.job_memory_bytes > total:
         yield warning(
             "memory of a job",
-            f"a job may take {settings.job_memory_bytes / 2**30:.1f} GiB, of {there / 2**30:.1f}: one file can "
-            "have the kernel kill other processes.",
+            f"a job can use {settings.job_memory_bytes / 2**30:.1f} GiB of {total / 2**30:.1f} GiB: one file can "
+            "make the kernel kill other processes.",
             "Lower CLEAVE_JOB_MEMORY_BYTES.",
         )
 
 
 def memory_bytes() -> int:
-    """What this machine, or the container, has."""
+    """Return the memory of this machine, or of the container if it has less."""
     limits = [os.sysconf("SC_PAGE_SIZE") * os.sysconf("SC_PHYS_PAGES")]
-    for path in _CONTROL_GROUP_LIMITS:
+    for path in _CGROUP_LIMITS:
         with suppress(OSError, ValueError):
             limits.append(int(Path(path).read_text()))
     return min(limits)
@@ -94,31 +96,31 @@ def _kernels() -> Iterator[Finding]:
         yield warning(
             "kernels",
             "none is compiled: the first start takes up to a minute.",
-            'Start it once, or run python -c "import segcore; segcore.warm_up()"',
+            'Start the service once, or run python -c "import segcore; segcore.warm_up()"',
         )
 
 
 def _access(settings: Settings, host: str) -> Iterator[Finding]:
     try:
-        check_guarded(settings, host)
+        check_exposure(settings, host)
     except InvalidSettings as problem:
         yield error("access", f"the service does not start on {host}.", str(problem))
         return
     if settings.auth == "off" and not host.startswith("127.") and host != "::1":
         yield warning(
             "access",
-            f"whoever reaches {host} can use the service: CLEAVE_AUTH is off.",
-            "Make API keys with `cleave key NAME`, unless something else keeps strangers out.",
+            f"everyone who can reach {host} can use the service: CLEAVE_AUTH is off.",
+            "Make API keys with `cleave key NAME`, unless access is restricted by other means.",
         )
     else:
-        yield ok("access", f"on {host} the service lets in whom it should.")
+        yield ok("access", f"on {host} the service accepts only those that it should.")
 
 
 def _unknown_variables() -> Iterator[Finding]:
     known = {f"CLEAVE_{name.upper()}" for name in Settings.model_fields}
     for name in sorted(name for name in os.environ if name.startswith("CLEAVE_")):
-        if name not in known and name not in _CLIENTS_VARIABLES:
-            yield warning("settings", f"{name} is none.", "Look for its right name in `cleave serve --help`.")
+        if name not in known and name not in _CLIENT_VARIABLES:
+            yield warning("settings", f"{name} is not a setting.", "Find its correct name in `cleave serve --help`.")
 
 
 def _installed() -> str:

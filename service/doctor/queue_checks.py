@@ -1,4 +1,4 @@
-"""The queue server: whether it keeps what it is given, and from whom."""
+"""Checks of the queue server: version, eviction, persistence, access, clock and workers."""
 
 import time
 from collections.abc import Iterator
@@ -12,13 +12,13 @@ from worker.jobs.queue.connection import QueueError, connect
 from worker.jobs.queue.workers import worker_counts
 from worker.jobs.size_class import SizeClass
 
-_OLDEST_VERSION = (6, 2)  # that moves entries from list to list atomically
-_CLOCK_S = 2.0
+_OLDEST_VERSION = (6, 2)  # the first with BLMOVE, which rq uses to take an entry from a queue without losing it
+_CLOCK_TOLERANCE_S = 2.0  # set by hand; NTP keeps clocks within a fraction of it
 _LOOPBACK = ("", "localhost", "127.0.0.1", "::1")
 
 
 def check_queue(url: str) -> list[Finding]:
-    """The server of a URL, its settings and its workers."""
+    """Check the server of a URL, its settings and its workers."""
     with connect(url) as connection:
         try:
             info: dict[str, Any] = connection.info()
@@ -43,14 +43,14 @@ def check_queue(url: str) -> list[Finding]:
 
 
 def check_clock(topic: str, ahead_s: float) -> Finding:
-    """A clock that is ahead of this machine's by some seconds."""
-    if abs(ahead_s) <= _CLOCK_S:
-        return ok(topic, f"within {_CLOCK_S:.0f} s of this machine's.")
-    where = "ahead of" if ahead_s > 0 else "behind"
+    """Check a clock that is ``ahead_s`` seconds ahead of the clock of this machine."""
+    if abs(ahead_s) <= _CLOCK_TOLERANCE_S:
+        return ok(topic, f"within {_CLOCK_TOLERANCE_S:.0f} s of the clock of this machine.")
+    direction = "ahead of" if ahead_s > 0 else "behind"
     return warning(
         topic,
-        f"{abs(ahead_s):.0f} s {where} this machine's.",
-        "Let all machines take their time from the same place (NTP).",
+        f"{abs(ahead_s):.0f} s {direction} the clock of this machine.",
+        "Synchronise the clocks of all machines (NTP).",
     )
 
 
@@ -70,7 +70,7 @@ def _policy(info: dict[str, Any]) -> Finding:
         return ok("queue server's memory", "nothing is ever evicted.")
     return error(
         "queue server's memory",
-        f"maxmemory-policy is {policy}: entries of jobs disappear when memory runs short.",
+        f"maxmemory-policy is {policy}: entries of jobs are lost when memory is short.",
         "Set maxmemory-policy to noeviction, and use the server for nothing else.",
     )
 
@@ -82,13 +82,15 @@ def _persistence(info: dict[str, Any]) -> Iterator[Finding]:
     else:
         yield warning(
             topic,
-            "the append-only file is off: after a crash jobs wait in another order, and counters begin at 0.",
+            "the append-only file is off: after a crash jobs wait in another order, and counters restart at 0.",
             "Set appendonly to yes.",
         )
     for name in ("aof_last_write_status", "aof_last_bgrewrite_status", "rdb_last_bgsave_status"):
         if info.get(name, "ok") != "ok":
             yield error(
-                topic, f"{name} is {info[name]}: it cannot write.", "Give it space and the rights to its folder."
+                topic,
+                f"{name} is {info[name]}: it cannot write.",
+                "Make room on its disk, and check the permissions of its folder.",
             )
 
 
@@ -96,32 +98,32 @@ def _exposure(url: str, connection: Redis) -> Finding:
     topic, parts = "queue server's access", urlsplit(url)
     if parts.scheme == "unix":
         return ok(topic, "a socket of this machine.")
-    if not _lets_strangers_in(parts):
-        return ok(topic, "a password is asked for.")
-    if _listens_to_itself_alone(parts, connection):
+    if not _allows_anonymous(parts):
+        return ok(topic, "a password is required.")
+    if _is_bound_to_loopback(parts, connection):
         return warning(
             topic,
-            "it asks for no password: every user of this machine can queue and remove jobs.",
+            "it requires no password: every user of this machine can add and remove jobs.",
             "Set requirepass, and the password in CLEAVE_REDIS_URL.",
         )
     return error(
         topic,
-        "it asks for no password and listens to other machines: whoever reaches it can queue and remove jobs.",
-        "Set requirepass, and the password in CLEAVE_REDIS_URL, and bind it to a network of its own.",
+        "it requires no password and listens to other machines: everyone who can reach it can add and remove jobs.",
+        "Set requirepass, and the password in CLEAVE_REDIS_URL, and bind it to a private network.",
     )
 
 
-def _lets_strangers_in(parts: SplitResult) -> bool:
-    """Whether the server answers somebody without a password."""
+def _allows_anonymous(parts: SplitResult) -> bool:
+    """Whether the server answers without a password."""
     without = urlunsplit(parts._replace(netloc=parts.netloc.rpartition("@")[2]))
     try:
-        with connect(without) as stranger:
-            return bool(stranger.ping())
+        with connect(without) as connection:
+            return bool(connection.ping())
     except QueueError:
         return False
 
 
-def _listens_to_itself_alone(parts: SplitResult, connection: Redis) -> bool:
+def _is_bound_to_loopback(parts: SplitResult, connection: Redis) -> bool:
     try:
         bound = str(connection.config_get("bind").get("bind", "*")).split()
     except QueueError:

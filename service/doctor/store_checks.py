@@ -1,4 +1,4 @@
-"""The store: whether it takes what it is given, has room for more, and keeps it to itself."""
+"""Checks of the store and the data folder: access, clock, permissions and free space."""
 
 import secrets
 import shutil
@@ -14,15 +14,15 @@ from worker.jobs.objects.interface import ObjectStorage
 from worker.jobs.store.opening import open_store
 
 _PROBES = "probe"
-_UPLOADS_LEFT = 8  # that a disk has room for before somebody should look at it
+_MIN_UPLOADS = 8  # of the largest size that a disk should have room for; set by hand
 
 
 def check_store(settings: Settings) -> list[Finding]:
-    """The place of the jobs, and the data folder of this machine."""
-    return [*_place(settings), *_folder(settings.data_dir), *_room(settings)]
+    """Check the store of the jobs, and the data folder of this machine."""
+    return [*_store(settings), *_data_folder(settings.data_dir), *_disk(settings)]
 
 
-def _place(settings: Settings) -> Iterator[Finding]:
+def _store(settings: Settings) -> Iterator[Finding]:
     try:
         store = open_store(settings)
         store.check_writable()
@@ -31,7 +31,7 @@ def _place(settings: Settings) -> Iterator[Finding]:
         yield error(
             "store",
             f"it cannot be written: {str(problem).rstrip('.')}.",
-            "Check CLEAVE_STORE_URL and its credentials, or the rights to CLEAVE_DATA_DIR.",
+            "Check CLEAVE_STORE_URL and its credentials, or the permissions of CLEAVE_DATA_DIR.",
         )
         return
     yield ok("store", "it can be written." if settings.store_url is None else "the bucket can be written.")
@@ -39,7 +39,7 @@ def _place(settings: Settings) -> Iterator[Finding]:
 
 
 def _clock_ahead_s(objects: ObjectStorage) -> float:
-    """How far the clock is ahead that stamps the objects, to a second or so."""
+    """Return how far the clock that stamps objects is ahead of this one, to about a second."""
     key = f"{_PROBES}/{secrets.token_hex(16)}"
     began_at = time.time()
     objects.put(key, b"?")
@@ -50,27 +50,27 @@ def _clock_ahead_s(objects: ObjectStorage) -> float:
     return stamped[0] - (began_at + time.time()) / 2 if stamped else 0.0
 
 
-def _folder(data_dir: Path) -> Iterator[Finding]:
+def _data_folder(data_dir: Path) -> Iterator[Finding]:
     if not data_dir.exists():
         return
     mode = stat.S_IMODE(data_dir.stat().st_mode)
     if mode & 0o077:
-        yield warning("data folder", f"other users of this machine can look into {data_dir}.", f"chmod 700 {data_dir}")
+        yield warning("data folder", f"other users of this machine can read {data_dir}.", f"chmod 700 {data_dir}")
     else:
-        yield ok("data folder", f"{data_dir} is this user's alone.")
+        yield ok("data folder", f"only this user can read {data_dir}.")
 
 
-def _room(settings: Settings) -> Iterator[Finding]:
+def _disk(settings: Settings) -> Iterator[Finding]:
     existing = next(folder for folder in (settings.data_dir, *settings.data_dir.parents) if folder.exists())
     free = shutil.disk_usage(existing).free
     text = f"{free / 2**30:.1f} GiB are free in {existing}"
     if free < settings.max_upload_bytes:
         yield error(
             "disk",
-            f"{text}: less than one mesh may have.",
+            f"{text}: less than the largest mesh that is accepted.",
             "Make room, set CLEAVE_RETENTION_S, or lower CLEAVE_MAX_UPLOAD_BYTES.",
         )
-    elif free < _UPLOADS_LEFT * settings.max_upload_bytes:
+    elif free < _MIN_UPLOADS * settings.max_upload_bytes:
         yield warning("disk", f"{text}: a few of the largest meshes fill it.", "Make room, or set CLEAVE_RETENTION_S.")
     else:
         yield ok("disk", f"{text}.")

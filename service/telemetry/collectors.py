@@ -1,7 +1,7 @@
-"""Where the metrics come from that are not of this process: the store, the queue and the tallies of the workers.
+"""Collectors of the metrics that all services of an installation share: of the store, the queue and the workers.
 
-They are asked at every scrape, and say the same whichever service of an installation is asked: take one of them, or the
-maximum, never the sum. The counters begin at 0 again where Redis has lost its data.
+They are read at every scrape, and every service returns the same values: aggregate them over services with ``max``, not
+with ``sum``. The counters restart at 0 if Redis loses its data.
 """
 
 import time
@@ -20,13 +20,13 @@ from worker.jobs.queue.workers import worker_counts
 from worker.jobs.size_class import SizeClass
 from worker.jobs.store.store import JobStore
 
-_STARTING = "starting"  # the stage of a job that has not told one yet
+_STARTING = "starting"  # the stage of a job that has not reported one yet
 
 Counts = Mapping[tuple[str, ...], float]
 
 
 class StoreCollector(Collector):
-    """What is unfinished."""
+    """Metrics of the store: how many jobs are unfinished, and the age of the oldest one."""
 
     def __init__(self, store: JobStore, on_error: Callable[[], None]) -> None:
         self._store = store
@@ -45,7 +45,7 @@ class StoreCollector(Collector):
 
 
 class QueueCollector(Collector):
-    """What waits, what runs, and who works."""
+    """Metrics of the queue: jobs that wait, jobs that run, and workers that are alive."""
 
     def __init__(self, queue: JobQueue) -> None:
         self._queue = queue
@@ -61,13 +61,13 @@ class QueueCollector(Collector):
         stages = Counter(one.progress.stage if one.progress else _STARTING for one in running.values())
         yield _gauge("cleave_queue_up", "Whether the queue server answers.", 1)
         yield _by_queue("cleave_waiting_jobs", "Jobs in a queue.", waiting)
-        yield _by_queue("cleave_queue_age_seconds", "For how long the next job of a queue has been waiting.", ages)
-        yield _by_queue("cleave_workers", "Workers of a queue that are alive.", workers)
-        yield _family(GaugeMetricFamily, "cleave_running_jobs", "Jobs that run, by what they do.", "stage", stages)
+        yield _by_queue("cleave_queue_age_seconds", "How long the next job of a queue has been waiting.", ages)
+        yield _by_queue("cleave_workers", "Living workers of a queue.", workers)
+        yield _family(GaugeMetricFamily, "cleave_running_jobs", "Running jobs by their stage.", "stage", stages)
 
 
-class TallyCollector(Collector):
-    """What the workers and the janitor have counted."""
+class CounterCollector(Collector):
+    """Metrics that the workers and the janitor count in Redis, and the errors of the store in this process."""
 
     def __init__(self, connection: Redis, own_store_errors: Callable[[], int]) -> None:
         self._tallies = JobCounters(connection)
@@ -77,7 +77,7 @@ class TallyCollector(Collector):
         own = {"service": float(self._own_store_errors())}
         try:
             counts = self._tallies.counts()
-        except QueueError:  # a counter that says 0 meanwhile would seem to have jumped afterwards
+        except QueueError:  # a counter of 0 would look like an increase when Redis is back
             yield _store_errors(own)
             return
         yield _store_errors(own | _labelled(counts, "store_errors"))
@@ -85,14 +85,14 @@ class TallyCollector(Collector):
         yield _family(
             CounterMetricFamily,
             "cleave_lost_attempts",
-            "Runs of jobs that ended without an outcome; up to CLEAVE_MAX_ATTEMPTS of a job are tried.",
+            "Attempts that ended without an outcome; a job has at most CLEAVE_MAX_ATTEMPTS.",
             "cause",
             _labelled(counts, "lost"),
         )
         yield CounterMetricFamily("cleave_faces", "Faces that were segmented.", counts.get(("faces",), 0.0))
         yield CounterMetricFamily(
             "cleave_recovered_jobs",
-            "Jobs that the queue had lost and the janitor put back.",
+            "Jobs that the queue lost and the janitor enqueued again.",
             counts.get(("recovered",), 0.0),
         )
         yield _histogram(
@@ -101,7 +101,7 @@ class TallyCollector(Collector):
         stages: dict[tuple[str, ...], Durations] = {
             (name[1],): durations(counts, name[:2]) for name in counts if name[0] == "stage"
         }
-        yield _histogram("cleave_stage_seconds", "Time that a stage of a job takes.", ["stage"], stages)
+        yield _histogram("cleave_stage_seconds", "Duration of a stage of a job.", ["stage"], stages)
 
 
 def _store_errors(values: Mapping[str, float]) -> Metric:

@@ -1,11 +1,12 @@
-"""Metrics for Prometheus: what this process has answered, how the queue is, and what all workers have done."""
+"""Prometheus metrics of the requests of this process, and of the store, the queue and all workers."""
 
 from prometheus_client import CollectorRegistry, Counter, Histogram
 
-from service.telemetry.collectors import QueueCollector, StoreCollector, TallyCollector
+from service.telemetry.collectors import CounterCollector, QueueCollector, StoreCollector
 from worker.jobs.queue.queue import JobQueue
 from worker.jobs.store.store import JobStore
 
+# The default buckets of Prometheus (of its Go client), and two more for requests that wait for up to CLEAVE_MAX_WAIT_S.
 _BUCKETS_S = (0.005, 0.01, 0.025, 0.05, 0.1, 0.25, 0.5, 1.0, 2.5, 5.0, 10.0, 30.0, 60.0)
 
 
@@ -25,14 +26,14 @@ class Metrics:
             registry=self.registry,
         )
         self.jobs = Counter(
-            "cleave_jobs_submitted", "Jobs by what became of the request.", ["result"], registry=self.registry
+            "cleave_jobs_submitted", "Jobs by the result of the request.", ["result"], registry=self.registry
         )
-        self.upload_bytes = Counter("cleave_upload_bytes", "Bytes of meshes taken in.", registry=self.registry)
+        self.upload_bytes = Counter("cleave_upload_bytes", "Bytes of meshes received.", registry=self.registry)
         self._store_errors = 0
         self.registry.register(StoreCollector(store, self.store_failed))
         self.registry.register(QueueCollector(queue))
-        self.registry.register(TallyCollector(queue.connection, lambda: self._store_errors))
+        self.registry.register(CounterCollector(queue.connection, lambda: self._store_errors))
 
     def store_failed(self) -> None:
-        """This process could not read or write the store."""
+        """Count an error of the store in this process."""
         self._store_errors += 1

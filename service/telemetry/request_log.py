@@ -1,4 +1,4 @@
-"""Every request in the log, in the metrics and in a trace."""
+"""Middleware that records every request in the log, in the metrics and in a trace."""
 
 import logging
 import time
@@ -14,12 +14,15 @@ from service.telemetry.metrics import Metrics
 log = logging.getLogger("cleave.requests")
 
 _PROBES = ("/healthz", "/readyz", "/metrics")
-_METHODS = ("GET", "HEAD", "POST", "PUT", "PATCH", "DELETE", "OPTIONS")  # clients can make up others without end
-_NOWHERE = "none"  # the route of a path that there is not
+_METHODS = ("GET", "HEAD", "POST", "PUT", "PATCH", "DELETE", "OPTIONS")  # others would add labels without limit
+_NO_ROUTE = "none"  # the label of a path that matches no route
 
 
-class ObservedRequests:
-    """Counts and times the answers of an application, logs them, and ties what they log to the trace of the client."""
+class RequestLogMiddleware:
+    """Counts, times and logs the requests of an application.
+
+    It continues the trace of the client, or starts one: log lines of a request and its response carry the trace.
+    """
 
     def __init__(self, app: ASGIApp, metrics: Metrics) -> None:
         self._app = app
@@ -33,7 +36,7 @@ class ObservedRequests:
         trace = parent.child() if parent else new_trace()
         status, began_at = 0, time.perf_counter()
 
-        async def noted_send(message: Message) -> None:
+        async def send_with_trace(message: Message) -> None:
             nonlocal status
             if message["type"] == "http.response.start":
                 status = message["status"]
@@ -42,17 +45,17 @@ class ObservedRequests:
 
         with about(trace=trace) as subject:
             try:
-                await self._app(scope, receive, noted_send)
+                await self._app(scope, receive, send_with_trace)
             except Exception as error:
-                if status:  # the answer has begun, so there is no other way to say it than to break it off
+                if status:  # the response has started, so it can only be aborted
                     raise
-                await translate(error).response()(scope, receive, noted_send)
+                await translate(error).response()(scope, receive, send_with_trace)
             finally:
-                self._note(scope, subject, status, time.perf_counter() - began_at)
+                self._record(scope, subject, status, time.perf_counter() - began_at)
 
-    def _note(self, scope: Scope, subject: Subject, status: int, took_s: float) -> None:
-        route = getattr(scope.get("route"), "path", _NOWHERE)
-        method = scope["method"] if route != _NOWHERE and scope["method"] in _METHODS else "any"
+    def _record(self, scope: Scope, subject: Subject, status: int, took_s: float) -> None:
+        route = getattr(scope.get("route"), "path", _NO_ROUTE)
+        method = scope["method"] if route != _NO_ROUTE and scope["method"] in _METHODS else "any"
         self._metrics.requests.labels(method, route, status).inc()
         self._metrics.seconds.labels(route).observe(took_s)
         subject.job_id = subject.job_id or scope.get("path_params", {}).get("job_id")
@@ -61,7 +64,7 @@ class ObservedRequests:
 
 
 def _level(method: str, route: str, status: int) -> int:
-    """Polls and probes are many and say little: they are for debugging, polls as long as they succeed."""
+    """Return WARNING for server errors, DEBUG for probes and reads, which are frequent, and INFO for the rest."""
     if (status >= 500 or not status) and route not in _PROBES:
         return logging.WARNING
     return logging.DEBUG if method in ("GET", "HEAD", "OPTIONS") else logging.INFO

@@ -1,4 +1,4 @@
-"""A real service with a worker, and headless Chromium that looks at it; every page must stay without a fault."""
+"""A real service with a worker, and headless Chromium; a page that reports an error fails its test."""
 
 import os
 from collections.abc import Iterator
@@ -12,7 +12,7 @@ from playwright.sync_api import Browser, sync_playwright
 from helpers.browser_meshes import small_burr
 from helpers.installation import Installation
 from helpers.node import programs
-from helpers.visit import MOST_BYTES, NewVisit, Visit
+from helpers.visit import MAX_UPLOAD_BYTES, NewVisit, Visit
 from helpers.waiting import wait_until
 
 _CHROMIUM = Path("/usr/bin/chromium")
@@ -20,7 +20,7 @@ _ARGUMENTS = ["--no-sandbox", "--use-angle=swiftshader", "--enable-unsafe-swifts
 
 
 class _Limited(Installation):
-    settings = Installation.settings | {"CLEAVE_MAX_UPLOAD_BYTES": str(MOST_BYTES)}
+    settings = Installation.settings | {"CLEAVE_MAX_UPLOAD_BYTES": str(MAX_UPLOAD_BYTES)}
 
 
 @pytest.fixture(scope="package")
@@ -41,7 +41,7 @@ def browser() -> Iterator[Browser]:
 
 @pytest.fixture
 def new_visit(installation: Installation, browser: Browser) -> Iterator[NewVisit]:
-    """Open windows of any kind; whatever they report as a fault fails the test."""
+    """Open windows with options of Playwright; errors and requests to other hosts fail the test."""
     visits: list[Visit] = []
 
     def visit(**options: Any) -> Visit:
@@ -64,7 +64,7 @@ def visit(new_visit: NewVisit) -> Visit:
 
 @pytest.fixture(scope="package")
 def job(installation: Installation) -> str:
-    """The id of a finished job: a ball with six arms, whose automatic number of parts is seven."""
+    """The id of a finished job: a ball with six arms, which has seven parts at the automatic level."""
     files = {"mesh": ("burr.ply", small_burr())}
     answer = httpx.post(f"{installation.url}/v1/jobs", files=files, timeout=60)
     assert answer.status_code in (200, 202), answer.text
@@ -76,6 +76,6 @@ def job(installation: Installation) -> str:
 
 @pytest.fixture(scope="package")
 def axe(tmp_path_factory: pytest.TempPathFactory) -> str:
-    """The script of axe-core."""
+    """The script of axe-core, which checks accessibility."""
     folder = programs.install("axe", tmp_path_factory.mktemp("axe"))
     return (folder / "node_modules/axe-core/axe.min.js").read_text(encoding="utf-8")

@@ -1,4 +1,4 @@
-"""The page is used with keys, with a screen reader, by touch, on a phone and in the dark."""
+"""Accessibility of the page: keyboard, screen readers, touch, phones and the dark theme."""
 
 import pytest
 
@@ -15,7 +15,7 @@ def violations(visit: Visit, axe: str) -> list[str]:
 
 
 @pytest.mark.parametrize("scheme", ["light", "dark"])
-def test_axe_finds_nothing_on_the_pages(new_visit: NewVisit, job: str, axe: str, scheme: str) -> None:
+def test_axe_finds_no_violation_on_the_pages(new_visit: NewVisit, job: str, axe: str, scheme: str) -> None:
     visit = new_visit(color_scheme=scheme)
     visit.open()
     assert violations(visit, axe) == []
@@ -25,7 +25,7 @@ def test_axe_finds_nothing_on_the_pages(new_visit: NewVisit, job: str, axe: str,
     assert violations(visit, axe) == []
 
 
-def test_axe_finds_nothing_in_the_dialogs_or_beside_an_error(visit: Visit, job: str, axe: str) -> None:
+def test_axe_finds_no_violation_in_the_dialogs_or_with_an_error(visit: Visit, job: str, axe: str) -> None:
     visit.open_job(job)
     for button in ("open-jobs", "open-parameters", "open-take-away", "open-keys"):
         visit.page.click(f"#{button}")
@@ -38,13 +38,13 @@ def test_axe_finds_nothing_in_the_dialogs_or_beside_an_error(visit: Visit, job: 
     visit.faults = [fault for fault in visit.faults if "404" not in fault]
 
 
-def test_axe_finds_nothing_on_a_phone(new_visit: NewVisit, job: str, axe: str) -> None:
+def test_axe_finds_no_violation_on_a_phone(new_visit: NewVisit, job: str, axe: str) -> None:
     visit = new_visit(**PHONE)
     visit.open_job(job)
     assert violations(visit, axe) == []
 
 
-def test_parts_are_cut_and_named_with_keys_alone(visit: Visit, job: str) -> None:
+def test_parts_are_selected_and_split_with_the_keyboard(visit: Visit, job: str) -> None:
     visit.open_job(job)
     visit.page.evaluate("document.getElementById('viewer').shadowRoot.querySelector('canvas').focus()")
     visit.page.keyboard.press("]")
@@ -68,7 +68,7 @@ def test_parts_are_cut_and_named_with_keys_alone(visit: Visit, job: str) -> None
     assert len(visit.parts()) == 7
 
 
-def test_the_tree_is_walked_and_cut_with_arrows(visit: Visit, job: str) -> None:
+def test_the_tree_is_navigated_with_arrows_and_parts_are_renamed(visit: Visit, job: str) -> None:
     visit.open_job(job)
     first = visit.page.locator("#tree [role=treeitem]").first
     first.focus()
@@ -88,7 +88,7 @@ def test_the_tree_is_walked_and_cut_with_arrows(visit: Visit, job: str) -> None:
     assert "Last one" in label
 
 
-def test_every_button_has_a_name_and_room_for_a_finger_on_a_phone(new_visit: NewVisit, job: str) -> None:
+def test_controls_are_large_enough_for_touch_on_a_phone(new_visit: NewVisit, job: str) -> None:
     visit = new_visit(**PHONE)
     visit.open_job(job)
     small = visit.page.evaluate(
@@ -101,7 +101,7 @@ def test_every_button_has_a_name_and_room_for_a_finger_on_a_phone(new_visit: New
     assert visit.page.evaluate("document.documentElement.scrollWidth") == 390
 
 
-def test_a_touch_selects_a_part_and_the_picture_stays_in_view(new_visit: NewVisit, job: str) -> None:
+def test_a_tap_selects_a_part_and_the_picture_stays_visible(new_visit: NewVisit, job: str) -> None:
     visit = new_visit(**PHONE)
     visit.open_job(job)
     part = visit.parts()[1]
@@ -114,7 +114,7 @@ def test_a_touch_selects_a_part_and_the_picture_stays_in_view(new_visit: NewVisi
     assert box["height"] >= 240
 
 
-def test_the_chosen_theme_is_kept(visit: Visit) -> None:
+def test_the_chosen_theme_is_saved(visit: Visit) -> None:
     visit.open()
     light = visit.page.evaluate("getComputedStyle(document.body).backgroundColor")
     visit.page.click("#theme")

@@ -15,50 +15,50 @@ def embed(visit: Visit, job: str, attributes: str = "", query: str = "?levels=al
     visit.page.wait_for_function("() => document.querySelector('cleave-viewer').tree !== null")
 
 
-def ask(visit: Visit, expression: str) -> object:
+def evaluate(visit: Visit, expression: str) -> object:
     value: object = visit.page.evaluate(
         f"() => {{ const v = document.querySelector('cleave-viewer'); return {expression} }}"
     )
     return value
 
 
-def test_attributes_say_what_is_shown(visit: Visit, job: str) -> None:
+def test_attributes_set_what_is_shown(visit: Visit, job: str) -> None:
     embed(visit, job, 'segments="4" label="A burr"')
-    assert ask(visit, "v.parts.length") == 4
-    assert str(ask(visit, "v.shadowRoot.querySelector('canvas').ariaLabel")).startswith("A burr: 4 parts. ")
-    assert ask(visit, "(v.setAttribute('segments', '9'), v.parts.length)") == 9
-    assert ask(visit, "(v.setAttribute('selected', '1 2'), [...v.selected])") == [1, 2]
+    assert evaluate(visit, "v.parts.length") == 4
+    assert str(evaluate(visit, "v.shadowRoot.querySelector('canvas').ariaLabel")).startswith("A burr: 4 parts. ")
+    assert evaluate(visit, "(v.setAttribute('segments', '9'), v.parts.length)") == 9
+    assert evaluate(visit, "(v.setAttribute('selected', '1 2'), [...v.selected])") == [1, 2]
 
 
 def test_a_file_of_one_level_is_shown_too(visit: Visit, job: str) -> None:
     embed(visit, job, query="?segments=5")
-    assert ask(visit, "[v.parts.length, v.tree.maxSegments]") == [5, 5]
+    assert evaluate(visit, "[v.parts.length, v.tree.maxSegments]") == [5, 5]
 
 
-def test_events_tell_of_loading_pointing_and_picking(visit: Visit, job: str) -> None:
+def test_events_report_loading_hovering_and_selecting(visit: Visit, job: str) -> None:
     embed(visit, job)
     visit.page.evaluate(
         """() => {
-          window.heard = [];
+          window.events = [];
           for (const name of ['cleave-load', 'cleave-hover', 'cleave-select', 'cleave-error'])
-            document.addEventListener(name, (event) => heard.push([name, event.detail]));
+            document.addEventListener(name, (event) => events.push([name, event.detail]));
           const viewer = document.querySelector('cleave-viewer');
           const source = viewer.getAttribute('src');
           viewer.removeAttribute('src');
           viewer.setAttribute('src', source);
         }"""
     )
-    visit.page.wait_for_function("() => heard.length > 0")
+    visit.page.wait_for_function("() => events.length > 0")
     visit.page.mouse.move(200, 150)
-    visit.page.wait_for_function("() => heard.length > 1")
+    visit.page.wait_for_function("() => events.length > 1")
     visit.page.mouse.click(200, 150)
-    heard = visit.page.evaluate("heard")
-    assert heard[0] == ["cleave-load", {"maxSegments": 64, "automaticSegments": 7, "faces": 5120}]
-    assert [name for name, _ in heard[1:]] == ["cleave-hover", "cleave-select"]
-    assert heard[2][1]["parts"] == [heard[1][1]["part"]]
+    events = visit.page.evaluate("events")
+    assert events[0] == ["cleave-load", {"maxSegments": 64, "automaticSegments": 7, "faces": 5120}]
+    assert [name for name, _ in events[1:]] == ["cleave-hover", "cleave-select"]
+    assert events[2][1]["parts"] == [events[1][1]["part"]]
 
 
-def test_a_file_that_is_no_model_is_an_error_event(visit: Visit, job: str) -> None:
+def test_a_file_that_is_not_a_model_is_an_error_event(visit: Visit, job: str) -> None:
     embed(visit, job)
     code = visit.page.evaluate(
         """() => new Promise((done) => {
@@ -69,7 +69,7 @@ def test_a_file_that_is_no_model_is_an_error_event(visit: Visit, job: str) -> No
     assert code == "invalid_model"
 
 
-def test_an_element_that_is_moved_shows_its_model_again(visit: Visit, job: str) -> None:
+def test_a_moved_element_shows_its_model_again(visit: Visit, job: str) -> None:
     embed(visit, job)
     visit.page.evaluate(
         """() => new Promise((done) => {
@@ -79,4 +79,4 @@ def test_an_element_that_is_moved_shows_its_model_again(visit: Visit, job: str) 
           box.append(viewer);
         })"""
     )
-    assert ask(visit, "v.partAt(200, 150 + v.getBoundingClientRect().top)") != -1
+    assert evaluate(visit, "v.partAt(200, 150 + v.getBoundingClientRect().top)") != -1

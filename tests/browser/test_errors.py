@@ -1,4 +1,4 @@
-"""Errors are sentences with a next step, and a server that comes back is used again."""
+"""Errors are explained with a remedy, and the page waits for a server that is away."""
 
 import os
 import signal
@@ -8,12 +8,12 @@ from playwright.sync_api import Route
 
 from helpers.browser_meshes import small_burr
 from helpers.installation import Installation
-from helpers.visit import MOST_BYTES, Visit
+from helpers.visit import MAX_UPLOAD_BYTES, Visit
 from helpers.waiting import wait_until
 
 
 def problem(visit: Visit) -> tuple[str, str, str]:
-    """The code, the sentences and the name of the button."""
+    """Return the code and the text of the error, and the label of its button."""
     visit.page.wait_for_selector("#problem:not([hidden])")
     code = visit.page.get_attribute("#problem", "data-code") or ""
     return code, visit.page.inner_text("#problem"), visit.page.inner_text("#remedy")
@@ -35,16 +35,16 @@ def test_a_truncated_file_is_explained_and_another_can_be_chosen(visit: Visit) -
 def test_a_file_that_is_too_large_is_refused_before_it_is_sent(visit: Visit) -> None:
     visit.open()
     visit.page.wait_for_function("() => document.getElementById('formats').textContent.includes('up to')")
-    visit.drop("huge.stl", b"\0" * (MOST_BYTES + 1))
+    visit.drop("huge.stl", b"\0" * (MAX_UPLOAD_BYTES + 1))
     code, text, _ = problem(visit)
     assert code == "too_large"
     assert "1.91 MB" in text
     assert not [url for url in visit.requests if url.endswith("/v1/jobs")]
 
 
-def test_going_back_from_an_error_returns_to_the_result_before(visit: Visit, job: str) -> None:
+def test_going_back_from_an_error_returns_to_the_previous_result(visit: Visit, job: str) -> None:
     visit.open_job(job)
-    visit.drop("letter.pdf", b"%PDF-1.7 and so on, too")
+    visit.drop("document.pdf", b"%PDF-1.7 and so on, too")
     problem(visit)
     assert visit.page.locator("#work").is_hidden()
     visit.page.click("#back")
@@ -54,20 +54,20 @@ def test_going_back_from_an_error_returns_to_the_result_before(visit: Visit, job
 
 def test_a_file_of_another_kind_is_explained(visit: Visit) -> None:
     visit.open()
-    visit.drop("letter.pdf", b"%PDF-1.7 and so on")
+    visit.drop("document.pdf", b"%PDF-1.7 and so on")
     code, text, _ = problem(visit)
     assert code in ("invalid_mesh", "unsupported_format")
     assert text.count(".") >= 2
 
 
-def test_a_server_that_goes_while_a_job_runs_is_waited_for(visit: Visit) -> None:
+def test_the_page_waits_for_a_server_that_is_unreachable_during_a_job(visit: Visit) -> None:
     def refuse(route: Route) -> None:
         route.abort("connectionrefused")
 
     visit.open()
     visit.page.route("**/v1/jobs/*", refuse)
     visit.page.route("**/v1/jobs/*/events", refuse)
-    visit.drop("patient.ply", small_burr() + b"    ")
+    visit.drop("waiting.ply", small_burr() + b"    ")
     visit.page.wait_for_selector("#offline:not([hidden])")
     visit.page.unroute_all()
     visit.wait_for_parts()
@@ -75,10 +75,10 @@ def test_a_server_that_goes_while_a_job_runs_is_waited_for(visit: Visit) -> None
     visit.faults = [fault for fault in visit.faults if "ERR_CONNECTION_REFUSED" not in fault]
 
 
-def test_a_service_that_is_killed_is_waited_for_until_it_is_back(visit: Visit, installation: Installation) -> None:
+def test_the_page_waits_until_a_killed_service_is_restarted(visit: Visit, installation: Installation) -> None:
     visit.open()
     (worker,) = installation.children("worker.process small")
-    os.kill(worker, signal.SIGSTOP)  # so that the job outlives the service
+    os.kill(worker, signal.SIGSTOP)  # so that the job does not end before the service is killed
     try:
         with visit.page.expect_response("**/v1/jobs"):
             visit.drop("survivor.ply", small_burr() + b"       ")
@@ -93,7 +93,7 @@ def test_a_service_that_is_killed_is_waited_for_until_it_is_back(visit: Visit, i
     visit.faults = [fault for fault in visit.faults if "net::ERR" not in fault]
 
 
-def test_an_upload_that_finds_no_server_can_be_tried_again(visit: Visit) -> None:
+def test_an_upload_without_a_server_can_be_retried(visit: Visit) -> None:
     visit.open()
     visit.page.wait_for_function("() => document.getElementById('formats').textContent.includes('up to')")
     visit.page.context.set_offline(True)
@@ -107,7 +107,7 @@ def test_an_upload_that_finds_no_server_can_be_tried_again(visit: Visit) -> None
 
 
 @pytest.mark.parametrize("fragment", ["#job=" + "0" * 32, "#job=../../x"])
-def test_a_link_to_no_job_leads_to_the_start(visit: Visit, fragment: str) -> None:
+def test_a_link_to_an_unknown_job_leads_to_the_start_page(visit: Visit, fragment: str) -> None:
     visit.open(fragment)
     code, _, button = problem(visit)
     assert code in ("job_not_found", "not_found")
@@ -118,7 +118,7 @@ def test_a_link_to_no_job_leads_to_the_start(visit: Visit, fragment: str) -> Non
 
 
 def test_a_running_job_can_be_stopped(visit: Visit, installation: Installation) -> None:
-    held: list[Route] = []  # answers that do not come
+    held: list[Route] = []  # requests that get no response
     visit.open()
     visit.page.route("**/v1/jobs/*/events", lambda route: held.append(route))
     with visit.page.expect_response("**/v1/jobs") as submitted:
@@ -126,6 +126,6 @@ def test_a_running_job_can_be_stopped(visit: Visit, installation: Installation) 
     visit.page.click("#stop")
     visit.page.wait_for_selector("#start:not([hidden])")
     job = installation.get(f"/v1/jobs/{submitted.value.json()['id']}").json()
-    assert job["status"] in ("canceled", "succeeded")  # where it had ended before it was stopped
+    assert job["status"] in ("canceled", "succeeded")  # succeeded if it had ended before it was stopped
     for route in held:
         route.abort()

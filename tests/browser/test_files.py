@@ -1,4 +1,4 @@
-"""The files that the package ships: small, and without anything that the policy of the page forbids."""
+"""The files of the page are small, and contain nothing that the content security policy forbids."""
 
 import gzip
 import re
@@ -23,7 +23,7 @@ def test_the_page_has_no_inline_script_style_or_handler() -> None:
     assert not re.search(r"(src|href)=\"(https?:)?//", page)
 
 
-def test_the_policy_allows_this_server_alone(installation: Installation) -> None:
+def test_the_policy_allows_only_this_server(installation: Installation) -> None:
     policy = installation.get("/").headers["Content-Security-Policy"]
     directives = dict(part.strip().split(" ", 1) for part in policy.split(";"))
     assert directives["default-src"] == "'none'"
@@ -33,12 +33,12 @@ def test_the_policy_allows_this_server_alone(installation: Installation) -> None
 
 
 @pytest.mark.parametrize("name", [*SCRIPTS, "page.css", "icon.svg", "sample-jack.png"])
-def test_a_file_is_sent_again_only_when_it_has_changed(installation: Installation, name: str) -> None:
+def test_an_unchanged_file_is_not_sent_again(installation: Installation, name: str) -> None:
     url = f"{installation.url}/viewer/{name}"
     tag = httpx.get(url).raise_for_status().headers["ETag"]
     assert httpx.get(url, headers={"If-None-Match": tag}).status_code == 304
 
 
 @pytest.mark.parametrize("path", ["/viewer/index.html", "/viewer/nothing.js", "/viewer/..%2fhome.py", "/samples/x.ply"])
-def test_nothing_else_is_there(installation: Installation, path: str) -> None:
+def test_other_files_are_not_served(installation: Installation, path: str) -> None:
     assert installation.get(path).status_code == 404

@@ -1,4 +1,4 @@
-"""A server that asks for API keys: the page asks for one, keeps it, and shows only the jobs of its owner."""
+"""If the server requires API keys, the page asks for one, stores it, and shows only the jobs of its owner."""
 
 from collections.abc import Iterator
 
@@ -33,12 +33,12 @@ def enter(visit: Visit, key: str) -> None:
     visit.page.keyboard.press("Enter")
 
 
-def forgive_refusals(visit: Visit) -> None:
-    """The browser itself reports every answer of 401."""
+def ignore_unauthorized(visit: Visit) -> None:
+    """Drop the errors that the browser reports for every response of 401."""
     visit.faults = [fault for fault in visit.faults if "401" not in fault]
 
 
-def test_a_wrong_key_is_refused_and_a_right_one_is_kept(visit: Visit, installation: Installation) -> None:
+def test_a_wrong_key_is_refused_and_a_valid_one_is_stored(visit: Visit, installation: Installation) -> None:
     visit.open()
     visit.page.click("[data-sample=dumbbell]")
     enter(visit, "cleave_nobody")
@@ -57,10 +57,10 @@ def test_a_wrong_key_is_refused_and_a_right_one_is_kept(visit: Visit, installati
     assert "Authorization: Bearer $CLEAVE_KEY" in visit.page.inner_text("#curl")
     assert ANNA not in visit.page.inner_text("#curl")
     assert httpx.get(f"{installation.url}/v1/jobs/{job}").status_code == 401
-    forgive_refusals(visit)
+    ignore_unauthorized(visit)
 
 
-def test_a_link_asks_for_the_key_and_shows_nothing_to_another_owner(
+def test_a_link_requires_the_key_of_the_owner_of_the_job(
     new_visit: NewVisit, installation: Installation, axe: str
 ) -> None:
     headers = {"Authorization": f"Bearer {ANNA}", "Prefer": "wait=60"}
@@ -80,5 +80,5 @@ def test_a_link_asks_for_the_key_and_shows_nothing_to_another_owner(
     owner.wait_for_parts()
     other.page.wait_for_selector("#problem[data-code=job_not_found]")
     for visit in (owner, other):
-        forgive_refusals(visit)
+        ignore_unauthorized(visit)
     other.faults = [fault for fault in other.faults if "404" not in fault]

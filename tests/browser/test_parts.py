@@ -1,9 +1,9 @@
-"""Parts are picked, hidden, split, merged and named; nothing is lost by undo, by a reload or in a link."""
+"""Parts are selected, hidden, split, merged and named; undo, a reload and a link keep their state."""
 
 from helpers.visit import Visit
 
 
-def test_the_picture_and_the_tree_are_linked_both_ways(visit: Visit, job: str) -> None:
+def test_selection_is_the_same_in_the_picture_and_in_the_tree(visit: Visit, job: str) -> None:
     visit.open_job(job)
     part = visit.parts()[3]
     visit.page.mouse.move(*visit.place_of(part))
@@ -19,7 +19,7 @@ def test_the_picture_and_the_tree_are_linked_both_ways(visit: Visit, job: str) -
     assert visit.selected() == [part, other]
 
 
-def test_what_is_said_of_a_part_is_what_the_service_says(visit: Visit, job: str) -> None:
+def test_the_details_of_a_part_are_those_of_the_service(visit: Visit, job: str) -> None:
     visit.open_job(job)
     nodes = visit.page.evaluate("(path) => fetch(path).then((a) => a.json())", f"v1/jobs/{job}/hierarchy")["nodes"]
     for part in visit.parts()[:3]:
@@ -54,7 +54,7 @@ def test_split_merge_undo_and_redo_change_only_the_part(visit: Visit, job: str) 
     assert visit.requests[sent:] == []
 
 
-def test_merging_two_parts_makes_the_smallest_group_that_holds_them(visit: Visit, job: str) -> None:
+def test_merging_two_parts_makes_the_smallest_group_that_contains_them(visit: Visit, job: str) -> None:
     visit.open_job(job)
     first, second = visit.parts()[1], visit.parts()[2]
     visit.row(first).click()
@@ -66,7 +66,7 @@ def test_merging_two_parts_makes_the_smallest_group_that_holds_them(visit: Visit
     assert len(visit.parts()) == 7 - len(below) + 1
 
 
-def test_hidden_parts_are_not_seen_and_isolated_ones_alone(visit: Visit, job: str) -> None:
+def test_hidden_parts_are_invisible_and_isolated_parts_are_shown_alone(visit: Visit, job: str) -> None:
     visit.open_job(job)
     seen = visit.parts_at(visit.grid())
     part = max(visit.parts(), key=seen.count)
@@ -90,7 +90,7 @@ def test_parts_that_are_moved_apart_do_not_cover_each_other(visit: Visit, job: s
     assert len(set(apart)) >= len(set(together))
 
 
-def test_a_link_shows_the_same_thing(visit: Visit, job: str) -> None:
+def test_a_link_restores_the_same_view(visit: Visit, job: str) -> None:
     visit.open_job(job)
     parts = visit.parts()
     splittable = next(p for p in parts if visit.viewer(f"v.tree.node({p}).children.length"))
@@ -130,13 +130,13 @@ def test_a_link_shows_the_same_thing(visit: Visit, job: str) -> None:
     assert abs(again["distance"] - view["distance"]) < 0.02
 
 
-def test_a_link_with_nonsense_shows_the_automatic_parts(visit: Visit, job: str) -> None:
+def test_a_link_with_invalid_values_shows_the_automatic_parts(visit: Visit, job: str) -> None:
     visit.open_job(job, "&k=zero&hide=9999.x&sel=-3.77777&cut=&explode=much&view=1_2&n99999=x&show=nothing&up=w")
     assert len(visit.parts()) in (1, 7)
     assert visit.selected() == []
 
 
-def test_going_back_returns_to_the_page_before(visit: Visit, job: str) -> None:
+def test_going_back_returns_to_the_previous_page(visit: Visit, job: str) -> None:
     visit.open()
     visit.page.click("#open-jobs")
     visit.page.locator(f".job-row[data-id='{job}'] .job").click()

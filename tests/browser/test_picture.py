@@ -1,12 +1,12 @@
-"""What is drawn: colours that say which part is which at every level, in one buffer, freed when it goes."""
+"""The picture: colours of the parts at every level, draw calls, and memory that is freed with the model."""
 
 from helpers.visit import Visit
 
 
-def test_moving_the_slider_recolours_only_what_splits_and_asks_for_nothing(visit: Visit, job: str) -> None:
+def test_moving_the_slider_recolours_only_split_parts_and_sends_no_request(visit: Visit, job: str) -> None:
     visit.open_job(job)
     visit.page.click("#lines")
-    places = _inside_of_leaves(visit)
+    places = _points_inside_leaves(visit)
     visit.settle()
     sent = len(visit.requests)
     previous = visit.parts_at(places), visit.colors_at(places)
@@ -45,12 +45,12 @@ def test_the_picture_has_the_colours_of_the_list(visit: Visit, job: str) -> None
         if len(pixels) < 10:
             continue
         mean = [sum(channel) / len(pixels) for channel in zip(*pixels, strict=True)]
-        # Light changes how bright a colour is, not which of its channels is the strongest and which the weakest.
+        # Light changes the brightness of a colour, but not its strongest and its weakest channel.
         assert abs(swatch[mean.index(max(mean))] - max(swatch)) <= 12
         assert abs(swatch[mean.index(min(mean))] - min(swatch)) <= 12
 
 
-def test_every_level_is_drawn_with_no_more_calls_than_parts(visit: Visit, job: str) -> None:
+def test_every_level_is_drawn_with_at_most_one_call_per_part(visit: Visit, job: str) -> None:
     visit.open_job(job)
     for segments in (2, 7, 30):
         visit.set_range("level", segments)
@@ -58,7 +58,7 @@ def test_every_level_is_drawn_with_no_more_calls_than_parts(visit: Visit, job: s
         assert 1 <= visit.viewer("v.figures.drawCalls()") <= segments
 
 
-def test_what_a_model_needs_is_freed_with_it(visit: Visit, job: str) -> None:
+def test_the_memory_of_a_model_is_freed_with_it(visit: Visit, job: str) -> None:
     visit.open_job(job)
     first = _memory_with_everything(visit)
     for _ in range(3):
@@ -77,8 +77,8 @@ def test_what_a_model_needs_is_freed_with_it(visit: Visit, job: str) -> None:
     assert visit.viewer("v.figures.memory().geometries") == 0
 
 
-def _inside_of_leaves(visit: Visit) -> list[tuple[float, float]]:
-    """Places that no level has at a border, where the colours of two parts are mixed."""
+def _points_inside_leaves(visit: Visit) -> list[tuple[float, float]]:
+    """Return points that are not near a border at any level; colours are mixed at borders."""
     visit.set_range("level", 64)
     places = visit.grid(24)
     around = [(0, 0), (2, 0), (-2, 0), (0, 2), (0, -2)]
@@ -94,7 +94,7 @@ def _memory_with_everything(visit: Visit) -> dict[str, int]:
     return memory
 
 
-def test_concave_places_are_shown_where_the_arms_begin(visit: Visit, job: str) -> None:
+def test_the_concavity_overlay_marks_the_roots_of_the_arms(visit: Visit, job: str) -> None:
     visit.open_job(job, "&k=1")
     plain = visit.colors_at(visit.grid(14))
     visit.page.click("#concavity")

@@ -1,4 +1,4 @@
-"""From a file to its parts and away again."""
+"""Jobs on the page: submitted, followed, listed, repeated and deleted."""
 
 from pathlib import Path
 
@@ -13,7 +13,7 @@ from worker.jobs.store.opening import open_store
 from worker.process.perform import perform
 
 
-def test_a_dropped_mesh_is_sent_followed_and_shown(visit: Visit, installation: Installation) -> None:
+def test_a_dropped_mesh_is_submitted_followed_and_shown(visit: Visit, installation: Installation) -> None:
     visit.open()
     seen = visit.page.evaluate_handle(
         """() => {
@@ -42,19 +42,19 @@ def test_a_dropped_mesh_is_sent_followed_and_shown(visit: Visit, installation: I
     assert label.startswith("dropped.ply: 7 parts. ")
 
 
-def test_every_stage_that_a_worker_tells_of_is_shown(visit: Visit, tmp_path: Path) -> None:
-    told: list[str] = []
+def test_every_stage_that_a_worker_reports_is_shown(visit: Visit, tmp_path: Path) -> None:
+    reported: list[str] = []
     settings = Settings(data_dir=tmp_path)
     store = open_store(settings)
-    perform(store, settings, accepted(store, small_burr()).id, lambda stage, _: told.append(stage))
+    perform(store, settings, accepted(store, small_burr()).id, lambda stage, _: reported.append(stage))
     visit.open()
     visit.drop("staged.ply", small_burr())
     visit.page.wait_for_selector("#stages [data-stage]", state="attached")
     shown = visit.page.evaluate("[...document.querySelectorAll('#stages [data-stage]')].map((e) => e.dataset.stage)")
-    assert shown == ["upload", "queued", *dict.fromkeys(told), "show"]
+    assert shown == ["upload", "queued", *dict.fromkeys(reported), "show"]
 
 
-def test_a_sample_becomes_parts(visit: Visit) -> None:
+def test_a_sample_is_segmented(visit: Visit) -> None:
     visit.open()
     visit.page.click("[data-sample=dumbbell]")
     visit.wait_for_parts()
@@ -62,7 +62,7 @@ def test_a_sample_becomes_parts(visit: Visit) -> None:
     assert len(visit.rows()) == 3
 
 
-def test_a_job_is_in_the_list_with_its_picture_until_it_is_deleted(visit: Visit, installation: Installation) -> None:
+def test_a_job_is_listed_with_its_picture_until_it_is_deleted(visit: Visit, installation: Installation) -> None:
     submitted = httpx.post(
         f"{installation.url}/v1/jobs", files={"mesh": ("to-delete.ply", small_burr() + b"\n")}, timeout=60
     ).json()
@@ -86,7 +86,7 @@ def test_a_job_is_in_the_list_with_its_picture_until_it_is_deleted(visit: Visit,
     visit.page.wait_for_selector("#start:not([hidden])")
 
 
-def test_a_mesh_can_be_run_again_with_other_parameters_beside_the_first(visit: Visit) -> None:
+def test_a_mesh_can_be_segmented_again_with_other_parameters_and_compared(visit: Visit) -> None:
     visit.open()
     visit.drop("again.ply", small_burr() + b"  ")
     visit.wait_for_parts()

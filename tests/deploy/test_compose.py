@@ -1,4 +1,4 @@
-"""What docker-compose.yml promises, beyond its schema."""
+"""Properties of docker-compose.yml that its schema does not cover."""
 
 import re
 from pathlib import Path
@@ -14,7 +14,7 @@ ROOT = Path(__file__).parents[2]
 COMPOSE = yaml.safe_load((ROOT / "docker-compose.yml").read_text())
 SERVICES: dict[str, dict[str, Any]] = COMPOSE["services"]
 OWN = [name for name, service in SERVICES.items() if service["image"] == "cleave:local"]
-LASTING = [name for name in SERVICES if name != "bucket"]  # which ends when the bucket is there
+LASTING = [name for name in SERVICES if name != "bucket"]  # which ends when it has created the bucket
 CREDENTIALS = {"AWS_ACCESS_KEY_ID", "AWS_SECRET_ACCESS_KEY"}
 
 
@@ -24,7 +24,7 @@ def seconds(text: str) -> float:
 
 
 @pytest.mark.parametrize("name", SERVICES)
-def test_no_container_can_change_its_image_or_gain_rights(name: str) -> None:
+def test_containers_have_a_read_only_root_and_no_privileges(name: str) -> None:
     service = SERVICES[name]
     assert service["read_only"] is True
     assert service["cap_drop"] == ["ALL"]
@@ -37,7 +37,7 @@ def test_no_container_can_change_its_image_or_gain_rights(name: str) -> None:
 
 
 @pytest.mark.parametrize("name", LASTING)
-def test_every_container_that_stays_has_a_health_check_and_starts_again(name: str) -> None:
+def test_every_lasting_container_has_a_health_check_and_is_restarted(name: str) -> None:
     service = SERVICES[name]
     in_the_image = parse((ROOT / "Dockerfile").read_text())[-1].last("HEALTHCHECK").text
     assert service.get("healthcheck", {}).get("test") or (name == "service" and "healthz" in in_the_image)
@@ -46,7 +46,7 @@ def test_every_container_that_stays_has_a_health_check_and_starts_again(name: st
 
 
 @pytest.mark.parametrize("size", ["small", "large"])
-def test_a_worker_that_is_stopped_may_finish_its_job(size: str) -> None:
+def test_a_stopped_worker_can_finish_its_job(size: str) -> None:
     worker = SERVICES[f"worker-{size}"]
     environment = worker["environment"]
     assert worker["command"][:3] == ["worker", "--queue", size]
@@ -56,13 +56,13 @@ def test_a_worker_that_is_stopped_may_finish_its_job(size: str) -> None:
     assert worker["deploy"]["replicas"] >= 1
 
 
-def test_only_settings_that_there_are_are_set() -> None:
+def test_only_existing_settings_are_set() -> None:
     known = {f"CLEAVE_{name.upper()}" for name in Settings.model_fields} | CREDENTIALS
     for name in OWN:
         assert set(SERVICES[name]["environment"]) <= known, name
 
 
-def test_the_queue_keeps_what_it_has_and_asks_for_a_password() -> None:
+def test_the_queue_server_is_persistent_and_requires_a_password() -> None:
     command = SERVICES["redis"]["command"]
     options = dict(zip(command[1::2], command[2::2], strict=True))
     assert options["--appendonly"] == "yes"
@@ -71,12 +71,12 @@ def test_the_queue_keeps_what_it_has_and_asks_for_a_password() -> None:
     assert "ports" not in SERVICES["redis"]
 
 
-def test_nothing_is_published_but_the_service_to_this_machine() -> None:
+def test_only_the_port_of_the_service_is_published_to_this_machine() -> None:
     published = {name: service["ports"] for name, service in SERVICES.items() if "ports" in service}
     assert published == {"service": ["127.0.0.1:8000:8000"]}
 
 
-def test_machines_share_the_queue_and_the_store_alone() -> None:
+def test_containers_share_only_the_queue_and_the_store() -> None:
     named = set(COMPOSE["volumes"])
     for name in OWN:
         assert not [volume for volume in SERVICES[name]["volumes"] if volume.split(":")[0] in named], name

@@ -1,4 +1,4 @@
-"""The steps of the Dockerfile, as `make image-check` carries them out."""
+"""The parser of the Dockerfile and of .dockerignore, which `make image-check` uses."""
 
 from pathlib import Path
 
@@ -23,7 +23,7 @@ ENTRYPOINT ["cleave", "serve"]
 """
 
 
-def test_stages_and_their_instructions_are_told_apart() -> None:
+def test_stages_and_their_instructions_are_parsed() -> None:
     build, last = parse(EXAMPLE)
     assert (build.name, build.base, last.name, last.base) == ("build", "base:1", "1", "other")
     assert [(one.name, one.text) for one in build.instructions] == [
@@ -39,19 +39,19 @@ def test_stages_and_their_instructions_are_told_apart() -> None:
 
 
 @pytest.mark.parametrize("text", ["RUN before any stage", "FROM a\nONBUILD RUN x", "FROM a\nADD http://x /y"])
-def test_what_is_not_understood_is_refused(text: str) -> None:
+def test_an_unsupported_instruction_is_an_error(text: str) -> None:
     with pytest.raises(UnknownInstruction):
         parse(text)
 
 
-def test_the_last_pattern_that_matches_decides_what_is_sent() -> None:
+def test_the_last_pattern_that_matches_decides() -> None:
     patterns = ["*", "!segcore", "**/__pycache__", "!docs/a.md"]
     sent = ["segcore/mesh.py", "segcore/io/off.py", "docs/a.md"]
     kept = ["secret.txt", "segcore/__pycache__/mesh.pyc", "segcore/io/__pycache__/off.pyc", "docs/b.md", "docs"]
     assert [path for path in sent + kept if is_sent(path, patterns)] == sent
 
 
-def test_everything_that_the_dockerfile_copies_is_sent_and_nothing_secret_is() -> None:
+def test_the_files_that_the_dockerfile_copies_are_sent_and_secrets_are_not() -> None:
     patterns = read_patterns(ROOT / ".dockerignore")
     copies = [
         source
@@ -68,9 +68,9 @@ def test_everything_that_the_dockerfile_copies_is_sent_and_nothing_secret_is() -
     assert not any(is_sent(path, patterns) for path in (".git/config", ".env", "tests/conftest.py", "data/key"))
 
 
-def test_the_image_runs_as_a_user_of_its_own_and_compiles_what_it_installs() -> None:
+def test_the_image_runs_as_its_own_user_and_contains_the_kernels_of_its_installation() -> None:
     *_, image = parse((ROOT / "Dockerfile").read_text())
     assert image.last("USER").text not in ("root", "0", "0:0")
     text = (ROOT / "Dockerfile").read_text()
-    # -P, or the kernels would be those of the sources beside the command, which nobody runs.
+    # Without -P the kernels of /src would be compiled instead of those of the installation.
     assert 'python -P -c "import segcore; segcore.warm_up()"' in text

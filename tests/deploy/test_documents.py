@@ -18,12 +18,12 @@ OF_COMPOSE = {"CLEAVE_REDIS_PASSWORD", "CLEAVE_STORE_PASSWORD"}
 
 
 @pytest.mark.parametrize("text", [OPERATIONS, SECURITY], ids=["operations", "security"])
-def test_every_setting_that_is_named_is_one(text: str) -> None:
+def test_every_setting_that_is_named_exists(text: str) -> None:
     known = {f"CLEAVE_{name.upper()}" for name in Settings.model_fields} | OF_COMPOSE
     assert set(re.findall(r"\bCLEAVE_[A-Z_]+\b", text)) <= known
 
 
-def test_every_metric_is_explained_and_every_one_that_is_explained_is_there(store: JobStore, queue: JobQueue) -> None:
+def test_exactly_the_existing_metrics_are_explained(store: JobStore, queue: JobQueue) -> None:
     there = {
         f"{family.name}_total" if family.type == "counter" else family.name
         for family in Metrics(store, queue).registry.collect()
@@ -32,13 +32,13 @@ def test_every_metric_is_explained_and_every_one_that_is_explained_is_there(stor
     assert {name for row in rows for name in re.findall(r"`(cleave_\w+)", row)} == there
 
 
-def test_every_error_that_is_explained_can_be_answered() -> None:
+def test_every_error_that_is_explained_exists() -> None:
     named = re.findall(r"^\| (\d{3}) `(\w+)`", OPERATIONS, re.MULTILINE)
     assert named
     assert all(STATUS[code] == int(status) for status, code in named)
 
 
 @pytest.mark.parametrize("name", sorted(set(re.findall(r"`(tests/[\w/]+\.py(?:::\w+)?)`", SECURITY))))
-def test_a_promise_is_held_by_a_test_that_there_is(name: str) -> None:
+def test_every_claim_of_the_security_document_names_an_existing_test(name: str) -> None:
     file, _, function = name.partition("::")
     assert f"def {function}" in (ROOT / file).read_text()

@@ -1,4 +1,4 @@
-"""The manifests for Kubernetes: valid, and true to the product that they start."""
+"""The Kubernetes manifests are valid and match the product."""
 
 from pathlib import Path
 from typing import Any
@@ -56,7 +56,7 @@ def test_every_file_belongs_to_the_kustomization() -> None:
 
 
 @pytest.mark.parametrize("name", WORKLOADS)
-def test_no_pod_runs_as_root_changes_its_image_or_speaks_to_the_cluster(name: str) -> None:
+def test_pods_have_a_read_only_root_no_privileges_and_no_access_to_the_cluster(name: str) -> None:
     assert pod(name)["securityContext"]["runAsNonRoot"] is True
     assert pod(name)["securityContext"]["seccompProfile"] == {"type": "RuntimeDefault"}
     assert pod(name)["automountServiceAccountToken"] is False
@@ -71,7 +71,7 @@ def test_no_pod_runs_as_root_changes_its_image_or_speaks_to_the_cluster(name: st
 
 
 @pytest.mark.parametrize("name", OWN)
-def test_only_settings_that_there_are_are_set_and_secrets_are_by_reference(name: str) -> None:
+def test_only_existing_settings_are_set_and_secrets_are_references(name: str) -> None:
     known = {f"CLEAVE_{field.upper()}" for field in Settings.model_fields}
     literals = [literal.partition("=")[0] for literal in KUSTOMIZATION["configMapGenerator"][0]["literals"]]
     given = [*variables(name), *literals]
@@ -85,7 +85,7 @@ def test_only_settings_that_there_are_are_set_and_secrets_are_by_reference(name:
 
 
 @pytest.mark.parametrize("size", SizeClass)
-def test_a_worker_is_scaled_by_its_queue_and_may_finish_its_job(size: SizeClass) -> None:
+def test_a_worker_is_scaled_by_its_queue_and_can_finish_its_job(size: SizeClass) -> None:
     name = f"worker-{size}"
     assert container(name)["args"][:3] == ["worker", "--queue", size]
     grace_s = float(variables(name)["CLEAVE_SHUTDOWN_GRACE_S"])
@@ -94,7 +94,7 @@ def test_a_worker_is_scaled_by_its_queue_and_may_finish_its_job(size: SizeClass)
     scaled = named("ScaledObject")[name]
     (trigger,) = scaled["triggers"]
     assert scaled["scaleTargetRef"] == {"name": name}
-    assert scaled["minReplicaCount"] >= 1  # or /readyz would be false for ever
+    assert scaled["minReplicaCount"] >= 1  # or /readyz would never be true
     assert "replicas" not in WORKLOADS[name]["spec"]
     assert trigger["type"] == "redis"
     assert trigger["metadata"]["listName"] == f"rq:queue:{QUEUE_NAMES[size]}"
@@ -103,12 +103,12 @@ def test_a_worker_is_scaled_by_its_queue_and_may_finish_its_job(size: SizeClass)
     assert all(isinstance(value, str) for value in trigger["metadata"].values())
 
 
-def test_names_and_ports_fit_together() -> None:
+def test_names_and_ports_match() -> None:
     services = named("Service")
     for name, labels in {"cleave": "service", "redis": "redis"}.items():
         assert services[name]["selector"] == {"app.kubernetes.io/name": labels}
     (port,) = container("service")["ports"]
-    assert (port["name"], port["containerPort"]) == ("http", 8000)  # as the Dockerfile exposes it
+    assert (port["name"], port["containerPort"]) == ("http", 8000)  # the port that the Dockerfile exposes
     assert services["cleave"]["ports"][0]["targetPort"] == "http"
     policies = named("NetworkPolicy")
     assert policies["nothing"] == {"podSelector": {}, "policyTypes": ["Ingress", "Egress"]}
@@ -121,7 +121,7 @@ def test_names_and_ports_fit_together() -> None:
         assert budget["selector"]["matchLabels"] == {"app.kubernetes.io/name": name}
 
 
-def test_the_queue_keeps_what_it_has_and_asks_for_a_password() -> None:
+def test_the_queue_server_is_persistent_and_requires_a_password() -> None:
     arguments = container("redis")["args"]
     options = dict(zip(arguments[::2], arguments[1::2], strict=True))
     assert (options["--appendonly"], options["--maxmemory-policy"]) == ("yes", "noeviction")

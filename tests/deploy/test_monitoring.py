@@ -1,4 +1,4 @@
-"""The dashboard and the alerts ask for metrics that there are, by labels that they have."""
+"""The dashboard and the alerts query existing metrics by existing labels."""
 
 import json
 import re
@@ -24,15 +24,15 @@ QUERIES += [rule["expr"] for rule in RULES]
 
 @pytest.fixture
 def labels_of(store: JobStore, queue: JobQueue, connection: Redis) -> dict[str, set[str]]:
-    """The metrics of an installation in which everything has happened once, and their labels."""
-    job, tallies = accepted(store, b"mesh"), JobCounters(connection)
+    """Return the labels of every metric, of an installation in which each event has happened once."""
+    job, counters = accepted(store, b"mesh"), JobCounters(connection)
     queue.take(job.id, "worker", lease_s=30)
     done = Succeeded(finished_at=now(), faces=1, vertices=3, max_segments=1, automatic_segments=1)
-    tallies.job_ended(job, done, {"cut": 1.0})
-    tallies.job_ended(job, Failed(finished_at=now(), code="invalid_mesh", message="."), {})
-    tallies.attempt_lost("worker_lost")
-    tallies.job_recovered()
-    tallies.store_failed("worker")
+    counters.job_ended(job, done, {"cut": 1.0})
+    counters.job_ended(job, Failed(finished_at=now(), code="invalid_mesh", message="."), {})
+    counters.attempt_lost("worker_lost")
+    counters.job_recovered()
+    counters.store_failed("worker")
     metrics = Metrics(store, queue)
     metrics.requests.labels("GET", "/", 200).inc()
     metrics.seconds.labels("/").observe(1.0)
@@ -45,19 +45,19 @@ def labels_of(store: JobStore, queue: JobQueue, connection: Redis) -> dict[str, 
 
 
 @pytest.mark.parametrize("query", QUERIES)
-def test_a_query_asks_for_what_there_is(query: str, labels_of: dict[str, set[str]]) -> None:
+def test_every_query_uses_existing_metrics_and_labels(query: str, labels_of: dict[str, set[str]]) -> None:
     names = re.findall(r"\bcleave_\w+", query)
     assert names
     assert set(names) <= set(labels_of)
-    asked = {label.strip() for group in re.findall(r"by \(([^)]*)\)", query) for label in group.split(",")}
-    asked |= {
+    queried = {label.strip() for group in re.findall(r"by \(([^)]*)\)", query) for label in group.split(",")}
+    queried |= {
         label for selector in re.findall(r"{([^}]*)}", query) for label in re.findall(r"(\w+)\s*(?:=|!)", selector)
     }
-    assert asked <= set().union(*(labels_of[name] for name in names))
+    assert queried <= set().union(*(labels_of[name] for name in names))
     assert query.count("(") == query.count(")")
 
 
-def test_counts_that_every_service_tells_are_not_summed_over_the_services(labels_of: dict[str, set[str]]) -> None:
+def test_metrics_that_every_service_reports_are_not_summed_over_services(labels_of: dict[str, set[str]]) -> None:
     own = (
         "cleave_requests",
         "cleave_request_seconds",
@@ -77,16 +77,16 @@ def test_the_dashboard_shows_every_metric_and_its_panels_do_not_overlap(labels_o
     }
     there = {re.sub(r"_(bucket|count|sum|created)$", "", name) for name in labels_of}
     assert shown == {name for name in there if f"{name}_total" not in there}
-    taken: set[tuple[int, int]] = set()
+    occupied: set[tuple[int, int]] = set()
     for place in (panel["gridPos"] for panel in DASHBOARD["panels"]):
         cells = {(place["x"] + x, place["y"] + y) for x in range(place["w"]) for y in range(place["h"])}
-        assert not cells & taken
-        taken |= cells
+        assert not cells & occupied
+        occupied |= cells
     assert len({panel["id"] for panel in DASHBOARD["panels"]}) == len(DASHBOARD["panels"])
 
 
 @pytest.mark.parametrize("rule", RULES, ids=lambda rule: rule["alert"])
-def test_an_alert_says_what_is_wrong_and_what_to_do(rule: dict[str, dict[str, str]]) -> None:
+def test_every_alert_has_a_severity_a_summary_and_a_description(rule: dict[str, dict[str, str]]) -> None:
     assert rule["labels"]["severity"] in ("critical", "warning")
     assert set(rule["annotations"]) == {"summary", "description"}
     assert all(text.endswith(".") for text in rule["annotations"].values())

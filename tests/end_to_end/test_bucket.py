@@ -1,4 +1,4 @@
-"""`cleave serve` with its jobs in a bucket: the data folder holds nothing that may not be lost."""
+"""`cleave serve` with its jobs in a bucket: the data folder contains nothing that cannot be lost."""
 
 import os
 import subprocess
@@ -15,21 +15,21 @@ from worker.jobs.job import new_job_id
 from worker.jobs.store.opening import open_url
 
 
-def in_bucket(url: str) -> Installation:
+def installation_in_bucket(url: str) -> Installation:
     installation = Installation(workers=1)
     installation.settings = Installation.settings | {"CLEAVE_STORE_URL": url}  # type: ignore[misc]
     return installation
 
 
-def test_jobs_outlive_the_machine_that_took_them_in(s3_url: str, tmp_path: Path) -> None:
+def test_another_machine_serves_the_jobs_of_a_bucket(s3_url: str, tmp_path: Path) -> None:
     url = below(s3_url, new_job_id())
-    with in_bucket(url) as installation:
+    with installation_in_bucket(url) as installation:
         path = installation.submit(sphere(20))
         wait_until(lambda: installation.status(path) == "succeeded")
         labels = installation.get(f"{path}/labels?segments=3").content
         assert installation.stop() == 0
         assert installation.files() == []
-    with in_bucket(url) as elsewhere:
+    with installation_in_bucket(url) as elsewhere:
         assert elsewhere.get(f"{path}/labels?segments=3").content == labels
         redirected = elsewhere.get(f"{path}/result.cleave?redirect=true")
         assert redirected.status_code == 307
@@ -40,7 +40,7 @@ def test_jobs_outlive_the_machine_that_took_them_in(s3_url: str, tmp_path: Path)
     assert left == []
 
 
-def test_a_bucket_that_is_not_there_is_said_at_the_start(s3_url: str, tmp_path: Path) -> None:
+def test_a_missing_bucket_is_an_error_at_the_start(s3_url: str, tmp_path: Path) -> None:
     wrong = {"CLEAVE_STORE_URL": s3_url.replace("cleave-test", "no-such-bucket"), "CLEAVE_DATA_DIR": str(tmp_path)}
     command = [sys.executable, "-m", "service.commands", "serve", "--port", "0"]
     ended = subprocess.run(command, env=os.environ | wrong, capture_output=True, text=True)

@@ -1,4 +1,4 @@
-"""Nothing that was accepted is lost, whichever process dies, and nothing is left behind when all of them shall go."""
+"""No accepted job is lost if a process dies, and no process or file remains after a stop."""
 
 import json
 import os
@@ -32,14 +32,14 @@ def test_a_job_whose_worker_and_work_horse_are_killed_together_runs_again_within
 
 
 @pytest.mark.parametrize(("number", "waiting"), [(signal.SIGINT, 6), (signal.SIGKILL, 50)])
-def test_a_restart_finishes_two_jobs_that_ran_and_those_that_waited(number: signal.Signals, waiting: int) -> None:
+def test_a_restart_finishes_the_running_and_the_waiting_jobs(number: signal.Signals, waiting: int) -> None:
     with Installation() as installation:
         paths = []
         for running, rows in enumerate((80, 100), 1):  # a small one, a large one
             paths.append(installation.submit(sphere(rows), json.dumps(LONG)))
             wait_until(lambda running=running: len(installation.horses()) == running)
             for horse in installation.horses():
-                os.kill(horse, signal.SIGSTOP)  # they run for as long as the test wants
+                os.kill(horse, signal.SIGSTOP)  # so that the jobs do not end
         paths += [installation.submit(sphere(12)) for _ in range(waiting)]
         assert installation.stop(number) == (-signal.SIGKILL if number == signal.SIGKILL else 0)
         wait_until(lambda: not installation.processes(), within_s=10)
@@ -47,7 +47,7 @@ def test_a_restart_finishes_two_jobs_that_ran_and_those_that_waited(number: sign
         wait_until(lambda: installation.statuses(paths) == {"succeeded"}, within_s=200)
 
 
-def test_a_signal_to_all_processes_at_once_fails_no_job() -> None:
+def test_a_signal_to_all_processes_fails_no_job() -> None:
     with Installation() as installation:
         path = installation.submit(sphere(100), json.dumps(LONG))
         wait_until(installation.horses)
@@ -67,17 +67,17 @@ def test_a_second_service_on_the_same_data_is_refused() -> None:
         assert installation.is_ready()
 
 
-def test_a_taken_port_is_refused_before_anything_starts() -> None:
+def test_a_port_in_use_is_an_error_before_anything_starts() -> None:
     installation = Installation()
-    with socket.create_server(("127.0.0.1", 0)) as taken:
-        process = installation.command("serve", "--port", str(taken.getsockname()[1]))
+    with socket.create_server(("127.0.0.1", 0)) as other:
+        process = installation.command("serve", "--port", str(other.getsockname()[1]))
         output, _ = process.communicate(timeout=60)
         assert (process.returncode, output) == (2, "")
     assert list(installation.data_dir.iterdir()) == []
     installation.data_dir.rmdir()
 
 
-def test_workers_alone_do_the_jobs_of_a_service_elsewhere() -> None:
+def test_separate_workers_run_the_jobs_of_a_service() -> None:
     with Installation(workers=1) as installation:
         url = f"unix://{installation.data_dir}/queue/queue.sock"
         for worker in installation.children("worker.process"):
@@ -93,7 +93,7 @@ def test_workers_alone_do_the_jobs_of_a_service_elsewhere() -> None:
             workers.stdout.close()
 
 
-def test_a_long_path_to_the_data_needs_no_long_socket_path(tmp_path: Path) -> None:
+def test_a_data_folder_with_a_long_path_has_a_short_socket_path(tmp_path: Path) -> None:
     installation = Installation(workers=1)
     installation.data_dir.rmdir()
     installation.data_dir = tmp_path / ("long" * 20) / "with spaces"

@@ -1,4 +1,4 @@
-"""Whatever is sent: the service stays small and alive, says what is wrong, and touches nothing that is not its own."""
+"""Hostile files: memory stays bounded, every error is reported, and nothing outside of the data folder is touched."""
 
 import os
 import socket
@@ -17,13 +17,13 @@ from helpers.waiting import wait_until
 ROOT = Path(__file__).parents[2]
 MEMORY_BYTES = 2 * 2**30
 GROWTH_BYTES = 64 * 2**20
-# Beside the data and the installation: what the kernel says of this machine, and what Python asks it for.
+# Paths outside of the data folder and the installation that may be read: devices and information of the kernel.
 HARMLESS = ("/dev/", "/proc/self/", "/proc/vmstat", "/proc/stat", "/proc/cpuinfo", "/sys/")
 LISTENING = {"socket.getaddrinfo\t127.0.0.1", "socket.bind\t('127.0.0.1', 0)"}
 
 
 class AuditedInstallation(LoggingInstallation):
-    """One whose processes note what they open and connect to."""
+    """An installation whose processes log the files that they open and the addresses that they connect to."""
 
     def __init__(self, notes: Path) -> None:
         super().__init__()
@@ -37,15 +37,15 @@ class AuditedInstallation(LoggingInstallation):
 
 @pytest.fixture
 def target() -> Iterator[socket.socket]:
-    """Somebody who waits for connections that must not come."""
+    """A listening socket to which no connection may be made."""
     with socket.create_server(("127.0.0.1", 0)) as listening:
         listening.settimeout(0.1)
         yield listening
 
 
-def test_hostile_files_hurt_nothing_but_their_jobs(tmp_path: Path, target: socket.socket) -> None:
+def test_hostile_files_affect_only_their_jobs(tmp_path: Path, target: socket.socket) -> None:
     secret, notes = tmp_path / "secret", tmp_path / "notes"
-    secret.write_text("nobody may read this")
+    secret.write_text("not to be read")
     with AuditedInstallation(notes) as installation:
         submit(installation, "warm.off", sphere(12))
         wait_until(lambda: ended(installation))
@@ -55,7 +55,7 @@ def test_hostile_files_hurt_nothing_but_their_jobs(tmp_path: Path, target: socke
             submit(installation, name, content): (name, codes)
             for name, content, codes in hostile_files(f"http://127.0.0.1:{target.getsockname()[1]}", str(secret))
         }
-        refuse_what_is_no_mesh(installation)
+        check_invalid_requests(installation)
         wait_until(lambda: ended(installation), within_s=120)
         found = {name: code_of(installation, path) for path, (name, _) in expected.items()}
         assert not {name: found[name] for name, codes in expected.values() if found[name] not in codes}
@@ -63,10 +63,10 @@ def test_hostile_files_hurt_nothing_but_their_jobs(tmp_path: Path, target: socke
         assert memory_bytes(service, "VmHWM") - before < GROWTH_BYTES
         assert max(work_horse_bytes(installation)) < MEMORY_BYTES
         assert code_of(installation, submit(installation, "fine.off", sphere(12)), wait=True) is None
-        assert strange(notes, installation.data_dir) == LISTENING
-        noted = notes.read_text(errors="replace")
-        assert f"socket.connect\t{installation.data_dir}/queue/queue.sock" in noted  # it does note
-        assert all(f"{path.rpartition('/')[2]}/mesh" in noted for path in expected)
+        assert unexpected_events(notes, installation.data_dir) == LISTENING
+        logged = notes.read_text(errors="replace")
+        assert f"socket.connect\t{installation.data_dir}/queue/queue.sock" in logged  # the log works
+        assert all(f"{path.rpartition('/')[2]}/mesh" in logged for path in expected)
     with pytest.raises(TimeoutError):
         target.accept()
     assert not list(Path("/tmp").glob("PWNED*"))
@@ -74,7 +74,7 @@ def test_hostile_files_hurt_nothing_but_their_jobs(tmp_path: Path, target: socke
 
 
 def submit(installation: LoggingInstallation, name: str, content: bytes) -> str:
-    """The path of a new job of a file whose name is sent as it is."""
+    """Submit a file under a name that is sent unchanged, and return the path of its job."""
     answer = httpx.post(
         f"{installation.url}/v1/jobs",
         files={"mesh": (name, content)},
@@ -87,8 +87,8 @@ def submit(installation: LoggingInstallation, name: str, content: bytes) -> str:
     return str(answer.headers["Location"])
 
 
-def refuse_what_is_no_mesh(installation: LoggingInstallation) -> None:
-    """What is already wrong in the request is refused there, without a job."""
+def check_invalid_requests(installation: LoggingInstallation) -> None:
+    """Check that invalid requests are refused without a job."""
     jobs = f"{installation.url}/v1/jobs"
     too_large = httpx.post(jobs, content=bytes(2**23), headers={"Content-Type": "model/stl"}, timeout=60)
     assert too_large.status_code == 413
@@ -103,7 +103,7 @@ def ended(installation: LoggingInstallation) -> bool:
 
 
 def code_of(installation: LoggingInstallation, path: str, *, wait: bool = False) -> str | None:
-    """Why a job has failed; None where it has not."""
+    """Return the error code of a job; None if it has not failed."""
     if wait:
         wait_until(lambda: installation.get(path).json()["finished_at"])
     job = installation.get(path).json()
@@ -116,18 +116,18 @@ def memory_bytes(pid: int, name: str) -> int:
 
 
 def work_horse_bytes(installation: LoggingInstallation) -> list[int]:
-    """The most memory that each work-horse has had, as the log says."""
+    """Return the largest memory of each work-horse, from the log."""
     endings = [line["message"] for line in installation.lines() if "the work-horse ended with" in line["message"]]
     return [1024 * int(message.rpartition(", ")[2].removesuffix(" KiB")) for message in endings]
 
 
-def strange(notes: Path, data_dir: Path) -> set[str]:
-    """What was opened, or connected to, and is neither the service's own nor harmless."""
+def unexpected_events(notes: Path, data_dir: Path) -> set[str]:
+    """Return the events outside of the data folder and the installation that are not harmless."""
     own = (str(data_dir), str(ROOT), sys.prefix, sys.base_prefix, sys.exec_prefix)
     found = set()
     for line in notes.read_text(errors="replace").splitlines():
         event, _, what = line.partition("\t")
-        is_number = what.isdigit()  # an open descriptor: it was opened by its name before
+        is_number = what.isdigit()  # an open file descriptor, whose file was logged by its name
         place = what if event.startswith("socket") else os.path.normpath(ROOT / what)
         if not (is_number or place.startswith((*own, *HARMLESS)) or is_own_command(event, what)):
             found.add(line)
@@ -135,5 +135,5 @@ def strange(notes: Path, data_dir: Path) -> set[str]:
 
 
 def is_own_command(event: str, what: str) -> bool:
-    """The processes of an installation are Python and its queue server."""
+    """Whether a started process is Python or the queue server."""
     return event == "subprocess.Popen" and os.path.basename(what).startswith(("python", "valkey", "redis"))

@@ -1,4 +1,4 @@
-"""An installation on hosts that share the queue and the store and no disk, one of which is cut off in mid-job."""
+"""An installation on hosts that share the queue and the store but no disk; one host loses its network in mid-job."""
 
 import json
 import sys
@@ -35,7 +35,7 @@ class Site:
 
 @pytest.fixture
 def site(monkeypatch: pytest.MonkeyPatch) -> Iterator[Site]:
-    """A queue server and a bucket on one host, the service on another, workers on three more."""
+    """A queue server and a bucket on one host, the service on another one, and workers on three others."""
     with Network() as network:
         hub = network.hub.address
         redis_url, bucket = f"redis://:secret@{hub}:6379/0", f"http://{hub}:5000"
@@ -97,7 +97,7 @@ def statuses(site: Site, paths: list[str]) -> Counter[str]:
 
 
 def holders(site: Site, path: str) -> list[Host]:
-    """The host whose worker has the lease of a job: the ids of processes are in the names of workers."""
+    """Return the host whose worker has the lease of a job; the name of a worker contains its process id."""
     with Redis.from_url(site.redis_url) as connection:
         name = connection.get(f"cleave:lease:{id_of(path)}")
     return [host for host in site.workers if name and int(name.decode().split(".")[-2]) in host.tree()]
@@ -107,7 +107,7 @@ def id_of(path: str) -> str:
     return path.rpartition("/")[2]
 
 
-def test_a_host_that_is_cut_off_in_mid_job_costs_no_job_and_heals(
+def test_a_host_that_loses_its_network_loses_no_job_and_works_again_afterwards(
     site: Site, tmp_path_factory: pytest.TempPathFactory
 ) -> None:
     interrupted = submit(site, sphere(100), **LONG)
@@ -116,7 +116,7 @@ def test_a_host_that_is_cut_off_in_mid_job_costs_no_job_and_heals(
     cut_off.unplug()
     others = [submit(site, sphere(40)) for _ in range(JOBS)]
     paths = [interrupted, *others]
-    wait_until(lambda: statuses(site, paths) == {"succeeded": len(paths)})  # the others, without it
+    wait_until(lambda: statuses(site, paths) == {"succeeded": len(paths)})  # on the other hosts
     cut_off.plug_in()
     with Redis.from_url(site.redis_url) as connection:
         wait_until(lambda: len(live_workers(connection)) == len(site.workers))

@@ -1,4 +1,4 @@
-"""One job seen from outside: in the log of every process that had to do with it, and in the metrics."""
+"""A job in the logs of all processes that handled it, and in the metrics."""
 
 import json
 import os
@@ -15,7 +15,7 @@ TRACE_ID = "4bf92f3577b34da6a3ce929d0e0e4736"
 PARENT = f"00-{TRACE_ID}-00f067aa0ba902b7-01"
 
 
-def test_a_job_can_be_followed_through_every_process_by_its_id_and_its_trace() -> None:
+def test_the_log_lines_of_a_job_have_its_id_and_trace_in_every_process() -> None:
     with LoggingInstallation() as installation:
         answer = httpx.post(
             f"{installation.url}/v1/jobs",

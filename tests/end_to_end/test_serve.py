@@ -1,4 +1,4 @@
-"""`cleave serve` in ordinary use: from POST to GLB, and every process replaceable."""
+"""`cleave serve` in normal use: from POST to GLB, cancelation, and restarts of its processes."""
 
 import json
 import os
@@ -31,7 +31,7 @@ def finished(installation: Installation, path: str) -> dict[str, object]:
     return document
 
 
-def test_a_mesh_goes_in_and_its_parts_come_out(installation: Installation) -> None:
+def test_a_submitted_mesh_is_segmented(installation: Installation) -> None:
     path = installation.submit(sphere(40))
     job = finished(installation, path)
     assert job["status"] == "succeeded", job
@@ -46,13 +46,13 @@ def test_a_mesh_goes_in_and_its_parts_come_out(installation: Installation) -> No
     assert len(installation.get(f"{path}/hierarchy").json()["nodes"]) == 2 * int(str(job["max_segments"])) - 1
 
 
-def test_a_bad_mesh_fails_with_a_sentence(installation: Installation) -> None:
+def test_a_bad_mesh_fails_with_its_error_code(installation: Installation) -> None:
     job = finished(installation, installation.submit(b"OFF\n1 0 0\n0 0 0\n"))
     assert job["status"] == "failed"
     assert job["error"]["code"] == "invalid_mesh"  # type: ignore[index]
 
 
-def test_progress_is_seen_and_never_goes_back(installation: Installation) -> None:
+def test_progress_is_reported_and_never_decreases(installation: Installation) -> None:
     path = installation.submit(sphere(100), json.dumps(LONG))
     seen: list[dict[str, object]] = []
     while not seen or seen[-1]["status"] in ("queued", "running"):
@@ -64,7 +64,7 @@ def test_progress_is_seen_and_never_goes_back(installation: Installation) -> Non
     assert seen[-1]["status"] == "succeeded"
 
 
-def test_many_cancels_at_once_stop_a_running_job_once(installation: Installation) -> None:
+def test_concurrent_cancels_stop_a_running_job_once(installation: Installation) -> None:
     path = installation.submit(sphere(100), json.dumps(LONG))
     wait_until(lambda: installation.status(path) == "running" and installation.horses())
     horses = installation.horses()
@@ -92,7 +92,7 @@ def test_a_deleted_job_leaves_no_file(installation: Installation) -> None:
     assert installation.files() == before
 
 
-def test_an_upload_that_breaks_off_leaves_nothing(installation: Installation) -> None:
+def test_an_interrupted_upload_leaves_no_file(installation: Installation) -> None:
     before = installation.files()
     address = urlsplit(installation.url)
     head = (
@@ -106,7 +106,7 @@ def test_an_upload_that_breaks_off_leaves_nothing(installation: Installation) ->
     wait_until(lambda: installation.files() == before)
 
 
-def test_a_large_upload_is_never_whole_in_memory(installation: Installation) -> None:
+def test_a_large_upload_is_not_held_in_memory(installation: Installation) -> None:
     def megabytes() -> Iterator[bytes]:
         yield b'--b\r\nContent-Disposition: form-data; name="mesh"\r\n\r\n'
         for _ in range(128):
@@ -123,7 +123,7 @@ def test_a_large_upload_is_never_whole_in_memory(installation: Installation) -> 
 
 
 def peak_bytes(pid: int) -> int:
-    """The most memory that a process has had at a time."""
+    """Return the peak resident memory of a process."""
     lines = Path(f"/proc/{pid}/status").read_text().splitlines()
     return next(1024 * int(line.split()[1]) for line in lines if line.startswith("VmHWM"))
 
@@ -137,14 +137,14 @@ def test_a_wiped_queue_loses_no_job(installation: Installation) -> None:
 
 
 @pytest.mark.parametrize("name", ["service.host.http_server", "worker.janitor"])
-def test_a_killed_process_is_replaced(installation: Installation, name: str) -> None:
+def test_a_killed_process_is_restarted(installation: Installation, name: str) -> None:
     (killed,) = installation.children(name)
     os.kill(killed, signal.SIGKILL)
     assert finished(installation, installation.submit(sphere(12)))["status"] == "succeeded"
     wait_until(lambda: installation.children(name) not in ([], [killed]))
 
 
-def test_a_hung_queue_server_holds_up_nobody_who_can_do_without(installation: Installation) -> None:
+def test_a_hung_queue_server_delays_no_request_that_does_not_need_it(installation: Installation) -> None:
     path = installation.submit(sphere(12))
     finished(installation, path)
     (server,) = installation.children("queue.sock")
@@ -153,7 +153,7 @@ def test_a_hung_queue_server_holds_up_nobody_who_can_do_without(installation: In
         refused = httpx.post(f"{installation.url}/v1/jobs", files={"mesh": ("a.off", sphere(12))}, timeout=30)
         assert refused.json()["code"] == "queue_unavailable"
         assert int(refused.headers["Retry-After"]) > 0
-        assert refused.elapsed.total_seconds() < 10  # two, where the machine has nothing else to do
+        assert refused.elapsed.total_seconds() < 10  # about 2 s on an idle machine
         assert installation.get(f"{path}/labels").status_code == 200
         assert installation.get("/healthz").status_code == 200
         assert installation.get("/readyz").status_code == 503

@@ -1,9 +1,9 @@
-"""Mesh files for the tests of the viewer."""
+"""Mesh files for the browser tests."""
 
 from helpers.files.written import mesh_bytes
 from segcore.shapes import burr
 
 
 def small_burr() -> bytes:
-    """A ball with six arms, 5120 faces, as PLY."""
+    """Return a ball with six arms and 5120 faces as a PLY file."""
     return mesh_bytes(burr(4).mesh, "ply")

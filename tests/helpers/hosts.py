@@ -1,4 +1,4 @@
-"""Several hosts on one machine: network namespaces on a bridge, whose cables can be pulled."""
+"""Several hosts on one machine: network namespaces on a bridge, which can be disconnected."""
 
 import os
 import shutil
@@ -11,13 +11,13 @@ from pathlib import Path
 from helpers.processes import children_of, is_alive
 from helpers.waiting import wait_until
 
-# One of the networks that RFC 2544 keeps for tests; another one for another run beside this one.
+# A network of the range that RFC 2544 reserves for tests, chosen by process id so that test runs do not collide.
 _NETWORK = f"198.{18 + os.getpid() // 256 % 2}.{os.getpid() % 256}"
 _HUB, _TESTER = f"{_NETWORK}.1", f"{_NETWORK}.254"
 
 
 def can_make_hosts() -> bool:
-    """Whether this user may make network namespaces here."""
+    """Whether this user can create network namespaces."""
     if os.geteuid() != 0 or shutil.which("ip") is None:
         return False
     name = f"cleave-{os.getpid()}"
@@ -28,7 +28,7 @@ def can_make_hosts() -> bool:
 
 
 class Host:
-    """A network namespace with a cable to the hub, a folder of its own and the processes that were started there."""
+    """A network namespace that is connected to the hub, with its own folder and processes."""
 
     def __init__(self, namespace: str, address: str, folder: Path) -> None:
         self.namespace = namespace
@@ -54,7 +54,7 @@ class Host:
         _ip("-n", self.namespace, "link", "set", "cable", "up")
 
     def tree(self) -> list[int]:
-        """The processes that run here, from those that were started down to their last children."""
+        """Return the living processes of this host and all their descendants."""
         found = [process.pid for process in self.processes]
         for pid in found:
             found += children_of(pid)
@@ -62,7 +62,7 @@ class Host:
 
 
 class Network:
-    """A hub and the hosts around it, and this process as a guest. As a context it is gone afterwards."""
+    """A hub with its hosts, to which this process is connected too. Leaving its context removes all of them."""
 
     def __init__(self) -> None:
         self._prefix = f"cleave-{os.getpid()}"
@@ -88,12 +88,12 @@ class Network:
         for host in self._hosts:
             for process in host.processes:
                 process.wait()
-            wait_until(lambda host=host: not _inhabitants(host.namespace), within_s=20)
+            wait_until(lambda host=host: not _processes_in(host.namespace), within_s=20)
             _ip("netns", "del", host.namespace)
         shutil.rmtree(self._folder)
 
     def add_host(self, name: str) -> Host:
-        """One more host, whose cable is plugged in."""
+        """Add a connected host."""
         host = self._add(name, f"{_NETWORK}.{len(self._hosts) + 10}")
         _ip(
             "link",
@@ -126,7 +126,7 @@ class Network:
         _ip("-n", self.hub.namespace, "link", "set", port, "up")
 
 
-def _inhabitants(namespace: str) -> list[str]:
+def _processes_in(namespace: str) -> list[str]:
     return subprocess.run(["ip", "netns", "pids", namespace], capture_output=True, text=True, check=True).stdout.split()
 
 

@@ -1,4 +1,4 @@
-"""A whole installation as a user starts it, and what a test does to it."""
+"""An installation that is started as a user starts it, and ways to submit to it, inspect it and stop it."""
 
 import json
 import os
@@ -19,11 +19,11 @@ from helpers.processes import children_of
 from helpers.waiting import wait_until
 
 _STARTED = re.compile(r"listening on +(http://\S+)")
-START_S = 120.0  # kernels may have to be compiled, on a busy machine
+START_S = 120.0  # kernels may have to be compiled on a busy machine; set by hand
 
 
 class Installation:
-    """`cleave serve` on a data folder of its own. As a context it is gone afterwards, processes and files."""
+    """`cleave serve` in its own data folder. Leaving its context kills its processes and removes its files."""
 
     settings: ClassVar = {
         "CLEAVE_LEASE_S": "5",
@@ -73,27 +73,27 @@ class Installation:
             return False
 
     def stop(self, number: signal.Signals = signal.SIGTERM) -> int:
-        """Ask it to stop as a user or an operator does; the exit status."""
+        """Stop the supervisor by a signal and return its exit status."""
         assert self.process is not None
         self.process.send_signal(number)
         return self.wait()
 
     def wait(self) -> int:
-        """Wait for its end; the exit status."""
+        """Wait for the end of the supervisor and return its exit status."""
         assert self.process is not None
         status = self.process.wait(60)
         self._close()
         return status
 
     def kill(self) -> None:
-        """Kill the supervisor alone; the rest is the kernel's business."""
+        """Kill the supervisor only; the kernel then kills the other processes."""
         if self.process is not None and self.process.poll() is None:
             self.process.kill()
             self.process.wait()
         self._close()
 
     def submit(self, mesh: bytes, parameters: str = "{}") -> str:
-        """The path of a new job, which is computed whatever was computed before."""
+        """Submit a mesh and return the path of its job, which never uses an earlier result."""
         answer = httpx.post(
             f"{self.url}/v1/jobs",
             files={"mesh": ("mesh.off", mesh)},
@@ -119,7 +119,7 @@ class Installation:
         return Redis.from_url(f"unix://{self.data_dir}/queue/queue.sock")
 
     def children(self, name: str) -> list[int]:
-        """The process ids of the supervisor's children whose command line holds a word."""
+        """Return the process ids of the children of the supervisor whose command line contains a text."""
         assert self.process is not None
         return [pid for pid in children_of(self.process.pid) if name in _command_line(pid)]
 
@@ -127,12 +127,12 @@ class Installation:
         return [horse for worker in self.children("worker.process") for horse in children_of(worker)]
 
     def processes(self) -> list[int]:
-        """Every process anywhere that belongs to this installation: its data folder is in their environment."""
+        """Return the process ids of this installation, which have its data folder in their environment."""
         mark = f"CLEAVE_DATA_DIR={self.data_dir}".encode()
         return [pid for pid in _all_processes() if mark in _environment(pid).split(b"\0")]
 
     def files(self) -> list[str]:
-        """The files of jobs and uploads, by their paths below the data folder."""
+        """Return the files of jobs and uploads, relative to the data folder."""
         folders = [self.data_dir / name for name in ("incoming", "jobs", "pending")]
         return sorted(str(path.relative_to(self.data_dir)) for folder in folders for path in folder.rglob("*"))
 
@@ -152,7 +152,7 @@ class Installation:
 
 
 class LoggingInstallation(Installation):
-    """One whose log is kept, as JSON."""
+    """An installation that writes a log in JSON."""
 
     settings = Installation.settings | {"CLEAVE_LOG_LEVEL": "info", "CLEAVE_LOG_FORMAT": "json"}
 
@@ -172,7 +172,7 @@ class LoggingInstallation(Installation):
         return self.data_dir / "log"
 
     def lines(self) -> list[dict[str, Any]]:
-        """Every line that is JSON: the queue server has a form of its own."""
+        """Return the log lines, without those of the queue server, which are not JSON."""
         return [json.loads(line) for line in self.log.read_text().splitlines() if line.startswith("{")]
 
 

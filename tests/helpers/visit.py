@@ -1,4 +1,4 @@
-"""What a person does in the viewer, and what they see."""
+"""Actions of a user in the viewer, and what the page shows."""
 
 import base64
 from collections.abc import Callable
@@ -7,7 +7,7 @@ from urllib.parse import parse_qs, urlsplit
 
 from playwright.sync_api import Page, Request
 
-MOST_BYTES = 2_000_000  # largest upload that the installation accepts
+MAX_UPLOAD_BYTES = 2_000_000  # that the installation of the browser tests accepts
 _DROP = """([name, content]) => {
   const bytes = Uint8Array.from(atob(content), (c) => c.charCodeAt(0));
   const transfer = new DataTransfer();
@@ -32,7 +32,7 @@ _PARTS = """(places) => {
 
 
 class Visit:
-    """One window. ``faults`` are errors that the page reported, ``foreign`` requests to other hosts."""
+    """A window. ``faults`` are errors that the page reported, ``foreign`` are requests to other hosts."""
 
     def __init__(self, page: Page, url: str) -> None:
         self.page = page
@@ -40,14 +40,14 @@ class Visit:
         self.faults: list[str] = []
         self.foreign: list[str] = []
         self.requests: list[str] = []
-        page.set_default_timeout(90_000)  # a busy machine may take long
+        page.set_default_timeout(90_000)  # for busy machines; set by hand
         page.on("console", lambda message: self.faults.append(message.text) if message.type == "error" else None)
         page.on("pageerror", lambda error: self.faults.append(str(error)))
         page.on("request", self._note)
 
     def _note(self, request: Request) -> None:
         if request.url.endswith("/icon.svg"):
-            return  # the browser asks for it again whenever the address changes
+            return  # the browser requests it again on every change of the address
         self.requests.append(request.url)
         if not request.url.startswith((self.url, "blob:", "data:")):
             self.foreign.append(request.url)
@@ -56,7 +56,7 @@ class Visit:
         self.page.goto(f"{self.url}/{fragment}")
 
     def open_job(self, job: str, state: str = "") -> None:
-        """Show a result as a link does."""
+        """Open the link of a result."""
         self.page.goto("about:blank")
         self.open(f"#job={job}{state}")
         self.wait_for_parts()
@@ -68,7 +68,7 @@ class Visit:
         self.page.evaluate(_DROP, [name, base64.b64encode(content).decode()])
 
     def set_range(self, name: str, value: int) -> None:
-        """Move a slider and let go."""
+        """Move a slider and release it."""
         self.page.evaluate(
             """([id, value]) => {
               const range = document.getElementById(id);
@@ -80,7 +80,7 @@ class Visit:
         )
 
     def grid(self, step: int = 40) -> list[tuple[float, float]]:
-        """Places all over the picture, in pixels of the window."""
+        """Return a grid of points in the picture, in pixels of the window."""
         box = self.page.locator("#viewer").bounding_box()
         assert box is not None
         columns = range(step // 2, int(box["width"]), step)
@@ -91,31 +91,31 @@ class Visit:
         return list(self.page.evaluate(_PARTS, places))
 
     def colors_at(self, places: list[tuple[float, float]]) -> list[list[int]]:
-        """Red, green, blue and opacity, 0..255."""
+        """Return red, green, blue and opacity, 0..255, at each point."""
         return list(self.page.evaluate(_COLORS, places))
 
     def place_of(self, part: int) -> tuple[float, float]:
-        """Somewhere well inside what is seen of a part."""
+        """Return a point near the centre of the visible area of a part."""
         places = self.grid(self.page.viewport_size["width"] // 60 if self.page.viewport_size else 16)
         parts = self.parts_at(places)
         inside = [place for place, found in zip(places, parts, strict=True) if found == part]
-        assert inside, f"part {part} is not seen"
+        assert inside, f"part {part} is not visible"
         middle = [sum(values) / len(inside) for values in zip(*inside, strict=True)]
         return min(inside, key=lambda place: (place[0] - middle[0]) ** 2 + (place[1] - middle[1]) ** 2)
 
     def settle(self) -> None:
-        """Wait until the page has followed the last change."""
+        """Wait until the page is drawn after the last change."""
         self.page.evaluate("() => new Promise((done) => requestAnimationFrame(() => requestAnimationFrame(done)))")
 
     def rest(self) -> None:
-        """Wait until the camera has come to rest and the address has followed."""
+        """Wait until the camera has stopped and the address is up to date."""
         before = None
         while (now := (self.viewer("JSON.stringify(v.view)"), self.page.url)) != before:
             before = now
             self.page.wait_for_timeout(800)
 
     def viewer(self, expression: str) -> Any:
-        """The value of an expression about the viewer ``v``."""
+        """Evaluate a JavaScript expression of the viewer ``v``."""
         return self.page.evaluate(f"() => {{ const v = document.getElementById('viewer'); return {expression}; }}")
 
     def parts(self) -> list[int]:
@@ -125,11 +125,11 @@ class Visit:
         return list(self.viewer("[...v.selected]"))
 
     def rows(self) -> list[str]:
-        """What the rows of the tree say."""
+        """Return the names in the rows of the tree."""
         return self.page.locator("#tree .name:not(.is-group)").all_inner_texts()
 
     def address(self, holding: str = "") -> dict[str, str]:
-        """What the address says, once it holds a text."""
+        """Wait until the address contains a text, and return the values of its fragment."""
         self.page.wait_for_function("(text) => location.hash.includes(text)", arg=holding)
         values = parse_qs(urlsplit(self.page.url).fragment)
         return {name: found[0] for name, found in values.items()}

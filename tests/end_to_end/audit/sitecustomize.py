@@ -1,4 +1,4 @@
-"""Every Python process that has this on its path notes which files it opens and whom it connects to."""
+"""Logs the files that a Python process opens and the addresses that it connects to, by an audit hook."""
 
 import os
 import sys

@@ -1,4 +1,4 @@
-"""The queue server that comes along: found, reachable by a short path, and private."""
+"""The embedded queue server: its binary, its socket, and its persistence."""
 
 import os
 import stat
@@ -12,7 +12,7 @@ from service.host import queue_server
 from service.host.queue_server import NoQueueServer, embedded_queue_server, find_server_binary, socket_path, stop_orphan
 
 
-def test_without_a_binary_the_error_says_what_to_set(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
+def test_the_error_of_a_missing_binary_names_the_setting(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
     monkeypatch.setattr(queue_server, "_packaged_binary", lambda: None)
     monkeypatch.setenv("PATH", str(tmp_path))
     with pytest.raises(NoQueueServer, match="CLEAVE_REDIS_URL"):
@@ -56,14 +56,14 @@ def test_the_server_keeps_its_queue_over_a_kill_and_listens_on_no_network(tmp_pa
             process.kill()
     assert (settings["port"], settings["maxmemory-policy"], settings["appendonly"]) == ("0", "noeviction", "yes")
     assert not server.is_answering()
-    server.clear_away()
+    server.remove_socket()
 
 
-def test_a_server_that_was_left_behind_is_ended_first(tmp_path: Path) -> None:
+def test_an_orphaned_server_is_stopped_first(tmp_path: Path) -> None:
     server = embedded_queue_server(tmp_path)
     stop_orphan(server)
     with subprocess.Popen(server.command) as process:
         wait_until(server.is_answering)
         stop_orphan(server)
         assert process.wait(30) == 0
-    server.clear_away()
+    server.remove_socket()

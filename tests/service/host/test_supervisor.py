@@ -1,4 +1,4 @@
-"""The supervisor: what dies is started again, what shall end ends, and one supervisor has a data folder."""
+"""The supervisor restarts programs that end, stops all of them on a signal, and locks the data folder."""
 
 import signal
 import subprocess
@@ -15,7 +15,7 @@ from service.host.supervisor import DataInUse, lock_data
 
 
 def supervise(tmp_path: Path, *programs: str) -> "subprocess.Popen[bytes]":
-    """A process that supervises Python programs, each given by its source."""
+    """Start a process that supervises Python programs, each given by its source."""
     sources = []
     for number, source in enumerate(programs):
         path = tmp_path / f"program{number}.py"
@@ -35,7 +35,7 @@ FOREVER = "import time\ntime.sleep(1000)"
 STUBBORN = "import signal, time\nsignal.signal(signal.SIGTERM, signal.SIG_IGN)\ntime.sleep(1000)"
 
 
-def test_a_program_that_dies_is_started_again_after_growing_pauses(tmp_path: Path) -> None:
+def test_a_program_that_ends_is_restarted_after_growing_delays(tmp_path: Path) -> None:
     starts = tmp_path / "starts"
     began_at = time.monotonic()
     with supervise(tmp_path, f"print('start', file=open({str(starts)!r}, 'a'))") as supervisor:
@@ -46,7 +46,7 @@ def test_a_program_that_dies_is_started_again_after_growing_pauses(tmp_path: Pat
 
 
 @pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM])
-def test_a_signal_ends_all_programs_also_stubborn_ones(tmp_path: Path, number: signal.Signals) -> None:
+def test_a_signal_stops_all_programs_even_if_they_ignore_it(tmp_path: Path, number: signal.Signals) -> None:
     with supervise(tmp_path, FOREVER, STUBBORN) as supervisor:
         wait_until(lambda: len(children_of(supervisor.pid)) == 2)
         children = children_of(supervisor.pid)
@@ -55,7 +55,7 @@ def test_a_signal_ends_all_programs_also_stubborn_ones(tmp_path: Path, number: s
     assert not any(is_alive(child) for child in children)
 
 
-def test_a_killed_supervisor_takes_its_programs_along(tmp_path: Path) -> None:
+def test_the_programs_of_a_killed_supervisor_are_killed(tmp_path: Path) -> None:
     with supervise(tmp_path, FOREVER, STUBBORN) as supervisor:
         wait_until(lambda: len(children_of(supervisor.pid)) == 2)
         children = children_of(supervisor.pid)
@@ -63,7 +63,7 @@ def test_a_killed_supervisor_takes_its_programs_along(tmp_path: Path) -> None:
     wait_until(lambda: not any(is_alive(child) for child in children), within_s=10)
 
 
-def test_a_data_folder_has_one_holder_at_a_time(tmp_path: Path) -> None:
+def test_a_data_folder_is_locked_by_one_process_at_a_time(tmp_path: Path) -> None:
     data_dir = tmp_path / "data"
     with lock_data(data_dir), pytest.raises(DataInUse, match=str(data_dir)):
         lock_data(data_dir)

@@ -1,4 +1,4 @@
-"""`cleave submit`: results in a folder, no job twice, and an exit status for scripts."""
+"""`cleave submit`: results are saved in a folder, no job is run twice, and the exit status reports failures."""
 
 import json
 from pathlib import Path
@@ -34,7 +34,7 @@ def test_every_file_gets_its_results(
     assert "ball10.off: 3 segments" in printed.err
 
 
-def test_a_granularity_can_replace_a_number_of_segments(
+def test_a_granularity_can_be_given_instead_of_a_number(
     url: str, meshes: list[Path], tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
     assert submit(url, meshes[:1], tmp_path / "out", "--granularity", "1", "--results", "seg,json") == 0
@@ -43,7 +43,7 @@ def test_a_granularity_can_replace_a_number_of_segments(
     assert "ball10.off: granularity 1" in capsys.readouterr().err
 
 
-def test_a_second_run_continues_after_an_interrupted_first(url: str, meshes: list[Path], tmp_path: Path) -> None:
+def test_a_second_run_resumes_the_first(url: str, meshes: list[Path], tmp_path: Path) -> None:
     assert submit(url, meshes, tmp_path, "--results", "seg,png") == 0
     (tmp_path / "ball11.png").unlink()
     kept = (tmp_path / "ball10.seg").stat()
@@ -65,7 +65,7 @@ def test_deleted_jobs_are_submitted_again(url: str, meshes: list[Path], tmp_path
     assert submit(url, meshes, tmp_path / "second") == 0
 
 
-def test_a_failure_does_not_affect_the_other_files(
+def test_a_failed_file_does_not_stop_the_others(
     url: str, meshes: list[Path], tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
     bad = tmp_path / "bad.off"
@@ -77,7 +77,7 @@ def test_a_failure_does_not_affect_the_other_files(
     assert (tmp_path / "out" / "ball11.glb").exists()
 
 
-def test_wrong_arguments_are_reported_at_once(
+def test_errors_of_the_arguments_are_reported_before_anything_is_sent(
     url: str, meshes: list[Path], tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
     assert submit(url, [tmp_path / "missing.off"], tmp_path) == 2

@@ -1,4 +1,4 @@
-"""What is told to Prometheus: the state of the store and the queue, and what all workers have done together."""
+"""Metrics that all services share: of the store, the queue and the workers."""
 
 from datetime import timedelta
 
@@ -16,7 +16,7 @@ from worker.jobs.store.store import JobStore
 from worker.process.perform import perform
 
 
-def test_running_jobs_are_told_by_their_stage(client: httpx.Client, queue: JobQueue) -> None:
+def test_running_jobs_are_counted_by_their_stage(client: httpx.Client, queue: JobQueue) -> None:
     first, second = (submit(client).rpartition("/")[2] for _ in range(2))
     for job_id in (first, second):
         queue.take(job_id, "worker", lease_s=30)
@@ -33,17 +33,17 @@ def test_the_age_of_a_queue_is_that_of_its_next_job(client: httpx.Client, queue:
     assert queue.ages_s(now() - timedelta(hours=1))[SMALL] == 0
 
 
-def test_what_workers_have_done_is_told_by_every_service(
+def test_every_service_reports_the_counters_of_the_workers(
     client: httpx.Client, queue: JobQueue, store: JobStore, settings: Settings
 ) -> None:
     job_id = submit(client).rpartition("/")[2]
     work = perform(store, settings, job_id, lambda *_: None)
     assert work is not None
-    tallies = JobCounters(queue.connection)
-    tallies.job_ended(work.job, work.outcome, work.stage_seconds)
-    tallies.attempt_lost("worker_lost")
-    tallies.job_recovered()
-    tallies.store_failed("worker")
+    counters = JobCounters(queue.connection)
+    counters.job_ended(work.job, work.outcome, work.stage_seconds)
+    counters.attempt_lost("worker_lost")
+    counters.job_recovered()
+    counters.store_failed("worker")
     found = samples(client)
     assert found['cleave_jobs_finished_total{code="",status="succeeded"}'] == 1
     assert found["cleave_faces_total"] == 4 * 12 * 11
@@ -59,7 +59,7 @@ def test_what_workers_have_done_is_told_by_every_service(
         assert buckets == sorted(buckets)
 
 
-def test_a_store_that_fails_is_told_and_the_rest_still_is(
+def test_a_store_that_fails_is_reported_and_the_other_metrics_remain(
     client: httpx.Client, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     def fail(*_: object) -> None:
@@ -73,7 +73,7 @@ def test_a_store_that_fails_is_told_and_the_rest_still_is(
     assert found['cleave_store_errors_total{process="service"}'] == 2
 
 
-def test_a_job_is_canceled_once_however_often_that_is_asked_for(client: httpx.Client) -> None:
+def test_repeated_cancels_of_a_job_count_once(client: httpx.Client) -> None:
     path = submit(client)
     for _ in range(2):
         client.post(f"{path}/cancel")

@@ -1,4 +1,4 @@
-"""A request in the log, the metrics and its trace."""
+"""A request is recorded in the log, in the metrics and in its trace."""
 
 import json
 import logging
@@ -23,7 +23,7 @@ TRACE_ID = PARENT.split("-")[1]
 
 @pytest.fixture
 def logged(monkeypatch: pytest.MonkeyPatch) -> list[dict[str, Any]]:
-    """What the application logs, as the objects that it would write."""
+    """The lines that the application logs as JSON."""
     documents: list[dict[str, Any]] = []
 
     class Collector(logging.Handler):
@@ -38,12 +38,12 @@ def logged(monkeypatch: pytest.MonkeyPatch) -> list[dict[str, Any]]:
 
 
 def lines_of(logged: list[dict[str, Any]], route: str, count: int) -> list[dict[str, Any]]:
-    """The lines of the requests of a route, which come a moment after their answers."""
+    """Wait for the lines of the requests of a route, which are logged shortly after their responses."""
     wait_until(lambda: sum(line.get("route") == route for line in logged) >= count)
     return [line for line in logged if line.get("route") == route]
 
 
-def test_the_trace_of_a_client_goes_into_the_job_the_answer_and_the_log(
+def test_the_trace_of_a_client_is_in_the_job_the_response_and_the_log(
     client: httpx.Client, store: JobStore, logged: list[dict[str, Any]]
 ) -> None:
     answer = client.post("/v1/jobs", content=sphere(12), headers={"traceparent": PARENT, "Content-Type": "model/off"})
@@ -59,23 +59,23 @@ def test_the_trace_of_a_client_goes_into_the_job_the_answer_and_the_log(
     assert {(line["job_id"], line["trace_id"]) for line in logged} == {(job_id, TRACE_ID)}
 
 
-def test_a_request_without_a_trace_begins_one_and_each_its_own(client: httpx.Client) -> None:
+def test_each_request_without_a_valid_trace_starts_its_own(client: httpx.Client) -> None:
     traces = [client.get("/healthz").headers["traceparent"] for _ in range(2)]
     assert len({trace.split("-")[1] for trace in traces}) == 2
     forged = client.get("/healthz", headers={"traceparent": "00-nonsense"}).headers["traceparent"]
     assert parse_traceparent(forged) is not None
 
 
-def test_what_asks_for_a_job_is_logged_about_it(client: httpx.Client, logged: list[dict[str, Any]]) -> None:
+def test_requests_for_a_job_are_logged_with_its_id(client: httpx.Client, logged: list[dict[str, Any]]) -> None:
     path = submit(client)
     client.get(path)
     client.head(path)
-    asked = lines_of(logged, "/v1/jobs/{job_id}", 2)
-    assert [line["method"] for line in asked] == ["GET", "GET"]  # a HEAD is answered as the GET that it stands for
-    assert {(line["job_id"], line["level"]) for line in asked} == {(path.rpartition("/")[2], "debug")}
+    lines = lines_of(logged, "/v1/jobs/{job_id}", 2)
+    assert [line["method"] for line in lines] == ["GET", "GET"]  # HEAD is handled as GET
+    assert {(line["job_id"], line["level"]) for line in lines} == {(path.rpartition("/")[2], "debug")}
 
 
-def test_an_internal_error_is_answered_counted_and_logged_under_the_trace(
+def test_an_internal_error_is_counted_and_logged_with_its_trace(
     client: httpx.Client, logged: list[dict[str, Any]], monkeypatch: pytest.MonkeyPatch
 ) -> None:
     def fail(*_: object) -> None:
@@ -94,7 +94,7 @@ def test_an_internal_error_is_answered_counted_and_logged_under_the_trace(
     assert 'status="500"' in client.get("/metrics").text
 
 
-def test_made_up_methods_and_paths_do_not_make_the_metrics_grow(client: httpx.Client) -> None:
+def test_unknown_methods_and_paths_do_not_add_labels_to_the_metrics(client: httpx.Client) -> None:
     client.request("GET", "/healthz")
     before = client.get("/metrics").text.count("cleave_requests_total{")
     for number in range(5):
@@ -103,7 +103,7 @@ def test_made_up_methods_and_paths_do_not_make_the_metrics_grow(client: httpx.Cl
     assert client.get("/metrics").text.count("cleave_requests_total{") - before <= 3
 
 
-def test_a_job_that_the_queue_does_not_take_is_told(
+def test_a_job_that_cannot_be_enqueued_is_logged(
     client: httpx.Client, logged: list[dict[str, Any]], monkeypatch: pytest.MonkeyPatch
 ) -> None:
     def fail(*_: object, **__: object) -> Callable[[], None]:

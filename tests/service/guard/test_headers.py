@@ -1,28 +1,15 @@
-"""Every page and every answer, also of an error, says what a browser may do with it."""
+"""Every response has security headers, also errors; HEAD is answered as GET without a body."""
 
-import json
-import socket
 from collections.abc import Callable
 
 import httpx
 import pytest
 
 from cleave.settings import Settings
+from helpers.api import UNKNOWN, submit
+from helpers.security_headers import check_security_headers
 from helpers.servers import serving
 from worker.jobs.store.records import Records
-
-POLICY = ("form-action 'self'", "base-uri 'none'", "frame-ancestors 'none'")
-
-
-def check(answer: httpx.Response) -> None:
-    policy = answer.headers["Content-Security-Policy"]
-    assert policy.startswith(("default-src 'self'", "default-src 'none'")), answer.request.url
-    assert all(part in policy for part in POLICY)
-    assert "unsafe" not in policy
-    assert "http" not in policy
-    assert answer.headers["X-Content-Type-Options"] == "nosniff"
-    assert answer.headers["Referrer-Policy"] == "no-referrer"
-    assert answer.headers["Cross-Origin-Opener-Policy"] == "same-origin"
 
 
 def test_every_operation_and_every_page_has_security_headers(
@@ -33,10 +20,18 @@ def test_every_operation_and_every_page_has_security_headers(
     known = {path.replace("{job_id}", job_id) for path, operations in paths.items() if "get" in operations}
     assert len(known) > 15
     for path in sorted(known | {"/", "/docs", "/viewer/page.js", "/nowhere", f"/v1/jobs/{'0' * 32}", "/v1/jobs/%00"}):
-        check(client.get(path, params={"limit": 5} if path.endswith("jobs") else None))
+        check_security_headers(client.get(path, params={"limit": 5} if path.endswith("jobs") else None))
 
 
-def test_refusals_have_them_too(client: httpx.Client) -> None:
+def test_the_policy_allows_only_this_server(client: httpx.Client) -> None:
+    for path in ("/v1/formats", UNKNOWN, "/nowhere", "/openapi.json"):
+        headers = client.get(path).headers
+        assert headers["X-Content-Type-Options"] == "nosniff"
+        assert "default-src 'self'" in headers["Content-Security-Policy"]
+        assert "unsafe" not in headers["Content-Security-Policy"]
+
+
+def test_refused_requests_have_security_headers(client: httpx.Client) -> None:
     for answer in (
         client.put("/v1/jobs"),
         client.options("/v1/jobs"),
@@ -47,47 +42,42 @@ def test_refusals_have_them_too(client: httpx.Client) -> None:
         client.get("/" + "x" * 5000),
     ):
         assert answer.status_code >= 200
-        check(answer)
+        check_security_headers(answer)
 
 
-def test_an_error_that_nobody_expects_has_them_too(client: httpx.Client, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_an_internal_error_has_security_headers(client: httpx.Client, monkeypatch: pytest.MonkeyPatch) -> None:
     def fail(*_: object) -> None:
         raise ZeroDivisionError
 
     monkeypatch.setattr(Records, "job", fail)
     answer = client.get(f"/v1/jobs/{'0' * 32}")
     assert (answer.status_code, answer.json()["code"]) == (500, "internal_error")
-    check(answer)
+    check_security_headers(answer)
 
 
-def test_without_a_queue_they_stay(client_without_queue: httpx.Client) -> None:
+def test_responses_have_security_headers_while_the_queue_is_down(client_without_queue: httpx.Client) -> None:
     for path in ("/readyz", "/healthz", "/metrics"):
-        check(client_without_queue.get(path))
+        check_security_headers(client_without_queue.get(path))
     refused = client_without_queue.post("/v1/jobs", content=b"x", headers={"Content-Type": "model/stl"})
     assert refused.status_code == 503
     assert int(refused.headers["Retry-After"]) > 0
-    check(refused)
+    check_security_headers(refused)
 
 
-def test_a_full_queue_says_when_to_come_again(settings: Settings) -> None:
+def test_the_response_of_a_full_queue_has_security_headers_and_retry_after(settings: Settings) -> None:
     with serving(settings.model_copy(update={"max_queued_jobs": 1})) as client:
         stl = {"Content-Type": "model/stl"}
         assert client.post("/v1/jobs", content=b"x", headers=stl).status_code == 202
         refused = client.post("/v1/jobs", content=b"y", headers=stl)
         assert (refused.status_code, refused.json()["code"]) == (429, "queue_full")
         assert int(refused.headers["Retry-After"]) > 0
-        check(refused)
+        check_security_headers(refused)
 
 
-@pytest.mark.parametrize(
-    "sent", [b"GARBAGE\r\n\r\n", b"GET / HTTP/1.1\r\nHost: a\r\nHost: b\r\n\r\n", b"\x16\x03\x01\x02\r\n\r\n"]
-)
-def test_what_is_no_http_is_told_so_with_them(client: httpx.Client, sent: bytes) -> None:
-    address = (str(client.base_url.host), int(str(client.base_url.port)))
-    with socket.create_connection(address) as connection, connection.makefile("rb") as answer:
-        connection.sendall(sent)
-        head, _, body = answer.read().partition(b"\r\n\r\n")
-    assert head.startswith(b"HTTP/1.1 400 ")
-    assert json.loads(body)["code"] == "malformed_request"
-    headers = dict(line.split(": ", 1) for line in head.decode().splitlines()[1:])
-    check(httpx.Response(400, headers=headers, request=httpx.Request("GET", client.base_url)))
+def test_head_is_get_without_the_body(client: httpx.Client) -> None:
+    path = submit(client)
+    for url in (path, "/openapi.json", "/nowhere"):
+        whole, head = client.get(url), client.head(url)
+        assert head.content == b""
+        assert head.status_code == whole.status_code
+        assert head.headers["Content-Length"] == whole.headers["Content-Length"]

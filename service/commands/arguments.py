@@ -1,0 +1,93 @@
+"""Arguments that several commands share. The arguments for output files are in :mod:`service.commands.outputs`."""
+
+import argparse
+from collections.abc import Callable
+from contextlib import suppress
+from pathlib import Path
+
+from cleave.settings import Settings
+
+
+def add_level(parser: argparse.ArgumentParser, default: str) -> None:
+    """Add ``--segments`` and ``--granularity``; ``default`` describes the number of segments if neither is given."""
+    group = parser.add_mutually_exclusive_group()
+    group.add_argument("--segments", type=int, metavar="K", help=f"number of segments ({default})")
+    group.add_argument(
+        "--granularity",
+        type=_granularity,
+        metavar="G",
+        help="instead of a number: 0 coarse (one segment), 0.5 automatic, 1 fine (as many as possible)",
+    )
+
+
+def add_parameters(parser: argparse.ArgumentParser, example: str) -> None:
+    """Add ``--set``, which collects pairs of a name and a value in ``parameters``."""
+    parser.add_argument(
+        "--set",
+        type=_parameter,
+        action="append",
+        default=[],
+        dest="parameters",
+        metavar="NAME=VALUE",
+        help=f"a parameter of the method, such as {example}; can be repeated",
+    )
+
+
+def add_data_dir(parser: argparse.ArgumentParser) -> None:
+    parser.add_argument("--data-dir", type=Path, metavar="DIR", help="the data folder, instead of CLEAVE_DATA_DIR")
+
+
+def add_workers(parser: argparse.ArgumentParser, least: int) -> None:
+    """Add ``--workers``, which must be at least ``least``."""
+    parser.add_argument(
+        "--workers",
+        type=_at_least(least),
+        metavar="N",
+        help="jobs at a time (one less than cores, but at least one small and one large job)",
+    )
+
+
+def add_settings_help(parser: argparse.ArgumentParser) -> None:
+    """List the settings below the arguments in the help of a command."""
+    rows = [(f"CLEAVE_{name.upper()}", field.description or "") for name, field in Settings.model_fields.items()]
+    parser.formatter_class = argparse.RawDescriptionHelpFormatter
+    parser.epilog = "settings from the environment:\n" + "\n".join(f"  {name:<26} {text}" for name, text in rows)
+
+
+def port(text: str) -> int:
+    """The type of an argument that is a TCP port."""
+    number = int(text)
+    if not 0 <= number <= 65535:
+        raise argparse.ArgumentTypeError("a port is a number from 0 to 65535")
+    return number
+
+
+def _granularity(text: str) -> float:
+    try:
+        number = float(text)
+    except ValueError:
+        number = -1.0
+    if not 0.0 <= number <= 1.0:
+        raise argparse.ArgumentTypeError(f"a granularity is a number from 0 (coarse) to 1 (fine), not {text!r}")
+    return number
+
+
+def _parameter(text: str) -> tuple[str, object]:
+    """Split NAME=VALUE; the value is converted to a number if possible."""
+    name, equals, value = text.partition("=")
+    if not name or not equals:
+        raise argparse.ArgumentTypeError(f"a parameter is NAME=VALUE, not {text!r}")
+    for number in (int, float):
+        with suppress(ValueError):
+            return name, number(value)
+    return name, value
+
+
+def _at_least(least: int) -> Callable[[str], int]:
+    def number(text: str) -> int:
+        value = int(text)
+        if value < least:
+            raise argparse.ArgumentTypeError(f"must be at least {least}")
+        return value
+
+    return number

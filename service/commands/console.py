@@ -1,0 +1,98 @@
+"""Output on a terminal: lines of text, a progress bar, and a board of progress bars."""
+
+import threading
+from types import TracebackType
+from typing import TextIO
+
+_BAR_WIDTH, _BOARD_BAR_WIDTH = 30, 20  # characters; with its percentage and stage, either fits on a line of 80
+_NAME_WIDTH = 24  # of a name on the board; longer names are cut
+
+
+def say(text: str) -> None:
+    """Print text at once, also if the standard output is a pipe."""
+    print(text, flush=True)
+
+
+class ProgressBar:
+    """Draws the progress of one task as an ``on_progress`` callback.
+
+    It writes nothing if the output is not a terminal. Leaving its context clears the line.
+    """
+
+    def __init__(self, terminal: TextIO) -> None:
+        self._terminal = terminal if terminal.isatty() else None
+        self._shown = ""
+
+    def __enter__(self) -> "ProgressBar":
+        return self
+
+    def __exit__(
+        self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
+    ) -> None:
+        self._show("")
+
+    def __call__(self, stage: str, fraction: float) -> None:
+        self._show(f"{_bar(fraction, _BAR_WIDTH)}  {stage}")
+
+    def _show(self, text: str) -> None:
+        if self._terminal is None or text == self._shown:
+            return
+        self._terminal.write("\r" + text.ljust(len(self._shown)) + ("" if text else "\r"))
+        self._terminal.flush()
+        self._shown = text
+
+
+class ProgressBoard:
+    """Draws a progress bar for each running task, and a line for each task that has ended.
+
+    It writes only the lines if the output is not a terminal. Leaving its context clears the bars. Threads may share it.
+    """
+
+    def __init__(self, output: TextIO) -> None:
+        self._output = output
+        self._is_terminal = output.isatty()
+        self._bars: dict[str, tuple[str, float]] = {}
+        self._drawn = 0
+        self._lock = threading.Lock()
+
+    def __enter__(self) -> "ProgressBoard":
+        return self
+
+    def __exit__(
+        self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
+    ) -> None:
+        with self._lock:
+            self._bars.clear()
+            self._draw()
+
+    def show(self, name: str, stage: str, fraction: float) -> None:
+        """Draw the bar of a task."""
+        with self._lock:
+            self._bars[name] = (stage, fraction)
+            self._draw()
+
+    def finish(self, name: str, sentence: str) -> None:
+        """Replace the bar of a task by a line."""
+        with self._lock:
+            self._bars.pop(name, None)
+            self._draw(f"{name}: {sentence}\n")
+
+    def _draw(self, line: str = "") -> None:
+        if not self._is_terminal:
+            self._output.write(line)
+            self._output.flush()
+            return
+        # Move the cursor up to the first bar and clear everything below it, then write the line and the bars again.
+        up = f"\x1b[{self._drawn}F" if self._drawn else ""
+        bars = "".join(
+            f"{name[:_NAME_WIDTH]:{_NAME_WIDTH}} {_bar(fraction, _BOARD_BAR_WIDTH)} {stage}\n"
+            for name, (stage, fraction) in self._bars.items()
+        )
+        self._output.write(f"{up}\x1b[J{line}{bars}")
+        self._output.flush()
+        self._drawn = len(self._bars)
+
+
+def _bar(fraction: float, width: int) -> str:
+    done = round(width * fraction)
+    return f"[{'#' * done}{'.' * (width - done)}] {fraction:4.0%}"

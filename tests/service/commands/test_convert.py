@@ -1,0 +1,39 @@
+"""`cleave convert` and `cleave inspect`: files that cannot be used are one line and exit status 2."""
+
+from pathlib import Path
+
+import pytest
+
+from service.commands.main import main
+
+
+@pytest.mark.parametrize(
+    ("arguments", "sentence"),
+    [
+        (["convert", "ball.off", "-o", "a.ply"], "This is not a .cleave file"),
+        (["convert", "none.cleave", "-o", "a.ply"], "none.cleave: No such file or directory."),
+        (["convert", "ball.cleave", "-o", "a.ply", "--segments", "9999"], "from 1 to"),
+        (["convert", "ball.cleave", "-o", "a.dae"], "'a.dae' must end in one of .glb"),
+        (["convert", "ball.cleave", "-o", "no/a.ply"], "no: There is no such folder."),
+        (["convert", "ball.cleave"], "-o/--output"),
+        (["inspect", "none.off"], "none.off: No such file or directory."),
+        (["inspect", "ball.cleave"], "cleave convert"),
+    ],
+)
+def test_an_expected_error_is_one_line_and_status_2(
+    ball: Path,
+    monkeypatch: pytest.MonkeyPatch,
+    capsys: pytest.CaptureFixture[str],
+    arguments: list[str],
+    sentence: str,
+) -> None:
+    monkeypatch.chdir(ball)
+    try:
+        status = main(arguments)
+    except SystemExit as exit_of_the_parser:
+        status = int(str(exit_of_the_parser.code))
+    output, errors = capsys.readouterr()
+    assert (status, output, errors.count("\n")) == (2, "", 1)
+    assert errors.startswith("cleave: ")
+    assert sentence in errors
+    assert not (ball / "a.ply").exists()

@@ -1,0 +1,44 @@
+"""`cleave inspect`: the report of a mesh file as text and as JSON."""
+
+import json
+from pathlib import Path
+
+import pytest
+
+import segcore
+from segcore.report import mesh_report
+from service.commands.main import main
+
+
+def test_the_json_output_is_the_report(ball: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    assert main(["inspect", "--json", str(ball / "ball.off")]) == 0
+    document = json.loads(capsys.readouterr().out)
+    report = mesh_report(segcore.read_mesh(ball / "ball.off"))
+    assert document["faces"] == report.faces
+    assert document["lower"] == list(report.lower)
+    assert document["volume"] == report.volume
+
+
+def test_the_text_lists_every_kind_of_defect(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    path = tmp_path / "odd.obj"
+    vertices = "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nv 1 1 0\nv 9 9 9\n"
+    path.write_text(f"{vertices}o sheet\nf 1 2 3 4\nf 3 2 1\nf 5 3 1\n")
+    assert main(["inspect", str(path)]) == 0
+    assert capsys.readouterr().out.splitlines() == [
+        "odd.obj: 4 faces, 6 vertices, 3 polygons",
+        "size 1 x 1 x 0, area 1",
+        "1 component, not closed",
+        "4 border edges, with a face on one side only",
+        "1 duplicate face, with the corners of an earlier one",
+        "1 degenerate face, with two corners at one place",
+        "1 welded vertex, at the same place as another one",
+        "1 unused vertex, which no face has",
+        "1 group: sheet",
+    ]
+
+
+def test_the_text_lists_no_defect_of_a_ball(ball: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    assert main(["inspect", str(ball / "ball.off")]) == 0
+    lines = capsys.readouterr().out.splitlines()
+    assert lines[2:] == ["1 component, closed"]
+    assert ", volume " in lines[1]

@@ -1,0 +1,53 @@
+"""Outputs of the commands: every format of WRITERS by its extension, with its options."""
+
+import io
+import zipfile
+from pathlib import Path
+
+import numpy as np
+import pytest
+import trimesh
+
+from segcore.io.result import read_result
+from segcore.io.writing import WRITERS
+from service.commands.main import main
+
+
+@pytest.mark.parametrize("command", ["segment", "convert"])
+def test_the_help_lists_the_extensions_of_the_writers(command: str, capsys: pytest.CaptureFixture[str]) -> None:
+    with pytest.raises(SystemExit):
+        main([command, "--help"])
+    words = capsys.readouterr().out.split()
+    first = words.index(".glb")
+    listed = [word.rstrip(";") for word in words[first : first + len(WRITERS)]]
+    assert listed == [writer.extension for writer in WRITERS.values()]
+
+
+@pytest.mark.parametrize("kind", WRITERS)
+def test_a_result_is_converted_to_what_segment_would_have_written(ball: Path, tmp_path: Path, kind: str) -> None:
+    extension = WRITERS[kind].extension
+    converted, direct = tmp_path / f"converted{extension}", tmp_path / f"direct{extension}"
+    assert main(["convert", str(ball / "ball.cleave"), "--segments", "9", "-o", str(converted)]) == 0
+    assert main(["segment", str(ball / "ball.off"), "--segments", "9", "-o", str(direct)]) == 0
+    assert converted.read_bytes() == direct.read_bytes()
+    opened, target = read_result(ball / "ball.cleave"), io.BytesIO()
+    WRITERS[kind].write(target, opened.mesh, opened.hierarchy, 9)
+    assert converted.read_bytes() == target.getvalue()
+
+
+def test_several_outputs_at_once_and_the_options_of_formats(
+    ball: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    glb, archive, labels = (tmp_path / name for name in ("ball.glb", "parts.zip", "ball.npy"))
+    outputs = ["-o", str(glb), "-o", str(archive), "-o", str(labels)]
+    options = ["--all-levels", "--features", "--capped", "--parts", "obj"]
+    assert main(["convert", str(ball / "ball.cleave"), "--segments", "4", *outputs, *options]) == 0
+    assert all(word in glb.read_bytes() for word in (b"KHR_materials_variants", b"EXT_structural_metadata"))
+    with zipfile.ZipFile(archive) as parts:
+        assert parts.namelist() == [f"segment_{k}.obj" for k in range(4)]
+        for name in parts.namelist():
+            assert trimesh.load(io.BytesIO(parts.read(name)), file_type="obj").is_watertight
+    hierarchy = read_result(ball / "ball.cleave").hierarchy
+    assert np.load(labels).tolist() == hierarchy.labels(4).tolist()
+    expected = [f"4 segments, as requested; 1 to {hierarchy.max_segments} are possible"]
+    assert capsys.readouterr().out.splitlines() == expected + [f"wrote {path}" for path in (glb, archive, labels)]

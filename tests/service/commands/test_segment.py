@@ -1,0 +1,71 @@
+"""`cleave segment`: the summary and the outputs are those of the library."""
+
+import json
+import os
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+import segcore
+from segcore.io.result import read_result
+from service.commands.main import main
+
+
+def test_the_summary_has_the_number_of_faces_and_segments(mesh: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    assert main(["segment", str(mesh)]) == 0
+    output, errors = capsys.readouterr()
+    automatic = segcore.segment(segcore.read_mesh(mesh)).automatic_segments
+    assert output.startswith(f"ball.off: {4 * 12 * 11} faces, ")
+    assert f"\n{automatic} segments, chosen automatically; 1 to " in output
+    assert errors == ""
+
+
+def test_every_output_is_of_the_same_segmentation(mesh: Path, tmp_path: Path) -> None:
+    paths = {name: tmp_path / name for name in ("parts.glb", "labels.seg", "tree.json", "ball.cleave")}
+    outputs = ["-o", paths["parts.glb"], "--labels", paths["labels.seg"], "--hierarchy", paths["tree.json"]]
+    arguments = ["segment", mesh, "--segments", 5, *outputs, "--result", paths["ball.cleave"]]
+    assert main([str(argument) for argument in arguments]) == 0
+    expected = segcore.segment(segcore.read_mesh(mesh)).labels(5).tolist()
+    assert [int(line) for line in paths["labels.seg"].read_text().split()] == expected
+    assert read_result(paths["ball.cleave"]).hierarchy.labels(5).tolist() == expected
+    assert b"segment 4" in paths["parts.glb"].read_bytes()
+    assert len(json.loads(paths["tree.json"].read_text())["nodes"]) > 5
+
+
+def test_a_granularity_can_be_given_instead_of_a_number(
+    mesh: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    expected = segcore.segment(segcore.read_mesh(mesh))
+    direct, converted, result = tmp_path / "direct.seg", tmp_path / "converted.seg", tmp_path / "ball.cleave"
+    outputs = ["-o", str(direct), "--result", str(result)]
+    assert main(["segment", str(mesh), "--granularity", "0.7", *outputs]) == 0
+    assert main(["convert", str(result), "--granularity", "0.7", "-o", str(converted)]) == 0
+    labels = [str(label) for label in expected.labels(expected.segments_at(0.7)).tolist()]
+    assert direct.read_text().split() == converted.read_text().split() == labels
+    assert capsys.readouterr().out.count(f"{expected.segments_at(0.7)} segments, as requested") == 2
+
+
+def test_the_hierarchy_grows_to_the_number_of_segments(mesh: Path, tmp_path: Path) -> None:
+    labels = tmp_path / "labels.seg"
+    assert main(["segment", str(mesh), "--segments", "100", "--labels", str(labels)]) == 0
+    assert len(set(labels.read_text().split())) == 100
+
+
+def test_a_preset_and_parameters_change_the_method(mesh: Path, tmp_path: Path) -> None:
+    labels = tmp_path / "labels.seg"
+    chosen = ["--preset", "chahhou2014", "--set", "solver=fiedler", "--set", "max_segments=8"]
+    assert main(["segment", str(mesh), "--segments", "4", *chosen, "--labels", str(labels)]) == 0
+    parameters = {"preset": "chahhou2014", "solver": "fiedler", "max_segments": 8}
+    expected = segcore.segment(segcore.read_mesh(mesh), segcore.SegmentationParameters.from_mapping(parameters))
+    assert [int(line) for line in labels.read_text().split()] == expected.labels(4).tolist()
+
+
+def test_an_output_that_is_a_pipe_is_not_replaced(mesh: Path, tmp_path: Path) -> None:
+    pipe = tmp_path / "pipe"
+    os.mkfifo(pipe)
+    command = [sys.executable, "-m", "service.commands", "segment", str(mesh), "--labels", str(pipe)]
+    with subprocess.Popen(command, stdout=subprocess.DEVNULL):
+        assert len(pipe.read_text().split()) == 4 * 12 * 11
+    assert pipe.is_fifo()
