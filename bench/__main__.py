@@ -1,4 +1,4 @@
-"""``python -m bench COMMAND``: run one of the benchmarks; without a command, list them."""
+"""``python -m bench COMMAND``: run a benchmark; without a command, list them."""
 
 import argparse
 import sys
@@ -11,7 +11,7 @@ from bench.errors import BenchmarkError
 
 
 def main(arguments: Sequence[str]) -> int:
-    """Run a command. Exit status: 0 done, 2 where it could not run as asked, 130 where it was interrupted."""
+    """Run a command and return its exit status: 0 on success, 2 on a BenchmarkError, 130 if it is interrupted."""
     names = sorted(module.name for module in iter_modules(commands.__path__))
     if not arguments or arguments[0] in ("-h", "--help"):
         print(_list(names))
@@ -29,7 +29,7 @@ def _list(names: Sequence[str]) -> str:
 
 
 def _summary(name: str) -> str:
-    """The first line of the docstring of a command."""
+    """Return the first line of the docstring of a command."""
     return (import_module(f"bench.commands.{name}").__doc__ or "").partition("\n")[0]
 
 
