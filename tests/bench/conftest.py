@@ -4,6 +4,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+import trimesh
 
 from helpers.strips import write_strips
 from segcore import shapes
@@ -34,3 +35,20 @@ def shapes_folder(tmp_path: Path) -> Path:
         rows.append(f"{number}\t{category}\t{len(set(shape.parts.tolist()))}")
     (data / "segments.tsv").write_text("\n".join(["model\tcategory\tsegments", *rows]) + "\n")
     return data
+
+
+@pytest.fixture
+def assets(tmp_path: Path) -> Path:
+    """Authored assets of two sets: a box in one part, and a dumbbell one face of which belongs to no part."""
+    folder = tmp_path / "assets"
+    dumbbell = shapes.dumbbell(24, 16)
+    made = {("props", "crate"): (shapes.box(), np.zeros(12, dtype=np.int64))}
+    made[("robots", "bell")] = (dumbbell.mesh, np.where(np.arange(len(dumbbell.parts)) == 0, -1, dumbbell.parts))
+    rows = ["set\tname\tfaces\tparts\tcomponents"]
+    for (collection, name), (mesh, parts) in made.items():
+        (folder / collection).mkdir(parents=True)
+        trimesh.Trimesh(mesh.vertices, mesh.faces, process=False).export(folder / collection / f"{name}.ply")
+        np.savetxt(folder / collection / f"{name}.seg", parts, fmt="%d")
+        rows.append(f"{collection}\t{name}\t{len(mesh.faces)}\t{parts.max() + 1}\t1")
+    (folder / "models.tsv").write_text("\n".join(rows) + "\n")
+    return folder
