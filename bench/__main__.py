@@ -12,7 +12,7 @@ from bench.errors import BenchmarkError
 
 def main(arguments: Sequence[str]) -> int:
     """Run a command and return its exit status: 0 on success, 2 on a BenchmarkError, 130 if it is interrupted."""
-    names = sorted(module.name for module in iter_modules(commands.__path__))
+    names = command_names()
     if not arguments or arguments[0] in ("-h", "--help"):
         print(_list(names))
         return 0
@@ -20,6 +20,11 @@ def main(arguments: Sequence[str]) -> int:
         print(f"bench: there is no command {arguments[0]!r}; the commands are {', '.join(names)}.", file=sys.stderr)
         return 2
     return _run(arguments[0], arguments[1:])
+
+
+def command_names() -> list[str]:
+    """Return the names of the commands in alphabetical order."""
+    return sorted(module.name for module in iter_modules(commands.__path__))
 
 
 def _list(names: Sequence[str]) -> str:
@@ -33,7 +38,8 @@ def _summary(name: str) -> str:
     return (import_module(f"bench.commands.{name}").__doc__ or "").partition("\n")[0]
 
 
-def _run(name: str, arguments: Sequence[str]) -> int:
+def parser_of(name: str) -> argparse.ArgumentParser:
+    """Return the parser of the arguments of a command."""
     command = import_module(f"bench.commands.{name}")
     parser = argparse.ArgumentParser(
         prog=f"python -m bench {name}",
@@ -41,8 +47,13 @@ def _run(name: str, arguments: Sequence[str]) -> int:
         formatter_class=argparse.RawDescriptionHelpFormatter,
     )
     command.add_arguments(parser)
+    return parser
+
+
+def _run(name: str, arguments: Sequence[str]) -> int:
+    options = parser_of(name).parse_args(arguments)
     try:
-        command.run(parser.parse_args(arguments))
+        import_module(f"bench.commands.{name}").run(options)
     except BenchmarkError as error:
         print(f"bench {name}: {error}", file=sys.stderr)
         return 2
