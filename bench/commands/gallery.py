@@ -16,6 +16,8 @@ from bench.princeton.dataset import Model, find_models, read_models
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
+_AZIMUTH = 35  # degrees; set by hand, for shapes that look three-dimensional
+
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("--data", type=Path, required=True, metavar="DIR", help="the folder of the benchmark")
@@ -54,7 +56,7 @@ def _tile(model: Model, given: bool, size: int) -> NDArray[np.uint8]:
     mesh = model.read_mesh()
     hierarchy = segment(mesh)
     labels = hierarchy.labels(min(model.segments, hierarchy.max_segments) if given else None)
-    return draw(mesh, labels, size, azimuth=35)
+    return draw(mesh, labels, size, _AZIMUTH)
 
 
 def _numbers(text: str) -> list[int]:

@@ -30,7 +30,7 @@ def crowds() -> list[Named]:
 
 
 def subdivisions(folder: Path, number_of_model: int, largest: int) -> list[Named]:
-    """Return a model of the benchmark with its faces split in four again and again, up to 1.5 ``largest`` faces.
+    """Return a model of the benchmark with its faces split in four repeatedly, up to 1.5 ``largest`` faces.
 
     Raises
     ------

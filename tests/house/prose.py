@@ -1,8 +1,8 @@
 """Counts words in the prose of Python files: ``python tests/house/prose.py [--where] [PATH ...]``.
 
 Prose is comments and strings of at least four words: docstrings and messages. The banned words are in words.tsv next to
-this file, with the words to use instead; they are looked for in the prose and in the names of classes, functions and
-variables.
+this file, with the words to use instead; the prose and the names of modules, classes, functions and variables are
+searched for them.
 """
 
 import argparse
