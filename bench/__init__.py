@@ -1,4 +1,4 @@
-"""Benchmarks of Cleave: how good its segmentations are, measured against people's.
+"""Benchmarks of Cleave: the quality of its segmentations, its speed, and the service under load and faults.
 
 ``python -m bench`` lists the commands; each is one module of ``bench.commands``.
 """

@@ -1,4 +1,4 @@
-"""``python -m bench COMMAND``: run one of the benchmarks; without a command, list them."""
+"""``python -m bench COMMAND``: run a benchmark; without a command, list them."""
 
 import argparse
 import sys
@@ -11,8 +11,8 @@ from bench.errors import BenchmarkError
 
 
 def main(arguments: Sequence[str]) -> int:
-    """Run a command. Exit status: 0 done, 2 where it could not run as asked, 130 where it was interrupted."""
-    names = sorted(module.name for module in iter_modules(commands.__path__))
+    """Run a command and return its exit status: 0 on success, 2 on a BenchmarkError, 130 if it is interrupted."""
+    names = command_names()
     if not arguments or arguments[0] in ("-h", "--help"):
         print(_list(names))
         return 0
@@ -22,6 +22,11 @@ def main(arguments: Sequence[str]) -> int:
     return _run(arguments[0], arguments[1:])
 
 
+def command_names() -> list[str]:
+    """Return the names of the commands in alphabetical order."""
+    return sorted(module.name for module in iter_modules(commands.__path__))
+
+
 def _list(names: Sequence[str]) -> str:
     width = max(map(len, names))
     lines = [f"  {name:{width}}  {_summary(name)}" for name in names]
@@ -29,11 +34,12 @@ def _list(names: Sequence[str]) -> str:
 
 
 def _summary(name: str) -> str:
-    """The first line of the docstring of a command."""
+    """Return the first line of the docstring of a command."""
     return (import_module(f"bench.commands.{name}").__doc__ or "").partition("\n")[0]
 
 
-def _run(name: str, arguments: Sequence[str]) -> int:
+def parser_of(name: str) -> argparse.ArgumentParser:
+    """Return the parser of the arguments of a command."""
     command = import_module(f"bench.commands.{name}")
     parser = argparse.ArgumentParser(
         prog=f"python -m bench {name}",
@@ -41,8 +47,13 @@ def _run(name: str, arguments: Sequence[str]) -> int:
         formatter_class=argparse.RawDescriptionHelpFormatter,
     )
     command.add_arguments(parser)
+    return parser
+
+
+def _run(name: str, arguments: Sequence[str]) -> int:
+    options = parser_of(name).parse_args(arguments)
     try:
-        command.run(parser.parse_args(arguments))
+        import_module(f"bench.commands.{name}").run(options)
     except BenchmarkError as error:
         print(f"bench {name}: {error}", file=sys.stderr)
         return 2

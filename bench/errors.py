@@ -1,5 +1,5 @@
-"""The one error of the benchmarks."""
+"""The one exception of the benchmarks."""
 
 
 class BenchmarkError(Exception):
-    """A benchmark cannot run as asked; the message is one sentence that says what to do."""
+    """A benchmark cannot run with these arguments or data; the message is one sentence with the remedy."""

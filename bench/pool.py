@@ -1,4 +1,4 @@
-"""The same evaluation of many models, in several processes."""
+"""Runs a function on many models in several processes of one thread each."""
 
 from __future__ import annotations
 
@@ -9,72 +9,37 @@ from collections.abc import Callable, Iterator, Mapping, Sequence
 from concurrent.futures import ProcessPoolExecutor, as_completed
 from concurrent.futures.process import BrokenProcessPool
 from contextlib import contextmanager
-from functools import partial
 from multiprocessing import get_context
-from typing import Any, TypeVar
+from typing import TypeVar
 
 from bench.errors import BenchmarkError
-from bench.princeton.dataset import Model
-from bench.princeton.evaluation import ModelResult, SegmentChoice, Segmenter, evaluate_model
 
 Item = TypeVar("Item")
 Result = TypeVar("Result")
 
-# What numerical libraries read when they are loaded, to decide how many threads they start.
+# The variables from which numerical libraries read their number of threads when they are loaded.
 THREAD_SETTINGS = ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS", "NUMBA_NUM_THREADS")
-
-
-def evaluate_models(
-    models: Sequence[Model],
-    segmenter: Segmenter,
-    seeds: tuple[int, ...],
-    choice: SegmentChoice,
-    jobs: int,
-    learned: Mapping[int, Mapping[str, Any]] | None = None,
-) -> list[ModelResult]:
-    """The results of all models, in their order, computed in ``jobs`` processes of one thread each.
-
-    CPU times are comparable between numbers of jobs: every process is warmed up before its first model, and its
-    numerical libraries start no threads of their own unless the environment says how many.
-
-    Parameters
-    ----------
-    learned : for every model, by its number, the learned models to go by; by default those that ship.
-
-    Raises
-    ------
-    BenchmarkError
-        Where one model fails, or a process dies.
-    """
-    evaluate = partial(evaluate_model, segmenter=segmenter, seeds=seeds, choice=choice)
-    if learned is not None:
-        missing = [model.number for model in models if model.number not in learned]
-        if missing:
-            raise BenchmarkError(f"No fold leaves out model {missing[0]}: train the folds on the same models.")
-        evaluate = partial(_evaluate_unseen, learned, evaluate)
-    return map_in_processes(evaluate, models, jobs, segmenter.warm_up)
-
-
-def _evaluate_unseen(
-    learned: Mapping[int, Mapping[str, Any]], evaluate: Callable[[Model], ModelResult], model: Model
-) -> ModelResult:
-    from segcore.learned.models import LearnedModels, using
-
-    with using(LearnedModels.from_document(learned[model.number])):
-        return evaluate(model)
 
 
 def map_in_processes(
     function: Callable[[Item], Result], items: Sequence[Item], jobs: int, warm_up: Callable[[], None]
 ) -> list[Result]:
-    """The function of every item, in their order, computed in ``jobs`` processes of one thread each.
+    """Return the results of a function for all items, in their order.
+
+    CPU times do not depend on the number of processes: each of them is warmed up before its first item, and its
+    numerical libraries use one thread unless the environment sets another number.
+
+    Parameters
+    ----------
+    function, warm_up : picklable.
+    jobs : number of processes.
 
     Raises
     ------
     BenchmarkError
-        Where a process dies.
+        If the function raises it, or a process dies.
     """
-    with one_thread_per_process():
+    with one_thread_by_default():
         pool = ProcessPoolExecutor(
             jobs, mp_context=get_context("spawn"), initializer=_start_process, initargs=(warm_up,)
         )
@@ -86,8 +51,37 @@ def map_in_processes(
             pool.shutdown(cancel_futures=True)
 
 
+@contextmanager
+def one_thread_by_default() -> Iterator[None]:
+    """Start processes with one thread per numerical library, unless the environment sets another number."""
+    with _environment({name: "1" for name in THREAD_SETTINGS if name not in os.environ}):
+        yield
+
+
+@contextmanager
+def one_thread() -> Iterator[None]:
+    """Start processes with one thread per numerical library, even if the environment sets another number."""
+    with _environment(dict.fromkeys(THREAD_SETTINGS, "1")):
+        yield
+
+
+@contextmanager
+def _environment(variables: Mapping[str, str]) -> Iterator[None]:
+    """Set environment variables, and restore them at the end."""
+    before = {name: os.environ.get(name) for name in variables}
+    os.environ.update(variables)
+    try:
+        yield
+    finally:
+        for name, value in before.items():
+            if value is None:
+                del os.environ[name]
+            else:
+                os.environ[name] = value
+
+
 def _start_process(warm_up: Callable[[], None]) -> None:
-    # Ctrl-C reaches all processes of a terminal: the first one ends the others, which have nothing to add.
+    # Ctrl-C reaches all processes of a terminal; the parent process ends the others.
     signal.signal(signal.SIGINT, signal.SIG_IGN)
     warm_up()
 
@@ -103,15 +97,3 @@ def _in_order(pool: ProcessPoolExecutor, function: Callable[[Item], Result], ite
 def _show_progress(done: int, total: int) -> None:
     if sys.stderr.isatty():
         print(f"\r{done} of {total} models", end="\n" if done == total else "", file=sys.stderr, flush=True)
-
-
-@contextmanager
-def one_thread_per_process() -> Iterator[None]:
-    """Processes that are started meanwhile have numerical libraries of one thread, unless the environment says more."""
-    unset = [name for name in THREAD_SETTINGS if name not in os.environ]
-    os.environ.update(dict.fromkeys(unset, "1"))
-    try:
-        yield
-    finally:
-        for name in unset:
-            del os.environ[name]

@@ -1,21 +1,21 @@
-"""Numbers and tables as plain text."""
+"""Formats numbers and tables as plain text."""
 
 import math
 from collections.abc import Sequence
 
 
 def number(value: float, decimals: int = 4) -> str:
-    """A number with fixed decimals; a dash where it is undefined."""
+    """Return a number with fixed decimals, or a dash if it is undefined (nan)."""
     return "-" if math.isnan(value) else f"{value:.{decimals}f}"
 
 
 def format_table(header: Sequence[str], rows: Sequence[Sequence[str]], rules: Sequence[int] = ()) -> str:
-    """Columns under their headings, the first one flush left, the others flush right.
+    """Return columns under their headings, the first one aligned left, the others right.
 
     Parameters
     ----------
-    rows : may be shorter than the header; what is missing stays empty.
-    rules : a line is drawn above each of these rows; one is always drawn below the header.
+    rows : may be shorter than the header; missing cells are empty.
+    rules : rows with a horizontal line above them; there is always one below the header.
     """
     lines = [list(header), *([*row, *[""] * (len(header) - len(row))] for row in rows)]
     widths = [max(len(cell) for cell in column) for column in zip(*lines, strict=True)]

@@ -1,7 +1,8 @@
-"""The length of Cleave's cuts against that of people's, on the same models with the number of segments given.
+"""The length of Cleave's cuts compared with those of people, on the same models with the number of segments given.
 
-Lengths are in sqrt(total area) of a model. The ratio is the geometric mean over the models of Cleave's length over the
-mean of the people's. The cut discrepancy is the mean distance between the cuts, in mean radii of the model.
+Lengths are in sqrt(total area) of a model. The ratio is the geometric mean over the models of the length of Cleave's
+cuts over the mean length of the people's. The cut discrepancy is the mean distance between the cuts, in mean radii of
+the model.
 """
 
 from __future__ import annotations
@@ -19,8 +20,8 @@ import numpy as np
 from bench.princeton.dataset import Model, read_models
 from bench.princeton.evaluation import Segmenter
 from bench.princeton.metrics import evaluate, mean_scores
-from bench.princeton.segmenter import CleaveSegmenter
 from bench.princeton.surface import Segmentation, Surface
+from bench.segmenter import CleaveSegmenter
 from bench.text import format_table, number
 
 if TYPE_CHECKING:
@@ -30,7 +31,7 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True, slots=True)
 class CutLengths:
-    """The cuts of one model."""
+    """The lengths of the cuts of one model, in sqrt(total area), and their distances."""
 
     category: str
     cleave: float
@@ -53,7 +54,7 @@ def run(arguments: argparse.Namespace) -> None:
 
 
 def length_of_cuts(mesh: Mesh, surface: Surface, labels: IntArray | LongArray) -> float:
-    """The length of all edges between faces of different labels, over sqrt(total area)."""
+    """Return the length of all edges between faces with different labels, over sqrt(total area)."""
     one, other = labels[surface.adjacent_faces].T
     ends = mesh.vertices[surface.shared_edge[one != other]]
     length = np.linalg.norm(ends[:, 1] - ends[:, 0], axis=1).sum()
@@ -61,6 +62,7 @@ def length_of_cuts(mesh: Mesh, surface: Surface, labels: IntArray | LongArray) -
 
 
 def measure(model: Model, segmenter: Segmenter, seed: int) -> CutLengths:
+    """Segment a model and compare the cuts with those of its people."""
     mesh = model.read_mesh()
     people = model.read_people(len(mesh.faces))
     surface = Surface.from_mesh(mesh.vertices, mesh.faces)
@@ -79,6 +81,7 @@ def measure(model: Model, segmenter: Segmenter, seed: int) -> CutLengths:
 
 
 def render(lengths: Sequence[CutLengths]) -> str:
+    """Return a line for every category and one for all models."""
     categories = dict.fromkeys(one.category for one in lengths)
     rows = [_row(name, [one for one in lengths if one.category == name]) for name in categories]
     rows.append(_row("All models", lengths))

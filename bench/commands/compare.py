@@ -1,40 +1,24 @@
 """The difference between two results of princeton --output, model by model, with its standard error.
 
-Pairing takes the models' own difficulty out of the difference: it resolves far smaller changes than the standard errors
-of the two means would.
+Pairing removes the differences between models from the comparison: it resolves far smaller changes than the standard
+errors of the two means.
 """
 
 from __future__ import annotations
 
 import argparse
-import math
-import statistics
 from collections.abc import Sequence
-from dataclasses import dataclass
 from pathlib import Path
 
 from bench.errors import BenchmarkError
+from bench.princeton.comparison import paired_difference
 from bench.princeton.metrics import METRICS
 from bench.princeton.results import SavedResults, load_results
-from bench.princeton.summary import standard_error_of_mean
 from bench.text import format_table, number
 
 
-@dataclass(frozen=True, slots=True)
-class PairedDifference:
-    """B against A in one metric, over the models where both are defined."""
-
-    models: int
-    mean_a: float
-    mean_b: float
-    difference: float  # mean of B - A
-    standard_error: float  # of the difference; nan below two models
-    better: int  # models where B is lower
-    worse: int
-
-
 def add_arguments(parser: argparse.ArgumentParser) -> None:
-    parser.add_argument("a", type=Path, metavar="A.json", help="the results to start from")
+    parser.add_argument("a", type=Path, metavar="A.json", help="the first results")
     parser.add_argument("b", type=Path, metavar="B.json", help="the results to compare with them")
 
 
@@ -43,28 +27,13 @@ def run(arguments: argparse.Namespace) -> None:
     print(render(a, b))
 
 
-def paired_difference(a: Sequence[float], b: Sequence[float]) -> PairedDifference:
-    """Compare two sequences of values of the same models; pairs with a nan are left out."""
-    pairs = [(x, y) for x, y in zip(a, b, strict=True) if not math.isnan(x) and not math.isnan(y)]
-    differences = [y - x for x, y in pairs]
-    return PairedDifference(
-        models=len(pairs),
-        mean_a=_mean([x for x, _ in pairs]),
-        mean_b=_mean([y for _, y in pairs]),
-        difference=_mean(differences),
-        standard_error=standard_error_of_mean(differences),
-        better=sum(difference < 0 for difference in differences),
-        worse=sum(difference > 0 for difference in differences),
-    )
-
-
 def render(a: SavedResults, b: SavedResults) -> str:
-    """The table of all metrics over the models that both results have.
+    """Return the table of all metrics over the models that are in both results.
 
     Raises
     ------
     BenchmarkError
-        Where they have no model in common.
+        If they have no model in common.
     """
     common = sorted(a.scores.keys() & b.scores.keys())
     if not common:
@@ -79,7 +48,7 @@ def render(a: SavedResults, b: SavedResults) -> str:
             f"A: {a.settings}",
             f"B: {b.settings}",
             f"{len(common)} models in both, {len(a.scores) - len(common)} only in A, "
-            f"{len(b.scores) - len(common)} only in B. Lower is better: a negative difference is in favour of B.",
+            f"{len(b.scores) - len(common)} only in B. Lower is better: B is better if the difference is negative.",
             "",
             format_table(header, rows),
         ]
@@ -90,7 +59,3 @@ def _row(metric: str, a: Sequence[float], b: Sequence[float]) -> list[str]:
     paired = paired_difference(a, b)
     values = [paired.mean_a, paired.mean_b, paired.difference, paired.standard_error]
     return [metric, str(paired.models), *map(number, values), str(paired.better), str(paired.worse)]
-
-
-def _mean(values: Sequence[float]) -> float:
-    return statistics.fmean(values) if values else math.nan

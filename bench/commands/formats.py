@@ -1,7 +1,7 @@
 """Speed and memory of the readers and writers, the readers against trimesh on the same files in the same run.
 
-CPU seconds (the least of five runs in a process of their own, after one on a small file), so that other work on the
-machine counts for little; memory is the largest of the first run above what the process had, over the size of the file.
+Times are CPU seconds, the least of five runs in their own process after one run on a small file. Memory is the growth
+of the peak memory of the process in the first run, divided by the size of the file.
 """
 
 from __future__ import annotations
@@ -22,7 +22,7 @@ _FILES = {
     "OBJ": "mesh.obj",
 }
 _WRITTEN = ("glb", "ply", "obj", "3mf", "zip", "seg", "npy", "json", "cleave")
-_SMALL = 200  # faces of the file that warms up
+_SMALL = 200  # faces of the file that the first run reads
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
@@ -42,7 +42,7 @@ def run(arguments: argparse.Namespace) -> None:
 def _export(folder: Path, stem: str, faces: int) -> None:
     import trimesh
 
-    from bench.formats import torus
+    from bench.formats.probe import torus
 
     mesh = trimesh.Trimesh(*torus(faces), process=False)
     for name in _FILES.values():
@@ -73,6 +73,6 @@ def _print_writers(folder: Path) -> None:
 
 
 def _probe(program: str, action: str, path: Path) -> dict[str, Any]:
-    command = [sys.executable, "-m", "bench.formats", program, action, str(path)]
+    command = [sys.executable, "-m", "bench.formats.probe", program, action, str(path)]
     result: dict[str, Any] = json.loads(subprocess.run(command, capture_output=True, check=True).stdout)
     return result

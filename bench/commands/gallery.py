@@ -1,6 +1,6 @@
 """A contact sheet: models of the benchmark in the colours of their segments, as one PNG.
 
-Without --models it takes --limit models spread evenly over the list.
+Without --models, it shows --limit models, spread evenly over the list.
 """
 
 from __future__ import annotations
@@ -11,21 +11,24 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from bench.errors import BenchmarkError
-from bench.princeton.dataset import Model, read_models
+from bench.princeton.dataset import Model, find_models, read_models
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
+_AZIMUTH = 35  # degrees; set by hand, for shapes that look three-dimensional
+
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("--data", type=Path, required=True, metavar="DIR", help="the folder of the benchmark")
-    parser.add_argument("--models", type=_numbers, metavar="N,N", help="the numbers of the models to draw")
-    parser.add_argument("--limit", type=int, default=40, metavar="N", help="how many models (default 40)")
-    parser.add_argument("--segments", choices=("given", "automatic"), default="automatic", help="how many segments")
+    parser.add_argument("--models", type=_numbers, metavar="N,N", help="numbers of the models to draw")
+    parser.add_argument("--limit", type=int, default=40, metavar="N", help="number of models (default 40)")
+    parser.add_argument(
+        "--segments", choices=("given", "automatic"), default="automatic", help="number of segments (default automatic)"
+    )
     parser.add_argument("--columns", type=int, default=8, metavar="N", help="models in a row (default 8)")
     parser.add_argument("--size", type=int, default=200, metavar="PIXELS", help="size of one picture (default 200)")
-    parser.add_argument("--output", type=Path, required=True, metavar="FILE.png", help="where to write the sheet")
+    parser.add_argument("--output", type=Path, required=True, metavar="FILE.png", help="write the sheet to this file")
 
 
 def run(arguments: argparse.Namespace) -> None:
@@ -43,11 +46,7 @@ def run(arguments: argparse.Namespace) -> None:
 def _chosen(arguments: argparse.Namespace) -> list[Model]:
     if arguments.models is None:
         return read_models(arguments.data, arguments.limit)
-    by_number = {model.number: model for model in read_models(arguments.data)}
-    missing = [number for number in arguments.models if number not in by_number]
-    if missing:
-        raise BenchmarkError(f"There is no model {missing[0]} in {arguments.data}.")
-    return [by_number[number] for number in arguments.models]
+    return find_models(arguments.data, arguments.models)
 
 
 def _tile(model: Model, given: bool, size: int) -> NDArray[np.uint8]:
@@ -57,7 +56,7 @@ def _tile(model: Model, given: bool, size: int) -> NDArray[np.uint8]:
     mesh = model.read_mesh()
     hierarchy = segment(mesh)
     labels = hierarchy.labels(min(model.segments, hierarchy.max_segments) if given else None)
-    return draw(mesh, labels, size, azimuth=35)
+    return draw(mesh, labels, size, _AZIMUTH)
 
 
 def _numbers(text: str) -> list[int]:

@@ -1,9 +1,9 @@
-"""The same shapes in other meshes: how far the segmentations agree with those of the original meshes.
+"""The same shapes in other meshes: the agreement of the segmentations with those of the original meshes.
 
-Every model is segmented as it is and in every version, with the number of segments given; the figure is the share of
-the area on which the two agree after the segments are matched as well as can be. All versions keep the shape: half of
-the model split twice, decimated, refined in patches, with slivers, with noise, remeshed. In the row "other seed" the
-mesh is the same and the seed another: so far two equally good answers agree.
+Every model is segmented in its own mesh and in every version of it, with the number of segments given. The figure is
+the share of the area on which the two segmentations agree, after the best matching of segments. All versions keep the
+shape: half of the model split twice, decimated, refined in patches, with slivers, with noise, remeshed. The row "other
+seed" has the same mesh and another seed, and shows the agreement of two segmentations of equal quality.
 """
 
 from __future__ import annotations
@@ -11,20 +11,19 @@ from __future__ import annotations
 import argparse
 import statistics
 from collections.abc import Sequence
-from concurrent.futures import ProcessPoolExecutor
 from functools import partial
-from multiprocessing import get_context
 from pathlib import Path
 from typing import TYPE_CHECKING
 
 import numpy as np
 
 from bench.errors import BenchmarkError
-from bench.pool import one_thread_per_process
+from bench.irregular.agreement import agreement
+from bench.irregular.versions import VERSIONS, Remeshed
+from bench.pool import map_in_processes
 from bench.princeton.dataset import Model, read_models
-from bench.princeton.segmenter import CleaveSegmenter
 from bench.princeton.summary import standard_error_of_mean
-from bench.remeshing import VERSIONS, Remeshed, agreement
+from bench.segmenter import CleaveSegmenter
 from bench.text import format_table, number
 
 if TYPE_CHECKING:
@@ -47,16 +46,13 @@ def run(arguments: argparse.Namespace) -> None:
         raise BenchmarkError(f"--jobs must be at least 1, not {arguments.jobs}.")
     models = read_models(arguments.data, arguments.limit)
     segmenter = CleaveSegmenter()
-    with (
-        one_thread_per_process(),
-        ProcessPoolExecutor(arguments.jobs, mp_context=get_context("spawn"), initializer=segmenter.warm_up) as pool,
-    ):
-        measured = list(pool.map(partial(measure, segmenter=segmenter, names=arguments.only), models))
+    measure_all = partial(measure, segmenter=segmenter, names=arguments.only)
+    measured = map_in_processes(measure_all, models, arguments.jobs, segmenter.warm_up)
     print(render(models, arguments.only, measured))
 
 
 def measure(model: Model, segmenter: CleaveSegmenter, names: Sequence[str]) -> list[float]:
-    """The agreement of every version of a model with the original."""
+    """Return the agreement of every version of a model with the original."""
     mesh = model.read_mesh()
     same = Remeshed(mesh.vertices, mesh.faces, np.arange(len(mesh.faces), dtype=np.int32))
     labels = _labels(segmenter, same, model.segments, seed=0)
@@ -69,6 +65,7 @@ def measure(model: Model, segmenter: CleaveSegmenter, names: Sequence[str]) -> l
 
 
 def render(models: Sequence[Model], names: Sequence[str], measured: Sequence[Sequence[float]]) -> str:
+    """Return a line for every version, with the mean and the least agreement over the models."""
     rows = []
     for name, values in zip(names, zip(*measured, strict=True), strict=True):
         error = standard_error_of_mean(values)

@@ -1,9 +1,9 @@
-"""The evaluation of the paper made again: its method's variants, Cleave and other methods, in its figures and tables.
+"""The evaluation of the paper, reproduced: variants of its method, Cleave and other methods, in its figures and tables.
 
 Figures 4 and 8 (four metrics), Tables 1 and 2 (ranks by category, time) and Figures 5 and 9 (examples) of Chahhou,
 Moumoun, El Far, Gadi, Segmentation of 3D meshes using p-spectral clustering, TPAMI 2014. All methods are given the
-number of segments. The other methods are k-means, CGAL's segmentation by shape diameters (built here; it needs g++ and
-CGAL's headers) and V-HACD (it needs the package vhacdx).
+number of segments. The other methods are k-means, CGAL's segmentation by shape diameters (built by this command; it
+needs g++ and CGAL's headers) and V-HACD (it needs the package vhacdx).
 """
 
 from __future__ import annotations
@@ -13,8 +13,8 @@ from collections.abc import Iterable, Sequence
 from pathlib import Path
 from tempfile import TemporaryDirectory
 
-from bench.charts import require_matplotlib
 from bench.errors import BenchmarkError
+from bench.paper.charts import require_matplotlib
 from bench.paper.evaluation import MethodResults, evaluate_methods
 from bench.paper.items import ITEMS, Evaluation, bearing
 from bench.paper.label_cache import LabelCache
@@ -32,7 +32,8 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         "--output",
         type=Path,
         metavar="FOLDER",
-        help="write the tables, charts and pictures there, and every method's scores for the compare command",
+        help="write the tables, charts and pictures to this folder, and the scores of every method for the compare "
+        "command",
     )
     parser.add_argument(
         "--only",
@@ -52,7 +53,8 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         "--cache",
         type=Path,
         metavar="FOLDER",
-        help="keep segmentations and the built program there: a second run makes only what is missing or has changed",
+        help="keep segmentations and the built program in this folder: a second run computes only what is missing or "
+        "has changed",
     )
 
 
@@ -85,7 +87,7 @@ def _run(arguments: argparse.Namespace, kept: Path) -> None:
 
 
 def _methods(items: Sequence[str], peers: Sequence[Method]) -> list[Method]:
-    """All methods that some of the items need, each once."""
+    """Return the methods that the items need, each once."""
     wanted = [method for name in items for method in ITEMS[name].methods(peers)]
     return list({method.key: method for method in wanted}.values())
 

@@ -1,7 +1,7 @@
 """Quality on the Princeton Segmentation Benchmark: the four metrics against every person's segmentation.
 
-The folder given with --data has segments.tsv (columns model, category, segments), the meshes off/N.off and people's
-segmentations seg/Benchmark/N/N_j.seg. The row of the people themselves, each against the others, stands below.
+The folder given with --data contains segments.tsv (columns model, category, segments), the meshes off/N.off and the
+segmentations by people seg/Benchmark/N/N_j.seg. The last row is that of the people, each compared with the others.
 """
 
 from __future__ import annotations
@@ -13,12 +13,12 @@ from typing import get_args
 
 from bench.errors import BenchmarkError
 from bench.learning.folds import read_folds
-from bench.pool import evaluate_models
 from bench.princeton.dataset import read_models
 from bench.princeton.evaluation import SegmentChoice
+from bench.princeton.parallel import evaluate_models
 from bench.princeton.report import render
 from bench.princeton.results import save_results
-from bench.princeton.segmenter import CleaveSegmenter
+from bench.segmenter import CleaveSegmenter
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
@@ -28,7 +28,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         "--segments",
         choices=get_args(SegmentChoice),
         default="given",
-        help="given: as many as people chose most often, from segments.tsv (default); automatic: as Cleave chooses",
+        help="given: the most frequent number of the people, from segments.tsv (default); automatic: chosen by Cleave",
     )
     parser.add_argument(
         "--seeds",
@@ -38,27 +38,27 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         help="segment once with each of these seeds (default 0)",
     )
     parser.add_argument("--jobs", type=int, default=1, metavar="N", help="processes (default 1)")
-    parser.add_argument("--output", type=Path, metavar="FILE", help="write every model's scores to this JSON file")
+    parser.add_argument("--output", type=Path, metavar="FILE", help="write the scores of every model to this JSON file")
     parser.add_argument(
         "--parameters",
         type=_parameter,
         nargs="+",
         default=[],
         metavar="KEY=VALUE",
-        help="parameters of the segmentation, by the names of segcore.SegmentationParameters",
+        help="parameters of the segmentation, with the names in segcore.SegmentationParameters",
     )
     parser.add_argument(
         "--learned",
         type=Path,
         metavar="FOLDER",
-        help="go by what was learned without the model at hand (from python -m bench train --folds FOLDER)",
+        help="segment every model with what was learned without it (by python -m bench train --folds FOLDER)",
     )
 
 
 def run(arguments: argparse.Namespace) -> None:
     parameters = dict(arguments.parameters)
     if "seed" in parameters:
-        raise BenchmarkError("The seed is not a parameter here: give it with --seeds.")
+        raise BenchmarkError("The seed is not one of --parameters: give it with --seeds.")
     if arguments.jobs < 1:
         raise BenchmarkError(f"--jobs must be at least 1, not {arguments.jobs}.")
     if arguments.output is not None and not arguments.output.parent.is_dir():
@@ -83,7 +83,7 @@ def _seeds(text: str) -> tuple[int, ...]:
 
 
 def _parameter(text: str) -> tuple[str, object]:
-    """A name and a value, read as JSON where it is JSON (numbers, true, null), as a word otherwise."""
+    """Return a name and a value, which is parsed as JSON if possible (numbers, true, null) and a word otherwise."""
     name, equals, value = text.partition("=")
     if not name or not equals:
         raise argparse.ArgumentTypeError(f"a parameter is KEY=VALUE, not {text!r}")

@@ -1,7 +1,7 @@
-"""Kill the processes of a service at random while it works, and compare with an undisturbed run.
+"""Kill the processes of a service at random, and compare the results with those of a run without kills.
 
-Every job must be there afterwards, have succeeded, and have the same bytes as without the kills. The order and the kind
-of the kills follow from the seed; when they strike, relative to the work, does not.
+Every job must exist afterwards, have succeeded, and have the same bytes as without the kills. The seed determines the
+order and the kinds of the kills, but not their times relative to the jobs.
 """
 
 from __future__ import annotations
@@ -10,23 +10,29 @@ import argparse
 
 from bench.errors import BenchmarkError
 from bench.soak.campaign import SoakPlan, SoakReport, soak
-from bench.soak.faults import tell
+from bench.soak.faults import describe
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     plan = SoakPlan()
     parser.add_argument("--jobs", type=int, default=plan.jobs, metavar="N", help="jobs (%(default)s)")
     parser.add_argument(
-        "--kills", type=int, default=plan.kills, metavar="N", help="kills of all but the queue server (%(default)s)"
+        "--kills",
+        type=int,
+        default=plan.kills,
+        metavar="N",
+        help="kills of all processes except the queue server (%(default)s)",
     )
     parser.add_argument(
-        "--queue-kills", type=int, default=plan.queue_kills, metavar="N", help="of the queue server (%(default)s)"
+        "--queue-kills", type=int, default=plan.queue_kills, metavar="N", help="kills of the queue server (%(default)s)"
     )
     parser.add_argument(
-        "--interval", type=float, default=plan.interval_s, metavar="S", help="seconds between kills (%(default)s)"
+        "--interval", type=float, default=plan.interval_s, metavar="S", help="mean seconds between kills (%(default)s)"
     )
     parser.add_argument("--workers", type=int, default=plan.workers, metavar="N", help="workers (%(default)s)")
-    parser.add_argument("--seed", type=int, default=plan.seed, metavar="N", help="of the order of kills (%(default)s)")
+    parser.add_argument(
+        "--seed", type=int, default=plan.seed, metavar="N", help="seed of the order of kills (%(default)s)"
+    )
 
 
 def run(arguments: argparse.Namespace) -> None:
@@ -42,18 +48,18 @@ def run(arguments: argparse.Namespace) -> None:
     )
     print(render(report))
     if not report.is_clean:
-        raise BenchmarkError("Jobs did not come through: see the table.")
+        raise BenchmarkError("Jobs were lost, failed or have other results: see the table.")
 
 
 def render(report: SoakReport) -> str:
-    """The report as a table of Markdown."""
+    """Return the report as a Markdown table."""
     rows = {
         "jobs": report.jobs,
-        f"kills ({tell(report.kills)})": report.kills.total(),
+        f"kills ({describe(report.kills)})": report.kills.total(),
         "lost": report.lost,
         "failed": report.failed,
         "made twice": report.duplicates,
-        "results whose bytes differ from an undisturbed run": report.differing,
+        "results whose bytes differ from a run without kills": report.differing,
         "jobs that were run again": report.run_again,
         "runs that ended after another had ended the job": report.dropped,
         "longest time from the death of a worker until its job ran again, s": f"{report.resumed_s:.1f}",

@@ -1,7 +1,7 @@
-"""Jobs a second with one, two and four workers, and the memory of the processes over thousands of jobs.
+"""Jobs per second with one, two and four workers, and the memory of the processes over thousands of jobs.
 
-The jobs wait before the workers start; the time is from the begin of the first to the end of the last. Ratios between
-the rows of one run say more than the rows themselves.
+All jobs are queued before the workers start; the time is from the start of the first to the end of the last. Compare
+the rows of one run only: the times depend on the machine.
 """
 
 from __future__ import annotations
@@ -41,6 +41,6 @@ def _print_throughput(workers: list[int], jobs: int, faces: int) -> None:
 def _print_memory(jobs: int) -> None:
     print("| after jobs | service, MB | worker, MB | janitor, MB |")
     print("|---|---|---|---|")
-    for count, megabytes in memory(jobs, looks=4, faces=500):
+    for count, megabytes in memory(jobs, samples=4, faces=500):
         row = " | ".join(f"{megabytes[name]:.1f}" for name in ("service", "worker", "janitor"))
         print(f"| {count} | {row} |", flush=True)

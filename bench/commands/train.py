@@ -1,7 +1,8 @@
-"""Learning where people cut: the data file segcore/learned/models.json, and how it does on shapes that it has not seen.
+"""Learn from people's cuts: write segcore/learned/models.json, and the files to evaluate it on unseen shapes.
 
-From all models of the benchmark folder, one file; with --folds also one file for every group of models that was left
-out, for "python -m bench princeton --learned FOLDER". The same folder always gives the same bytes.
+One file is learned from all models of the benchmark folder. With --folds, one more file is learned for every group of
+models without this group, for "python -m bench princeton --learned FOLDER". The same folder always gives the same
+bytes.
 """
 
 from __future__ import annotations
@@ -23,16 +24,18 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("--data", type=Path, required=True, metavar="DIR", help="the folder of the benchmark")
     parser.add_argument("--limit", type=int, metavar="N", help="only N models, spread evenly over the list")
     parser.add_argument(
-        "--output", type=Path, default=_SHIPPED, metavar="FILE", help="by default segcore/learned/models.json"
+        "--output", type=Path, default=_SHIPPED, metavar="FILE", help="default: segcore/learned/models.json"
     )
     parser.add_argument(
         "--leave-out",
         choices=get_args(Grouping),
         default="category",
-        help="the models that are left out together: a category (default; segcore/learned/models.json is made so), or "
+        help="the models that are left out together: a category (default, as for segcore/learned/models.json), or "
         "every fifth model",
     )
-    parser.add_argument("--folds", type=Path, metavar="FOLDER", help="write what was learned without each group here")
+    parser.add_argument(
+        "--folds", type=Path, metavar="FOLDER", help="write what was learned without each group to this folder"
+    )
     parser.add_argument("--jobs", type=int, default=1, metavar="N", help="processes (default 1)")
 
 

@@ -1,1 +1,1 @@
-"""What ``python -m bench train`` learns from the people of the benchmark."""
+"""Learns models of boundaries and splits from people's segmentations, for ``python -m bench train``."""

@@ -1,4 +1,4 @@
-"""Where people cut: for every mesh edge of a model the share of people whose cut runs along it."""
+"""Rows for the boundary model: for the mesh edges of a model, the share of people whose cut runs along it."""
 
 from __future__ import annotations
 
@@ -17,18 +17,20 @@ if TYPE_CHECKING:
     from segcore.arrays import FloatArray, IntArray, LongArray
     from segcore.clean.surface import Surface
 
-ROWS = 1500  # edges of a model that are learned from
-_TOLERANCE = 0.012  # how far a person's cut may be from an edge, in sqrt(total area)
-_SPACING = 0.004  # of the points that stand for a person's cut
+# Set by hand; docs/learned-model.md describes the rows and how well the model does.
+ROWS = 1500  # sampled edges of a model
+_TOLERANCE = 0.012  # greatest distance between an edge and a cut that runs along it, in sqrt(total area)
+_SPACING = 0.004  # of the points by which a cut is represented, in sqrt(total area): a third of the tolerance
+_NEAREST = 8  # points of a cut that an edge is compared with; about six of a straight cut are within the tolerance
 
 
 def boundary_rows(model: Model, seed: int = 0) -> Rows:
-    """A sample of the edges of a model, weighted so that edges count by length; cut ones are drawn more often.
+    """Sample the edges of a model, cut ones more often, with weights such that edges count by length.
 
     Raises
     ------
     BenchmarkError
-        Where a file of the model cannot be used.
+        If a file of the model cannot be used.
     """
     mesh = model.read_mesh()
     surface = build_surface(mesh)
@@ -42,7 +44,12 @@ def boundary_rows(model: Model, seed: int = 0) -> Rows:
 
 
 def cut_share(surface: Surface, people: list[LongArray]) -> FloatArray:
-    """(E,): over the people, the mean of cos^2 of the angle between an edge and a cut near it, 0 where none is near."""
+    """(E,) mean over the people of cos^2 of the angle between an edge and a cut near it, 0 if there is none.
+
+    Parameters
+    ----------
+    people : (F,) each, the labels of the faces of the surface.
+    """
     size = float(np.sqrt(surface.areas.sum()))
     ends = surface.vertices[surface.edge_vertices]
     middle = ends.mean(axis=1)
@@ -53,7 +60,7 @@ def cut_share(surface: Surface, people: list[LongArray]) -> FloatArray:
         cut = np.flatnonzero(labels[surface.edge_faces[:, 0]] != labels[surface.edge_faces[:, 1]])
         if len(cut):
             points, owner = _points_along(ends[cut], _SPACING * size)
-            near = np.asarray(KDTree(points).query(middle, k=8, distance_upper_bound=_TOLERANCE * size)[1])
+            near = np.asarray(KDTree(points).query(middle, k=_NEAREST, distance_upper_bound=_TOLERANCE * size)[1])
             found = near < len(points)
             along = direction[cut[owner[np.where(found, near, 0)]]]
             cosine = np.einsum("nkj,nj->nk", along, direction)
@@ -62,13 +69,14 @@ def cut_share(surface: Surface, people: list[LongArray]) -> FloatArray:
 
 
 def _on_surface(surface: Surface, labels: LongArray) -> LongArray:
+    """(F,) labels of the faces of the surface, from the labels of the input faces."""
     on_surface = np.zeros(len(surface.faces), dtype=np.int64)
     on_surface[surface.face_of_input] = labels
     return on_surface
 
 
 def _points_along(ends: FloatArray, spacing: float) -> tuple[FloatArray, IntArray]:
-    """Points at most ``spacing`` apart along edges (N, 2, 3), and the edge of each."""
+    """Return points at most ``spacing`` apart along edges (N, 2, 3), and the edge of each."""
     length = np.linalg.norm(ends[:, 1] - ends[:, 0], axis=1)
     count = np.maximum(1, np.ceil(length / spacing)).astype(int)
     owner = np.repeat(np.arange(len(ends), dtype=np.int32), count)
@@ -78,7 +86,7 @@ def _points_along(ends: FloatArray, spacing: float) -> tuple[FloatArray, IntArra
 
 
 def _sample(length: FloatArray, share: FloatArray, rng: np.random.Generator) -> tuple[LongArray, FloatArray]:
-    """Half of the rows by length alone, half by length times the share of people; with weights that undo the choice."""
+    """Draw half of the rows by length, half by length times share of people; the weights correct for the choice."""
     plain = length / length.sum()
     busy = length * share
     chance = plain if busy.sum() == 0 else 0.5 * plain + 0.5 * busy / busy.sum()

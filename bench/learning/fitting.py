@@ -2,69 +2,88 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
 from segcore.learned.logistic import LogisticModel, basis
 
 if TYPE_CHECKING:
+    from bench.learning.rows import Rows
     from segcore.arrays import FloatArray
 
-_STEPS = 30
-_SETTLED = 1e-7  # decrease of the cost
-_DIGITS = 5  # significant digits of the numbers in a model: what is beyond them depends on the order of additions
+_STEPS = 30  # a limit, in case the cost does not settle
+_SETTLED = 1e-7  # decrease of the cost that ends the iteration; set by hand
+_DIGITS = 5  # significant digits of the numbers in a model: further ones depend on the order of additions
+# Guards against log(0) and divisions by zero, far below the values of real data.
+_LEAST_SCALE = 1e-6
+_LEAST_CHANCE = 1e-6
+_LEAST_CURVATURE = 1e-9
 
 
-def fit(
-    names: tuple[str, ...], features: FloatArray, target: FloatArray, weight: FloatArray, ridge: float
-) -> LogisticModel:
-    """Minimise the mean cross-entropy plus ridge / 2 |w|^2.
+class _Problem(NamedTuple):
+    """Minimise mean cross-entropy + sum of penalty x^2 / 2 over x."""
+
+    columns: FloatArray  # (N, K)
+    target: FloatArray  # (N,)
+    weight: FloatArray  # (N,) sum 1
+    penalty: FloatArray  # (K,)
+
+    def cost(self, x: FloatArray) -> float:
+        score = self.columns @ x
+        entropy = np.logaddexp(0.0, score) - self.target * score
+        return float(np.dot(self.weight, entropy) + 0.5 * np.dot(self.penalty, x * x))
+
+    def newton_step(self, x: FloatArray) -> FloatArray:
+        chance = _logistic(self.columns @ x)
+        gradient = self.columns.T @ (self.weight * (chance - self.target)) + self.penalty * x
+        hessian = (self.columns * (self.weight * chance * (1.0 - chance))[:, None]).T @ self.columns
+        step = np.linalg.solve(hessian + np.diag(self.penalty + _LEAST_CURVATURE), gradient)
+        return step.astype(np.float64, copy=False)
+
+
+def fit(names: tuple[str, ...], rows: Rows, ridge: float) -> LogisticModel:
+    """Minimise the weighted mean cross-entropy + ridge / 2 |w|^2.
 
     Parameters
     ----------
-    features : (N, M).
-    target : (N,) in 0..1.
-    weight : (N,) what every row counts for.
+    names : of the M features of the rows.
 
     Returns
     -------
-    The model, its numbers rounded to five significant digits, so that every machine writes the same.
+    The model, its numbers rounded to five significant digits so that they are the same on every machine.
     """
-    weight = weight / weight.sum()
-    mean = _rounded(np.einsum("i,ij->j", weight, features))
-    deviation = np.sqrt(np.einsum("i,ij->j", weight, (features - mean) ** 2))
-    scale = _rounded(np.maximum(deviation, 1e-6))
-    columns = basis((features - mean) / scale)
+    weight = rows.weight / rows.weight.sum()
+    mean = _rounded(np.einsum("i,ij->j", weight, rows.features))
+    deviation = np.sqrt(np.einsum("i,ij->j", weight, (rows.features - mean) ** 2))
+    scale = _rounded(np.maximum(deviation, _LEAST_SCALE))
+    columns = basis((rows.features - mean) / scale)
     columns = np.concatenate([columns, np.ones((len(columns), 1))], axis=1)
     penalty = np.full(columns.shape[1], ridge)
     penalty[-1] = 0.0
-    solution = np.zeros(columns.shape[1])
-    share = np.clip(np.dot(weight, target), 1e-6, 1 - 1e-6)
-    solution[-1] = np.log(share / (1 - share))
-    cost = _cost(columns, target, weight, penalty, solution)
+    solution = _rounded(_minimise(_Problem(columns, rows.target, weight, penalty)))
+    return LogisticModel(names, mean, scale, solution[:-1], float(solution[-1]))
+
+
+def _minimise(problem: _Problem) -> FloatArray:
+    """(K,) minimum, by Newton's method with halved steps, from the model that returns the mean target."""
+    x = np.zeros(len(problem.penalty))
+    share = np.clip(np.dot(problem.weight, problem.target), _LEAST_CHANCE, 1 - _LEAST_CHANCE)
+    x[-1] = np.log(share / (1 - share))
+    cost = problem.cost(x)
     for _ in range(_STEPS):
-        chance = _logistic(columns @ solution)
-        slope = columns.T @ (weight * (chance - target)) + penalty * solution
-        bend = (columns * (weight * chance * (1.0 - chance))[:, None]).T @ columns
-        step = np.linalg.solve(bend + np.diag(penalty + 1e-9), slope)
+        step = problem.newton_step(x)
         before = cost
-        while (cost := _cost(columns, target, weight, penalty, solution - step)) > before:
-            step *= 0.5  # far from the minimum the parabola misleads
-        solution -= step
+        while (cost := problem.cost(x - step)) > before:
+            step *= 0.5  # the quadratic model is not accurate far from the minimum
+        x -= step
         if before - cost < _SETTLED:
             break
-    rounded = _rounded(solution)
-    return LogisticModel(names, mean, scale, rounded[:-1], float(rounded[-1]))
+    return x
 
 
 def _logistic(score: FloatArray) -> FloatArray:
-    return 1.0 / (1.0 + np.exp(-np.clip(score, -500, 500)))
-
-
-def _cost(columns: FloatArray, target: FloatArray, weight: FloatArray, penalty: FloatArray, x: FloatArray) -> float:
-    score = columns @ x
-    return float(np.dot(weight, np.logaddexp(0.0, score) - target * score) + 0.5 * np.dot(penalty, x * x))
+    return 1.0 / (1.0 + np.exp(-np.clip(score, -500, 500)))  # exp(710) is infinite
 
 
 def _rounded(values: FloatArray) -> FloatArray:

@@ -1,4 +1,4 @@
-"""What was learned without some models, in a folder of files: to judge it on just those."""
+"""Saves models that were learned without some meshes, for an evaluation on these meshes."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Fold:
-    """Models that are left out together, and what was learned without them."""
+    """A group of models of the benchmark, and what was learned without them."""
 
     name: str
     left_out: frozenset[int]
@@ -23,17 +23,18 @@ class Fold:
 
 
 def save_fold(folder: Path, fold: Fold) -> None:
+    """Write a fold to a file of the folder, with the name of the fold in lower case."""
     document = {"left_out": sorted(fold.left_out), "models": fold.models.document()}
     (folder / f"{fold.name.lower()}.json").write_text(json.dumps(document), encoding="utf-8")
 
 
 def read_folds(folder: Path) -> dict[int, dict[str, Any]]:
-    """For every model that some file of the folder leaves out, the document of the learned models in it.
+    """Return, for every model that a file of the folder leaves out, the document of the learned models in this file.
 
     Raises
     ------
     BenchmarkError
-        Where the folder has no such file, or one cannot be read.
+        If the folder has no such file, or one cannot be read.
     """
     found: dict[int, dict[str, Any]] = {}
     for path in sorted(folder.glob("*.json")):

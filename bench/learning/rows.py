@@ -1,9 +1,12 @@
-"""Rows of a table to learn from."""
+"""The rows of a table that a model is fitted to."""
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
+
+import numpy as np
 
 if TYPE_CHECKING:
     from segcore.arrays import FloatArray
@@ -11,8 +14,17 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Rows:
-    """What one model contributes."""
+    """Features, targets and weights of some rows."""
 
     features: FloatArray  # (N, M)
     target: FloatArray  # (N,) in 0..1
-    weight: FloatArray  # (N,), sum 1
+    weight: FloatArray  # (N,) >= 0; their sum is 1 for the rows of one model
+
+
+def concatenated(tables: Sequence[Rows]) -> Rows:
+    """Return the rows of all tables in one, in double precision."""
+    return Rows(
+        features=np.concatenate([rows.features for rows in tables]).astype(np.float64),
+        target=np.concatenate([rows.target for rows in tables]).astype(np.float64),
+        weight=np.concatenate([rows.weight for rows in tables]).astype(np.float64),
+    )

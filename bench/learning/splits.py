@@ -1,4 +1,4 @@
-"""What people keep together: for every cut that a tree could make, the share of the parted pairs."""
+"""Rows for the split model: for every candidate cut of a tree, the share of the separated pairs that people join."""
 
 from __future__ import annotations
 
@@ -20,12 +20,14 @@ if TYPE_CHECKING:
     from bench.princeton.dataset import Model
     from segcore.arrays import FloatArray, IntArray, LongArray
 
-SEGMENTS = 64  # at which the trees that are learned from end
-_SIZE_EXPONENT = 0.75  # of the share of all pairs that a cut parts, in the weight of its row
+SEGMENTS = 64  # of the trees that are learned from: the default of max_segments
+# Exponent of the share of all pairs that a cut separates, in the weight of its row. Set by hand, between equal weights
+# (0) and weights by pairs (1), which the first cuts of each tree would dominate.
+_SIZE_EXPONENT = 0.75
 
 
 def cut_rows(model: Model, seed: int = 0) -> Rows:
-    """Grow the tree of a model as the models in use would, and compare every cut that is looked at with the people."""
+    """Grow the tree of a model with the learned models in use, and compare every candidate cut with the people."""
     mesh = model.read_mesh()
     parameters = SegmentationParameters(seed=seed, affinity="learned")
     rng = np.random.default_rng(seed)
@@ -43,7 +45,7 @@ def cut_rows(model: Model, seed: int = 0) -> Rows:
 
 
 def _face_counts(cluster: IntArray, labels: LongArray) -> FloatArray:
-    """(N, K): the number of faces of every cluster in every segment of a person."""
+    """(N, K) number of faces of every cluster in every segment of a person."""
     distinct, segment = np.unique(labels, return_inverse=True)
     count = int(cluster.max()) + 1
     cells = np.bincount(cluster.astype(np.int64) * len(distinct) + segment, minlength=count * len(distinct))
@@ -51,7 +53,7 @@ def _face_counts(cluster: IntArray, labels: LongArray) -> FloatArray:
 
 
 class _Recorder(LearnedRule):
-    """The learned rule, taking down what people would say of every cut that it looks at."""
+    """The learned rule, which also records the features and the target of every candidate."""
 
     def __init__(
         self,
@@ -79,4 +81,5 @@ class _Recorder(LearnedRule):
 
 
 def _kept(one: FloatArray, other: FloatArray) -> float:
+    """Return the share of the pairs across a cut that are in one segment, from the faces (K,) on each side of it."""
     return float(np.dot(one, other) / max(one.sum() * other.sum(), 1.0))

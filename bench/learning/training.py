@@ -1,4 +1,4 @@
-"""Both models from the people of the benchmark, and the same again without the models that they are to be judged on."""
+"""Fits both models to all meshes of the benchmark, and again without each group of meshes."""
 
 from __future__ import annotations
 
@@ -11,6 +11,7 @@ import numpy as np
 from bench.learning.boundaries import boundary_rows
 from bench.learning.fitting import fit
 from bench.learning.folds import Fold
+from bench.learning.rows import concatenated
 from bench.learning.splits import cut_rows
 from bench.pool import map_in_processes
 from segcore.affinity.boundary_features import FEATURES as EDGE_FEATURES
@@ -25,20 +26,21 @@ if TYPE_CHECKING:
 
 Grouping = Literal["category", "fifth"]
 
+# Set by hand; the quality with these values is in docs/learned-model.md.
 _BOUNDARY_RIDGE = 1e-4
 _SPLIT_RIDGE = 1e-2
-_ROUNDS = 2  # of growing trees and learning from them: the rule decides which trees it sees
+_ROUNDS = 2  # of growing trees and fitting to them, because the fitted rule grows other trees
 
 
 def train(models: Sequence[Model], grouping: Grouping, jobs: int) -> list[Fold]:
-    """Learn from all models, and for every group of them from all others.
+    """Learn from all models, and for every group of models from all others.
 
-    Whatever is learned from a model's splits is learned from trees that were grown without knowing the boundaries of
-    its group: otherwise the trees of training would be better than those to come.
+    The tree of a model is grown with a boundary model that was learned without its group. Otherwise the trees of the
+    training would be better than those of new meshes.
 
     Returns
     -------
-    First the fold "all", which leaves nothing out, then one for every group.
+    First the fold "all", which leaves out nothing, then one for every group.
     """
     groups = _groups(models, grouping)
     edges = map_in_processes(boundary_rows, models, jobs, warm_up)
@@ -62,7 +64,7 @@ def train(models: Sequence[Model], grouping: Grouping, jobs: int) -> list[Fold]:
 
 
 def _groups(models: Sequence[Model], grouping: Grouping) -> dict[str, frozenset[int]]:
-    """The models of every group; before them the group "all", which nothing belongs to."""
+    """Return the numbers of the models of every group, after an empty group "all"."""
     groups: dict[str, set[int]] = {"all": set()}
     for position, model in enumerate(models):
         name = model.category if grouping == "category" else f"fifth{position % 5 + 1}"
@@ -79,14 +81,10 @@ def _fit(
     names: tuple[str, ...], models: Sequence[Model], rows: Sequence[Rows], left_out: frozenset[int], ridge: float
 ) -> LogisticModel:
     seen = [row for model, row in zip(models, rows, strict=True) if model.number not in left_out]
-    features, target, weight = (
-        np.concatenate([getattr(row, name) for row in seen]).astype(np.float64)
-        for name in ("features", "target", "weight")
-    )
-    return fit(names, features, target, weight, ridge)
+    return fit(names, concatenated(seen), ridge)
 
 
 def _flat(names: tuple[str, ...]) -> LogisticModel:
-    """A model that knows nothing: the rule then goes by the normalized cut alone."""
+    """Return a model with weights 0, with which the rule depends on the normalized cut alone."""
     count = len(names)
     return LogisticModel(names, np.zeros(count), np.ones(count), np.zeros(4 * count), 0.0)

@@ -1,1 +1,1 @@
-"""How the service bears load; `python -m bench.load` runs everything and prints a table."""
+"""The service under load: `python -m bench load` and `python -m bench throughput`."""

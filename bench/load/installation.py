@@ -1,4 +1,4 @@
-"""`cleave serve` on a folder of its own, for the time of a measurement."""
+"""Starts `cleave serve` with its own data folder for a measurement."""
 
 import os
 import re
@@ -14,37 +14,41 @@ from pathlib import Path
 import httpx
 
 _STARTED = re.compile(r"listening on +(http://\S+)")
-_READY_WITHIN_S = 180.0  # kernels may have to be compiled
+_READY_WITHIN_S = 180.0  # enough to compile all kernels on a busy machine
+_STOPPED_WITHIN_S = 60  # more than the grace period of the workers
 _SETTINGS = {"CLEAVE_LOG_LEVEL": "error"}
 
 
 @dataclass(frozen=True, slots=True)
 class Installation:
+    """A running `cleave serve`."""
+
     url: str
     pid: int  # of the supervisor
     data_dir: Path
 
     @property
     def log(self) -> Path:
-        """What its processes have written to the standard error."""
+        """The standard error of its processes."""
         return self.data_dir.with_suffix(".log")
 
     def children(self, word: str) -> list[int]:
-        """The process ids of the supervisor's children whose command line holds a word."""
+        """Return the ids of the child processes of the supervisor whose command line contains a word."""
         return [pid for pid in children_of(self.pid) if word.encode() in _command_line(pid)]
 
     def work_horses(self) -> list[int]:
+        """Return the ids of the child processes of the workers."""
         return [pid for worker in self.children("worker.process") for pid in children_of(worker)]
 
     def service_pid(self) -> int:
-        """The process that answers HTTP."""
+        """Return the id of the HTTP server."""
         (pid,) = self.children("service.host.http_server")
         return pid
 
 
 @contextmanager
 def installed(workers: int, settings: Mapping[str, str] = _SETTINGS) -> Iterator[Installation]:
-    """An installation that is ready for jobs; where it has no workers, one that answers."""
+    """Start an installation and wait until it is ready for jobs, or for requests if it has no workers."""
     with tempfile.TemporaryDirectory(prefix="cleave-load-", ignore_cleanup_errors=True) as folder:
         data_dir = Path(folder) / "data"
         environment = os.environ | dict(settings) | {"CLEAVE_DATA_DIR": str(data_dir)}
@@ -60,14 +64,14 @@ def installed(workers: int, settings: Mapping[str, str] = _SETTINGS) -> Iterator
             yield _ready(process, data_dir, needs_workers=workers > 0)
         finally:
             process.terminate()
-            process.wait(60)
+            process.wait(_STOPPED_WITHIN_S)
             assert process.stdout is not None
             process.stdout.close()
 
 
 @contextmanager
 def more_workers(installation: Installation, count: int, queue: str) -> Iterator[None]:
-    """Workers of one queue beside an installation."""
+    """Start more workers of one queue for an installation."""
     url = f"unix://{installation.data_dir}/queue/queue.sock"
     process = subprocess.Popen(
         cleave("worker", "--redis-url", url, "--queue", queue, "--workers", str(count)),
@@ -78,15 +82,16 @@ def more_workers(installation: Installation, count: int, queue: str) -> Iterator
         yield
     finally:
         process.terminate()
-        process.wait(60)
+        process.wait(_STOPPED_WITHIN_S)
 
 
 def cleave(*arguments: str) -> list[str]:
-    """The command `cleave` of this checkout."""
+    """Return the command line of `cleave` of this checkout."""
     return [sys.executable, "-m", "service.commands", *arguments]
 
 
 def children_of(pid: int) -> list[int]:
+    """Return the ids of the child processes of a process."""
     with suppress(FileNotFoundError, ProcessLookupError):
         return [int(child) for child in Path(f"/proc/{pid}/task/{pid}/children").read_text().split()]
     return []
@@ -107,15 +112,15 @@ def _ready(process: "subprocess.Popen[str]", data_dir: Path, *, needs_workers: b
             raise RuntimeError("cleave serve ended before it listened")
         found = _STARTED.search(line)
         url = found[1] if found else None
-    gives_up_at = time.monotonic() + _READY_WITHIN_S
-    while not _answers(f"{url}/readyz" if needs_workers else f"{url}/healthz"):
-        if time.monotonic() > gives_up_at:
+    deadline = time.monotonic() + _READY_WITHIN_S
+    while not _is_ok(f"{url}/readyz" if needs_workers else f"{url}/healthz"):
+        if time.monotonic() > deadline:
             raise RuntimeError("cleave serve did not become ready")
         time.sleep(0.2)
     return Installation(url, process.pid, data_dir)
 
 
-def _answers(url: str) -> bool:
+def _is_ok(url: str) -> bool:
     try:
         return httpx.get(url, timeout=30).status_code == 200
     except httpx.TransportError:

@@ -1,4 +1,4 @@
-"""The measurements, each of one promise."""
+"""The measurements of the load command; bench/RESULTS.md has the limit of each."""
 
 import re
 import statistics
@@ -13,20 +13,20 @@ import segcore
 from bench.load.installation import Installation
 from bench.load.meshes import wavy_torus
 
-_LONG = {"clusters": 20_000, "max_segments": 400}  # seconds of work
 _POLLS = Path(__file__).with_name("polls.lua")
-_CONNECTIONS = 75
+_CONNECTIONS = 75  # 300 requests a second with the delay in polls.lua
 
 
 def keep_busy(client: httpx.Client, jobs: int) -> list[str]:
-    """Submit more work than the measurement lasts; the paths of the jobs."""
+    """Submit jobs that take longer than the measurement, and return their paths."""
     mesh = wavy_torus(100_000)
     return [
         str(
             client.post(
                 "/v1/jobs",
                 files={"mesh": ("busy.ply", mesh)},
-                data={"parameters": f'{{"seed": {seed}, "clusters": {_LONG["clusters"]}, "max_segments": 400}}'},
+                # Large values, with which a job takes seconds.
+                data={"parameters": f'{{"seed": {seed}, "clusters": 20000, "max_segments": 400}}'},
             ).headers["Location"]
         )
         for seed in range(jobs)
@@ -34,7 +34,7 @@ def keep_busy(client: httpx.Client, jobs: int) -> list[str]:
 
 
 def polls(installation: Installation, path: str, seconds: int) -> str:
-    """What wrk says of status polls, a few more than 300 a second."""
+    """Poll a status with wrk, a little more than 300 times a second."""
     command = ["wrk", "-t1", f"-c{_CONNECTIONS}", f"-d{seconds}s", "--latency", "--timeout", "10s", "-s", str(_POLLS)]
     done = subprocess.run([*command, installation.url + path], capture_output=True, text=True, check=True)
     rate = _find(r"Requests/sec:\s+(\S+)", done.stdout)
@@ -44,51 +44,51 @@ def polls(installation: Installation, path: str, seconds: int) -> str:
 
 
 def uploads(client: httpx.Client, count: int) -> str:
-    """From the first byte of a 1 MB mesh to the answer that it is queued."""
+    """Measure the time from the first byte of a 1 MB mesh to the response that it is queued."""
     mesh = wavy_torus(52_000)
     times_s = []
     for number in range(count):
         began_at = time.perf_counter()
-        answer = client.post("/v1/jobs", content=mesh + bytes(number + 1), headers={"Content-Type": "model/ply"})
+        response = client.post("/v1/jobs", content=mesh + bytes(number + 1), headers={"Content-Type": "model/ply"})
         times_s.append(time.perf_counter() - began_at)
-        answer.raise_for_status()
-        client.delete(answer.headers["Location"])
+        response.raise_for_status()
+        client.delete(response.headers["Location"])
     p95 = statistics.quantiles(times_s, n=20)[-1]
     return f"{len(mesh) / 1e6:.2f} MB, median {1000 * statistics.median(times_s):.0f} ms, p95 {1000 * p95:.0f} ms"
 
 
 def upload_memory(installation: Installation, client: httpx.Client, megabytes: int) -> str:
-    """By how much the memory of the service rises, at most, over a large upload."""
+    """Measure the growth of the peak memory of the service during a large upload."""
 
     def body() -> Iterator[bytes]:
         for _ in range(megabytes):
             yield bytes(1_000_000)
 
-    Path(f"/proc/{installation.service_pid()}/clear_refs").write_text("5")  # the peak begins again at what there is
+    Path(f"/proc/{installation.service_pid()}/clear_refs").write_text("5")  # resets the peak, see proc(5)
     before = _peak_bytes(installation.service_pid())
-    answer = client.post("/v1/jobs", content=body(), headers={"Content-Type": "model/stl"})
-    answer.raise_for_status()
+    response = client.post("/v1/jobs", content=body(), headers={"Content-Type": "model/stl"})
+    response.raise_for_status()
     grown = _peak_bytes(installation.service_pid()) - before
-    client.delete(answer.headers["Location"])
+    client.delete(response.headers["Location"])
     return f"{megabytes} MB raise it by {grown / 2**20:.1f} MiB"
 
 
 def waiting(client: httpx.Client, faces: int, count: int) -> str:
-    """What the way through the service costs, with Prefer: wait=10, over reading and segmenting alone."""
+    """Measure the overhead of the service with Prefer: wait=10 over reading and segmenting in this process."""
     overheads, alone = [], []
     for seed in range(count):
         mesh, parameters = wavy_torus(faces, 4 + seed % 3), segcore.SegmentationParameters(seed=seed)
         alone_s = min(_alone(mesh, parameters) for _ in range(2))
         began_at = time.perf_counter()
-        answer = client.post(
+        response = client.post(
             "/v1/jobs",
             content=mesh,
             params={"parameters": f'{{"seed": {seed}}}'},
             headers={"Content-Type": "model/ply", "Prefer": "wait=10"},
         )
         took_s = time.perf_counter() - began_at
-        assert answer.status_code == 200, answer.text
-        assert len(answer.json()["labels"]) == answer.json()["mesh"]["faces"]
+        assert response.status_code == 200, response.text
+        assert len(response.json()["labels"]) == response.json()["mesh"]["faces"]
         overheads.append(took_s - alone_s)
         alone.append(alone_s)
     more_ms = [1000 * overhead for overhead in overheads]
@@ -99,9 +99,9 @@ def waiting(client: httpx.Client, faces: int, count: int) -> str:
 
 
 def levels(client: httpx.Client, faces: int, form: str) -> str:
-    """Labels at numbers of segments that nobody has asked for before; for the first the result is opened too."""
-    answer = client.post("/v1/jobs", content=wavy_torus(faces), headers={"Content-Type": "model/ply"})
-    path = answer.headers["Location"]
+    """Measure requests for labels at new numbers of segments; the first one also opens the result."""
+    response = client.post("/v1/jobs", content=wavy_torus(faces), headers={"Content-Type": "model/ply"})
+    path = response.headers["Location"]
     while client.get(path, params={"wait": 60}).json()["finished_at"] is None:
         pass
     times_s = []

@@ -9,7 +9,7 @@ from segcore.mesh import Mesh
 
 
 def wavy_torus(faces: int, waves: int = 5) -> bytes:
-    """A binary PLY file with about as many faces."""
+    """Return a binary PLY file of a torus with waves, with about this number of faces."""
     columns = max(8, round(np.sqrt(faces)))
     rows = max(4, faces // (2 * columns))
     around, across = np.meshgrid(

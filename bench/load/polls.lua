@@ -1,4 +1,4 @@
--- 75 connections that each ask again 195 ms after they were answered: 300 requests a second at 55 ms an answer.
+-- 75 connections that each send the next request 195 ms after a response: 300 requests a second with responses in 55 ms.
 function delay()
   return 195
 end

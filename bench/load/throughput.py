@@ -1,4 +1,4 @@
-"""Jobs by the hundred: how their number a second grows with the workers, and the memory with their number."""
+"""Measures jobs per second by the number of workers, and memory by the number of jobs."""
 
 import time
 from collections.abc import Iterator
@@ -11,21 +11,23 @@ import httpx
 from bench.load.installation import Installation, installed, more_workers
 from bench.load.meshes import wavy_torus
 
-_FINISHED_WITHIN_S = 1800.0
+_FINISHED_WITHIN_S = 1800.0  # many times what 200 jobs take one worker, see bench/RESULTS.md
 _PROCESSES = {"service": "service.host.http_server", "worker": "worker.process", "janitor": "worker.janitor"}
 
 
 @dataclass(frozen=True, slots=True)
 class Throughput:
+    """The time of some jobs with a number of workers."""
+
     workers: int
-    seconds: float  # from the begin of the first job to the end of the last
+    seconds: float  # from the start of the first job to the end of the last
 
     def jobs_per_s(self, jobs: int) -> float:
         return jobs / self.seconds
 
 
 def throughput(workers: int, jobs: int, faces: int) -> Throughput:
-    """Let jobs wait, then start the workers; the jobs have the same size and are all different."""
+    """Submit different jobs of one size, then start the workers and wait until all jobs have succeeded."""
     with installed(workers=0) as installation, httpx.Client(base_url=installation.url, timeout=120) as client:
         for number in range(jobs):
             _submit(client, wavy_torus(faces, 3 + number % 5), number)
@@ -36,10 +38,13 @@ def throughput(workers: int, jobs: int, faces: int) -> Throughput:
     return Throughput(workers, (ended_at - began_at).total_seconds())
 
 
-def memory(jobs: int, looks: int, faces: int) -> Iterator[tuple[int, dict[str, float]]]:
-    """The resident megabytes of each process after a tenth of the jobs, and then ``looks - 1`` times more, evenly."""
+def memory(jobs: int, samples: int, faces: int) -> Iterator[tuple[int, dict[str, float]]]:
+    """Yield numbers of jobs with the resident megabytes of each process.
+
+    The first of the ``samples`` is after a tenth of the jobs, the last after all, the others evenly between them.
+    """
     warm = jobs // 10
-    marks = [warm + round(number * (jobs - warm) / (looks - 1)) for number in range(looks)]
+    marks = [warm + round(number * (jobs - warm) / (samples - 1)) for number in range(samples)]
     mesh = wavy_torus(faces)
     with installed(workers=2) as installation, httpx.Client(base_url=installation.url, timeout=120) as client:
         submitted = 0
@@ -55,19 +60,19 @@ def memory(jobs: int, looks: int, faces: int) -> Iterator[tuple[int, dict[str, f
 
 
 def _submit(client: httpx.Client, mesh: bytes, seed: int) -> str:
-    answer = client.post(
+    response = client.post(
         "/v1/jobs",
         content=mesh,
         params={"parameters": f'{{"seed": {seed}}}'},
         headers={"Content-Type": "model/ply", "Cache-Control": "no-cache"},
     )
-    return str(answer.raise_for_status().headers["Location"])
+    return str(response.raise_for_status().headers["Location"])
 
 
 def _finished(client: httpx.Client, count: int) -> list[dict[str, str]]:
-    """The jobs, when all of them have succeeded."""
-    gives_up_at = time.monotonic() + _FINISHED_WITHIN_S
-    while time.monotonic() < gives_up_at:
+    """Wait until this number of jobs has succeeded, and return them."""
+    deadline = time.monotonic() + _FINISHED_WITHIN_S
+    while time.monotonic() < deadline:
         jobs = list(_succeeded(client))
         if len(jobs) >= count:
             return jobs
@@ -84,7 +89,7 @@ def _succeeded(client: httpx.Client) -> Iterator[dict[str, str]]:
 
 
 def _resident_mb(installation: Installation) -> dict[str, float]:
-    """Of the processes of a kind, the largest."""
+    """Return the largest resident memory among the processes of each kind."""
     return {
         name: max(_resident_bytes(pid) for pid in installation.children(word)) / 1e6
         for name, word in _PROCESSES.items()

@@ -1,4 +1,4 @@
-"""Several methods on the same models, all against the same people."""
+"""Evaluates several methods on the same models against the same people."""
 
 from __future__ import annotations
 
@@ -9,8 +9,8 @@ from functools import partial
 
 from bench.errors import BenchmarkError
 from bench.paper.label_cache import LabelCache
-from bench.paper.processes import in_processes
 from bench.peers.method import Method, Outcome
+from bench.pool import map_in_processes, one_thread
 from bench.princeton.dataset import Model
 from bench.princeton.evaluation import ModelResult, Run, leave_one_out
 from bench.princeton.metrics import evaluate, mean_scores
@@ -19,30 +19,41 @@ from bench.princeton.surface import Segmentation, Surface
 
 @dataclass(frozen=True, slots=True)
 class MethodResults:
-    """What one method made of all models."""
+    """The results of one method on all models."""
 
     method: Method
     models: tuple[ModelResult, ...]
-    failures: dict[int, str]  # by the number of the model, which then counts as one segment
+    failures: dict[int, str]  # reason by the number of the model, which then counts as one segment
 
     @property
     def cpu_s(self) -> list[float]:
-        """Of every model that the method did not fail on."""
+        """CPU seconds of every model on which the method did not fail."""
         return [run.cpu_s for model in self.models if model.model not in self.failures for run in model.runs]
+
+
+@dataclass(frozen=True, slots=True)
+class _Judged:
+    """The result of one method on one model."""
+
+    result: ModelResult
+    failure: str  # empty if there was none
 
 
 def evaluate_methods(
     models: Sequence[Model], methods: Sequence[Method], cache: LabelCache, jobs: int
 ) -> dict[str, MethodResults]:
-    """The results of every method, by its key, all with the given number of segments.
+    """Return the results of every method, by its key, all with the given number of segments.
+
+    All processes have one thread, even if the environment sets another number, because their times are compared.
 
     Raises
     ------
     BenchmarkError
-        Where a file of a model cannot be used, a method cannot be called at all or a process dies.
+        If a file of a model cannot be used, a method cannot be called, or a process dies.
     """
     judge = partial(_judge_all, methods=tuple(methods), cache=cache)
-    judged = in_processes(judge, models, jobs, partial(_warm_up, tuple(methods)))
+    with one_thread():
+        judged = map_in_processes(judge, models, jobs, partial(_warm_up, tuple(methods)))
     return {method.key: _collect(method, [row[i] for row in judged]) for i, method in enumerate(methods)}
 
 
@@ -51,13 +62,13 @@ def _warm_up(methods: tuple[Method, ...]) -> None:
         method.warm_up()
 
 
-def _collect(method: Method, judged: Sequence[tuple[ModelResult, str]]) -> MethodResults:
-    failures = {result.model: failure for result, failure in judged if failure}
-    return MethodResults(method, tuple(result for result, _ in judged), failures)
+def _collect(method: Method, judged: Sequence[_Judged]) -> MethodResults:
+    failures = {one.result.model: one.failure for one in judged if one.failure}
+    return MethodResults(method, tuple(one.result for one in judged), failures)
 
 
-def _judge_all(model: Model, methods: tuple[Method, ...], cache: LabelCache) -> list[tuple[ModelResult, str]]:
-    """For every method the result on a model, and why it failed there if it did."""
+def _judge_all(model: Model, methods: tuple[Method, ...], cache: LabelCache) -> list[_Judged]:
+    """Return the result of every method on a model."""
     mesh = model.read_mesh()
     labels_of_people = model.read_people(len(mesh.faces))
     try:
@@ -72,7 +83,7 @@ def _judge_all(model: Model, methods: tuple[Method, ...], cache: LabelCache) -> 
         ModelResult(model.number, model.category, len(mesh.faces), len(people), model.segments, (run,), people_scores)
         for run in runs
     ]
-    return [(result, outcome.failure) for result, outcome in zip(results, outcomes, strict=True)]
+    return [_Judged(result, outcome.failure) for result, outcome in zip(results, outcomes, strict=True)]
 
 
 def _run(surface: Surface, people: list[Segmentation], outcome: Outcome, requested: int) -> Run:

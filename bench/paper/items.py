@@ -1,4 +1,4 @@
-"""The tables and figures of the paper's evaluation: which methods each of them needs, and how it is made."""
+"""The tables and figures of the paper's evaluation: the methods that each of them needs, and its function."""
 
 from __future__ import annotations
 
@@ -9,9 +9,9 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from bench.charts import Bar, metric_chart, save_chart
 from bench.errors import BenchmarkError
 from bench.paper import methods
+from bench.paper.charts import Bar, metric_chart, save_chart
 from bench.paper.evaluation import MethodResults
 from bench.paper.label_cache import LabelCache
 from bench.paper.pictures import save_picture, side_by_side
@@ -26,23 +26,23 @@ from bench.text import format_table, number
 if TYPE_CHECKING:
     from segcore.arrays import IntArray
 
-# The bearing of Figure 5: five segments given, one of them a narrow groove between two concave rings.
+# A model with the same features as that of Figure 5: a bearing with five segments given, one of them a narrow groove
+# between two concave rings. The paper names no model.
 BEARING = 341
 BEARING_SEGMENTS = (4, 5)
-# How many models Figure 9 shows.
-GAINS = 3
+GAINS = 3  # number of models in Figure 9
 
 
 @dataclass(frozen=True, slots=True)
 class Evaluation:
-    """What the items are made from."""
+    """The results from which the items are made."""
 
     data: Path  # the folder of the benchmark
-    models: Sequence[Model]  # that were evaluated
+    models: Sequence[Model]  # the evaluated ones
     results: dict[str, MethodResults]  # by the key of the method
     peers: Sequence[Method]
     cache: LabelCache
-    output: Path | None  # the folder for charts and pictures; None: text alone
+    output: Path | None  # the folder for charts and pictures; None for text only
 
     def of(self, wanted: Sequence[Method]) -> list[MethodResults]:
         return [self.results[method.key] for method in wanted]
@@ -53,8 +53,8 @@ class Item:
     """One table or figure."""
 
     title: str
-    methods: Callable[[Sequence[Method]], list[Method]]  # from the peers
-    make: Callable[[Evaluation], str]  # writes what belongs into the output folder; the text of the item
+    methods: Callable[[Sequence[Method]], list[Method]]  # the methods it needs, given the peers
+    make: Callable[[Evaluation], str]  # writes its files to the output folder and returns its text
 
 
 def _figure4_methods(peers: Sequence[Method]) -> list[Method]:
@@ -103,7 +103,7 @@ def _table2(evaluation: Evaluation) -> str:
 
 
 def bearing(data: Path) -> Model:
-    """The model of Figure 5; BenchmarkError where the data does not have it."""
+    """Return the model of Figure 5; raises BenchmarkError if the data does not contain it."""
     model = next((model for model in read_models(data) if model.number == BEARING), None)
     if model is None:
         raise BenchmarkError(f"Figure 5 shows model {BEARING}, which the data does not have: leave it out by --only.")
@@ -178,7 +178,7 @@ def _chart(evaluation: Evaluation, name: str, results: Sequence[MethodResults]) 
 
 
 def _group(method: Method, peers: Sequence[Method]) -> int:
-    """0 for the paper's methods, 1 for Cleave, 2 for the peers."""
+    """Return 0 for the methods of the paper, 1 for Cleave, 2 for the peers."""
     return 2 if method in peers else int(method.key == methods.cleave().key)
 
 
@@ -188,5 +188,5 @@ ITEMS = {
     "table1": Item("Table 1: ranks by category", _table1_methods, _table1),
     "table2": Item("Table 2: time", _figure4_methods, _table2),
     "figure5": Item("Figure 5: a bearing in four and in five segments", lambda _: [], _figure5),
-    "figure9": Item("Figure 9: where p = 2 fails and p = 1 does not", _figure9_methods, _figure9),
+    "figure9": Item("Figure 9: models on which p = 2 fails and p = 1 does not", _figure9_methods, _figure9),
 }

@@ -1,4 +1,4 @@
-"""Segmentations kept in a folder, so that a benchmark that is run again makes only those that are missing."""
+"""A cache of segmentations in a folder, so that a second run computes only the missing ones."""
 
 from __future__ import annotations
 
@@ -19,19 +19,19 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True, slots=True)
 class LabelCache:
-    """One file for every method and model, which holds for one state of the method's sources, mesh and number."""
+    """One file per method and model, valid for one state of the sources, the mesh and the number of segments."""
 
     folder: Path
 
     def outcome(self, method: Method, model: int, mesh: Mesh, segments: int) -> Outcome:
-        """What the method makes of a mesh, from its file or else by calling it.
+        """Return the segmentation of a mesh by a method, from its file or by calling the method.
 
-        A mesh on which the method fails is one segment.
+        A mesh on which the method fails becomes one segment.
 
         Raises
         ------
         BenchmarkError
-            Where the file cannot be written, or the method cannot be called at all.
+            If the file cannot be written, or the method cannot be called.
         """
         path = self.folder / method.key / f"{model}.npz"
         digest = _digest(method, mesh, segments)
@@ -65,7 +65,7 @@ def _read(path: Path, digest: str) -> Outcome | None:
                 return None
             return Outcome(file["labels"], float(file["cpu_s"]), str(file["failure"]))
     except (OSError, KeyError, ValueError, EOFError, BadZipFile):
-        # None kept yet, or a file that is no longer whole: the segmentation is made again.
+        # The file is missing or damaged: compute the segmentation again.
         return None
 
 

@@ -1,4 +1,4 @@
-"""The variants of the paper's method, and Cleave's own, as methods of the comparison."""
+"""The variants of the paper's method, and Cleave with its defaults, as methods of the comparison."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 
 from bench.errors import BenchmarkError
 from bench.peers.method import MethodFailed, Outcome, source_digest
-from bench.princeton.segmenter import CleaveSegmenter
+from bench.segmenter import CleaveSegmenter
 
 if TYPE_CHECKING:
     from segcore.hierarchy import Hierarchy
@@ -25,15 +25,14 @@ class CleaveMethod:
     key: str
     title: str
     parameters: dict[str, object]
-    # Whether to make the given number of segments and no more, as the paper does, or the whole hierarchy.
-    only_given: bool = True
+    only_given: bool = True  # stop at the given number of segments, like the paper, or compute the whole hierarchy
 
     @property
     def settings(self) -> str:
         return f"{sorted(self.parameters.items())} {self.only_given} {_digest()}"
 
     def prepare(self) -> None:
-        """See that the parameters are valid; BenchmarkError where they are not."""
+        """Raise BenchmarkError if the parameters are invalid."""
         CleaveSegmenter(self.parameters)
 
     def warm_up(self) -> None:
@@ -52,7 +51,7 @@ class CleaveMethod:
         return Outcome(hierarchy.labels(min(segments, hierarchy.max_segments)), cpu_s)
 
     def hierarchy(self, mesh: Mesh, segments: int) -> Hierarchy:
-        """The tree of cuts, at least down to a number of segments; BenchmarkError where there is none."""
+        """Return the tree of cuts down to at least a number of segments; raises BenchmarkError if there is none."""
         stop: dict[str, object] = {"max_segments": segments} if self.only_given else {}
         return CleaveSegmenter({**self.parameters, **stop})(mesh, seed=0)
 
@@ -63,34 +62,34 @@ def inverse_power() -> CleaveMethod:
 
 
 def inverse_power_unthinned() -> CleaveMethod:
-    """The paper's method with every deep concave vertex kept."""
+    """The paper's method without thinning: every deep concave vertex remains."""
     title = "minima rule, p = 1 (inverse power), not thinned"
     return _variant("inverse_power_unthinned", title, solver="inverse_power", thinning="none")
 
 
 def split_bregman() -> CleaveMethod:
-    """The paper's method with its second solver, by total variation."""
+    """The paper's method with its second solver, split Bregman."""
     return _variant("split_bregman", "minima rule, p = 1 (split Bregman)", solver="split_bregman")
 
 
 def two_spectral() -> CleaveMethod:
-    """The paper's matrix cut by the second eigenvector."""
+    """The paper's matrix, cut by the second eigenvector."""
     return _variant("fiedler", "minima rule, p = 2", solver="fiedler")
 
 
 def inverse_power_on_adjacency() -> CleaveMethod:
-    """The standard adjacency matrix cut with p = 1."""
+    """The standard adjacency matrix, cut with p = 1."""
     title = "adjacency, p = 1 (inverse power)"
     return _variant("inverse_power_adjacency", title, solver="inverse_power", affinity="adjacency")
 
 
 def two_spectral_on_adjacency() -> CleaveMethod:
-    """The standard adjacency matrix cut by the second eigenvector."""
+    """The standard adjacency matrix, cut by the second eigenvector."""
     return _variant("fiedler_adjacency", "adjacency, p = 2", solver="fiedler", affinity="adjacency")
 
 
 def cleave() -> CleaveMethod:
-    """Cleave as it is when no parameter is given."""
+    """Cleave with its default parameters."""
     return CleaveMethod("cleave", "Cleave", {}, only_given=False)
 
 

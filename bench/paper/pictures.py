@@ -1,4 +1,4 @@
-"""Segmentations drawn side by side."""
+"""Draws segmentations side by side."""
 
 from __future__ import annotations
 
@@ -16,20 +16,20 @@ if TYPE_CHECKING:
     from segcore.arrays import IntArray
     from segcore.mesh import Mesh
 
+# Set by hand, for shapes that look three-dimensional.
 _SIZE = 420  # pixels of one drawing
-_ASIDE = 25.0  # degrees by which the viewer stands beside and above the direction in which a shape is thinnest
-_HIGHEST = 45.0  # degrees above or below which no viewer stands
+_ASIDE = 25.0  # degrees between the view direction and the thinnest direction of the shape, to the side and upwards
+_HIGHEST = 45.0  # greatest elevation in degrees
 
 Pixels = NDArray[np.uint8]
 
 
 def side_by_side(mesh: Mesh, segmentations: Sequence[IntArray]) -> Pixels:
-    """(H, W, 4): one mesh in several segmentations, all seen from the same side, on white.
+    """(H, W, 4) pixels: several segmentations of a mesh from the same view, on white.
 
     Parameters
     ----------
-    segmentations : (F,) each, labels from 0. A segment has the colour of the one of the first segmentation that it is
-        matched with.
+    segmentations : (F,) each, labels from 0. A segment has the colour of the matching one in the first segmentation.
     """
     from segcore.io.picture import draw
 
@@ -40,7 +40,7 @@ def side_by_side(mesh: Mesh, segmentations: Sequence[IntArray]) -> Pixels:
 
 
 def broad_view(mesh: Mesh) -> tuple[float, float]:
-    """Azimuth and elevation in degrees: nearly along the least principal axis of the vertices, so that much is seen."""
+    """Return azimuth and elevation in degrees of a view nearly along the least principal axis of the vertices."""
     centred = mesh.vertices - mesh.vertices.mean(axis=0)
     x, y, z = np.linalg.eigh(centred.T @ centred)[1][:, 0]
     if y < 0:
@@ -50,7 +50,7 @@ def broad_view(mesh: Mesh) -> tuple[float, float]:
 
 
 def matched(labels: IntArray, reference: IntArray) -> IntArray:
-    """The same segments with the labels of a reference: one to one, with as many faces alike as possible."""
+    """Rename labels one to one such that as many faces as possible have the same label as in a reference."""
     count = max(int(labels.max()), int(reference.max())) + 1
     shared = np.bincount(labels.astype(np.int64) * count + reference, minlength=count * count).reshape(count, count)
     renamed = np.empty(count, dtype=np.int32)
@@ -61,12 +61,12 @@ def matched(labels: IntArray, reference: IntArray) -> IntArray:
 
 
 def save_picture(path: Path, rows: Sequence[Pixels]) -> None:
-    """Write rows of drawings, side by side or below each other, into a PNG file.
+    """Write rows of drawings to a PNG file, one below the other.
 
     Raises
     ------
     BenchmarkError
-        Where the file cannot be written.
+        If the file cannot be written.
     """
     from segcore.io.picture import write_png
 

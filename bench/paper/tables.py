@@ -6,25 +6,25 @@ import math
 import statistics
 from collections.abc import Sequence
 
-from bench.commands.compare import paired_difference
 from bench.paper.evaluation import MethodResults
+from bench.princeton.comparison import paired_difference
 from bench.princeton.report import HEADINGS
 from bench.princeton.summary import by_category, overall, standard_error
 from bench.text import format_table, number
 
-# Mean seconds for one model in the paper's Table 2, on a 3 GHz processor, by the keys of the methods here.
+# Mean seconds per model in Table 2 of the paper, on a 3 GHz processor, by the keys of the methods in this package.
 PAPER_SECONDS = {"inverse_power": 69.0, "split_bregman": 52.0, "fiedler": 8.7}
-LOWER_IS_BETTER = "Means over models of equal weight, each against all of its people. Lower is better."
+LOWER_IS_BETTER = "Means over models of equal weight, each compared with all of its people. Lower is better."
 
 
 def metric_table(results: Sequence[MethodResults]) -> str:
-    """All metrics of all methods, the people's below, and what the means leave out."""
+    """Return all metrics of all methods and of the people, and notes on what the means leave out."""
     header = ["method", *HEADINGS.values(), "s.e. 1-Rand", "segments", "fewer", "failed"]
     rows = [_metric_row(one) for one in results]
     rows.append(["People, leave-one-out", *_cells(overall(results[0].models).people_scores)])
     notes = [
         LOWER_IS_BETTER,
-        "fewer: models with fewer segments than given; failed: models that count as one segment for that.",
+        "fewer: models with fewer segments than given; failed: models on which it failed, counted as one segment.",
         *(_undefined(one) for one in results if _undefined_models(one)),
         *(failure for one in results for failure in _failures(one)),
     ]
@@ -32,7 +32,7 @@ def metric_table(results: Sequence[MethodResults]) -> str:
 
 
 def difference_table(pairs: Sequence[tuple[MethodResults, MethodResults]]) -> str:
-    """The differences in 1-Rand of pairs of methods (A, B) over the same models, with their standard errors."""
+    """Return the differences in 1-Rand of pairs of methods (A, B) on the same models, with their standard errors."""
     header = ["B against A, 1-Rand", "A", "B", "B - A", "std. error", "B better", "B worse"]
     rows = []
     for a, b in pairs:
@@ -44,7 +44,7 @@ def difference_table(pairs: Sequence[tuple[MethodResults, MethodResults]]) -> st
 
 
 def rank_table(results: Sequence[MethodResults]) -> str:
-    """Table 1: in every category the rank of every method by its mean 1-Rand, and that mean."""
+    """Table 1: the rank of every method by its mean 1-Rand in every category, and that mean."""
     columns = [[*by_category(one.models), overall(one.models)] for one in results]
     rows = []
     for summaries in zip(*columns, strict=True):
@@ -58,14 +58,14 @@ def rank_table(results: Sequence[MethodResults]) -> str:
 
 
 def ranks(values: Sequence[float]) -> list[int]:
-    """1 + the number of smaller values: equal values share the better rank."""
+    """Return 1 + the number of smaller values: equal values share the better rank."""
     return [1 + sum(other < value for other in values) for value in values]
 
 
 def time_table(results: Sequence[MethodResults]) -> str:
-    """Table 2: CPU seconds per model in one thread, beside the paper's.
+    """Table 2: CPU seconds per model in one thread, and those of the paper.
 
-    The ratios are to the first method of the paper, ``inverse_power``, here and there.
+    The ratios are to the first method of the paper, ``inverse_power``, in both columns.
     """
     unit = next((statistics.fmean(one.cpu_s) for one in results if one.method.key == "inverse_power"), math.nan)
     paper_unit = PAPER_SECONDS["inverse_power"]
@@ -80,8 +80,8 @@ def time_table(results: Sequence[MethodResults]) -> str:
     faces = statistics.fmean(model.faces for model in results[0].models)
     notes = [
         "CPU seconds per model in one thread, for the segmentation alone, with the number of segments given (Cleave "
-        "makes its whole hierarchy).",
-        "ratio: to p = 1 by inverse power. The paper's times are of a 3 GHz processor. Mean number of faces: "
+        "computes its whole hierarchy).",
+        "ratio: to p = 1 by inverse power. The times of the paper are for a 3 GHz processor. Mean number of faces: "
         f"{faces:.0f} (the paper: 20444).",
     ]
     return "\n".join([format_table(header, rows), "", *notes])
@@ -106,7 +106,7 @@ def _undefined_models(one: MethodResults) -> int:
 def _undefined(one: MethodResults) -> str:
     return (
         f"{one.method.title}: the cut discrepancy leaves out {_undefined_models(one)} of {len(one.models)} models, "
-        "where it is undefined because there is no cut."
+        "in which there is no cut."
     )
 
 

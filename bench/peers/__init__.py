@@ -1,4 +1,4 @@
-"""Other methods of segmentation, run on the same models: what Cleave and the paper's method are compared with.
+"""Other segmentation methods, with which Cleave and the method of the paper are compared on the same models.
 
 None of them is a part of Cleave or needed to run it. Each is a ``bench.peers.method.Method``.
 """
@@ -13,7 +13,7 @@ from bench.peers.kmeans import KMeans
 from bench.peers.method import Method
 from bench.peers.vhacd import VHacd
 
-# By the name for the command line; each is called with the folder in which it may keep what it builds.
+# By the name on the command line; each is called with a folder in which it may keep files.
 PEERS: dict[str, Callable[[Path], Method]] = {
     KMeans.key: lambda _: KMeans(),
     CgalSdf.key: CgalSdf,

@@ -1,7 +1,7 @@
-"""CGAL's segmentation by the shape diameter function, run as a program of its own.
+"""CGAL's segmentation by the shape diameter function, run as a separate program.
 
-The program is C++ (``sdf_segmentation.cpp``), built when it is needed with a compiler and the headers of CGAL that the
-system has.
+The program is C++ (``sdf_segmentation.cpp``), built at the first use with the compiler and the CGAL headers of the
+system.
 """
 
 from __future__ import annotations
@@ -10,7 +10,6 @@ import io
 import shutil
 import signal
 import subprocess
-from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -28,16 +27,16 @@ _SOURCE = Path(__file__).with_name("sdf_segmentation.cpp")
 _COMPILER = "g++"
 _OPTIONS = ("-O3", "-DNDEBUG", "-std=c++17")
 _LIBRARIES = ("-lmpfr", "-lgmp")
-_FEWEST_CLUSTERS, _MOST_CLUSTERS = 2, 15
-_DEFAULT_CLUSTERS = 5  # CGAL's own
-_LONGEST_S = 900.0  # seconds for one mesh; the benchmark's largest takes about 40
+_FEWEST_CLUSTERS, _MOST_CLUSTERS = 2, 15  # set by hand, around the default; each cluster may be several segments
+_DEFAULT_CLUSTERS = 5  # default of segmentation_from_sdf_values
+_LONGEST_S = 900.0  # seconds for one mesh; the largest of the benchmark takes about 40
 
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Clustering:
-    """One of the segmentations of a mesh that the program gives."""
+    """One of the segmentations of a mesh in the output of the program."""
 
-    clusters: int  # of shape diameters; each is as many segments as it has connected pieces
+    clusters: int  # number of clusters of shape diameters; each connected piece of a cluster is a segment
     cpu_s: float  # without the shape diameters
     labels: IntArray  # (F,)
 
@@ -46,13 +45,28 @@ class Clustering:
         return len(np.unique(self.labels))
 
 
+@dataclass(frozen=True, slots=True, eq=False)
+class Clusterings:
+    """The output of the program for one mesh."""
+
+    sdf_s: float  # CPU seconds of the shape diameters
+    each: tuple[Clustering, ...]  # one for every number of clusters, at least one
+
+    def nearest(self, segments: int) -> Clustering:
+        """Return the clustering whose number of segments is nearest; of several, the nearest to CGAL's 5 clusters."""
+        return min(
+            self.each,
+            key=lambda one: (abs(one.segments - segments), abs(one.clusters - _DEFAULT_CLUSTERS), one.clusters),
+        )
+
+
 @dataclass(frozen=True, slots=True)
 class CgalSdf:
-    """CGAL's default settings, with the number of clusters that gives nearest to the given number of segments.
+    """CGAL's default settings, with the number of clusters that leads to the nearest number of segments.
 
     CGAL clusters faces by the thickness of the body under them and makes every connected piece of a cluster a segment:
-    the number of segments cannot be chosen. Of 2 to 15 clusters those are taken whose number of segments is nearest to
-    the given one. The time is that of one segmentation with that number of clusters.
+    the number of segments cannot be chosen. It is run with 2 to 15 clusters, and the result whose number of segments is
+    nearest to the given one is used. The time is that of one segmentation with this number of clusters.
 
     References
     ----------
@@ -60,7 +74,7 @@ class CgalSdf:
     Visual Computer 24, 2008.
     """
 
-    folder: Path  # where the program is built and kept
+    folder: Path  # the folder in which the program is built and kept
 
     key = "cgal"
     title = "CGAL SDF"
@@ -79,7 +93,7 @@ class CgalSdf:
         Raises
         ------
         BenchmarkError
-            Where it cannot be built.
+            If it cannot be built.
         """
         if self.program.exists():
             return
@@ -97,12 +111,12 @@ class CgalSdf:
         unfinished.rename(self.program)
 
     def warm_up(self) -> None:
-        """Nothing to load: the program is another process."""
+        """Do nothing: the program is another process."""
 
     def __call__(self, mesh: Mesh, segments: int) -> Outcome:
-        sdf_s, clusterings = read_clusterings(self._run(mesh), len(mesh.faces))
-        chosen = nearest_clustering(clusterings, segments)
-        return Outcome(chosen.labels, sdf_s + chosen.cpu_s)
+        clusterings = read_clusterings(self._run(mesh), len(mesh.faces))
+        chosen = clusterings.nearest(segments)
+        return Outcome(chosen.labels, clusterings.sdf_s + chosen.cpu_s)
 
     def _run(self, mesh: Mesh) -> str:
         command = [str(self.program), str(_FEWEST_CLUSTERS), str(_MOST_CLUSTERS)]
@@ -117,28 +131,20 @@ class CgalSdf:
         return done.stdout
 
 
-def nearest_clustering(clusterings: Sequence[Clustering], segments: int) -> Clustering:
-    """The one whose number of segments is nearest to ``segments``; of several, the nearest to CGAL's 5 clusters."""
-    return min(
-        clusterings,
-        key=lambda one: (abs(one.segments - segments), abs(one.clusters - _DEFAULT_CLUSTERS), one.clusters),
-    )
-
-
-def read_clusterings(output: str, face_count: int) -> tuple[float, list[Clustering]]:
-    """The CPU seconds of the shape diameters and all clusterings, from what the program writes.
+def read_clusterings(output: str, face_count: int) -> Clusterings:
+    """Read the output of the program.
 
     Raises
     ------
     MethodFailed
-        Where the output is something else.
+        If the output is malformed.
     """
     try:
         first, *lines = output.splitlines()
-        clusterings = [_clustering(line) for line in lines]
+        clusterings = tuple(_clustering(line) for line in lines)
         if not clusterings or any(len(one.labels) != face_count for one in clusterings):
-            raise ValueError("it has not one label for every face")
-        return float(first), clusterings
+            raise ValueError("it does not have one label for every face")
+        return Clusterings(float(first), clusterings)
     except ValueError as error:
         raise MethodFailed(f"CGAL's output cannot be read: {error}.") from error
 

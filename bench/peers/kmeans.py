@@ -1,4 +1,4 @@
-"""K-means clustering of the faces' centres: the simplest method that cuts a mesh into a given number of parts."""
+"""K-means clustering of the face centres: the simplest method that cuts a mesh into a given number of parts."""
 
 from __future__ import annotations
 
@@ -17,15 +17,15 @@ if TYPE_CHECKING:
     from segcore.arrays import FloatArray, LongArray
     from segcore.mesh import Mesh
 
-_MOST_ROUNDS = 100
+_MOST_ROUNDS = 100  # a limit in case the clusters do not settle
 
 
 @dataclass(frozen=True, slots=True)
 class KMeans:
-    """Lloyd's algorithm on the faces' centres, weighted by area, then every cluster made connected.
+    """Lloyd's algorithm on the face centres, weighted by area; then every cluster is made connected.
 
-    The seeds are those of the k-means of the Princeton benchmark: again and again the face farthest from all seeds so
-    far, here the first one the farthest from the centroid of the surface. The distances are straight ones.
+    The seeds are chosen as for the k-means of the Princeton benchmark: repeatedly the face farthest from all seeds so
+    far; the first one is the farthest from the centroid of the surface. Distances are Euclidean.
 
     References
     ----------
@@ -40,10 +40,10 @@ class KMeans:
         return source_digest(__file__, pieces.__file__, surface.__file__)
 
     def prepare(self) -> None:
-        """Nothing to get ready."""
+        """Do nothing."""
 
     def warm_up(self) -> None:
-        """Nothing to compile."""
+        """Do nothing."""
 
     def __call__(self, mesh: Mesh, segments: int) -> Outcome:
         start = time.process_time()
@@ -54,7 +54,7 @@ class KMeans:
 
 
 def weighted_kmeans(points: FloatArray, weight: FloatArray, clusters: int) -> LongArray:
-    """(N,): the cluster 0, 1, ... of every point (N, 3) at a fixed point of Lloyd's algorithm, or after 100 rounds.
+    """(N,) cluster 0, 1, ... of every point (N, 3), at a fixed point of Lloyd's algorithm or after 100 rounds.
 
     A cluster that loses all of its weight keeps its centre.
     """

@@ -1,4 +1,4 @@
-"""What a method of segmentation is, for a comparison of several on the same models."""
+"""The interface of a segmentation method that is compared with others on the same models."""
 
 from __future__ import annotations
 
@@ -19,16 +19,16 @@ class Outcome:
     """One segmentation of one mesh."""
 
     labels: IntArray  # (F,) of any values; only which of them are equal matters
-    cpu_s: float  # CPU time of the method alone; 0 where it failed
-    failure: str = ""  # why there is no segmentation but one single segment
+    cpu_s: float  # CPU time of the method alone; 0 if it failed
+    failure: str = ""  # the reason if the method failed; the labels are then one segment
 
 
 class MethodFailed(BenchmarkError):  # noqa: N818
-    """A method gives no segmentation of a mesh; the message says why."""
+    """A method cannot segment a mesh; the message contains the reason."""
 
 
 class Method(Protocol):
-    """A method that is told how many segments to make. It is sent to other processes, so it must be picklable."""
+    """A method with a given number of segments. It is sent to other processes, so it must be picklable."""
 
     @property
     def key(self) -> str:
@@ -40,20 +40,20 @@ class Method(Protocol):
 
     @property
     def settings(self) -> str:
-        """Everything but the mesh and the number of segments that its labels depend on."""
+        """Everything that the labels depend on, except the mesh and the number of segments."""
 
     def prepare(self) -> None:
-        """Get ready what all processes share; BenchmarkError where something is not installed."""
+        """Prepare what all processes share; raises BenchmarkError if something is not installed."""
 
     def warm_up(self) -> None:
-        """Compile or load what the first mesh would otherwise wait for; called once in every process."""
+        """Compile or load everything that the first mesh needs; called once in every process."""
 
     def __call__(self, mesh: Mesh, segments: int) -> Outcome:
-        """Segment a mesh into that many segments, or as near to it as the method can; MethodFailed where it cannot."""
+        """Segment a mesh into this number of segments, or the nearest possible; raises MethodFailed if it cannot."""
 
 
 def source_digest(*sources: Path | str) -> str:
-    """A name for the present state of source files; of a folder, for the Python files in it and below."""
+    """Return a digest of source files; of a folder, of all Python files in it."""
     digest = hashlib.sha256()
     for path in map(Path, sources):
         for file in sorted(path.rglob("*.py")) if path.is_dir() else [path]:

@@ -1,4 +1,4 @@
-"""Connected segments out of clusters that know nothing of the surface."""
+"""Makes clusters of faces connected."""
 
 from __future__ import annotations
 
@@ -14,19 +14,19 @@ if TYPE_CHECKING:
 
 
 def keep_largest_pieces(vertices: FloatArray, surface: Surface, cluster: LongArray) -> IntArray:
-    """Let every cluster keep the largest of its connected pieces only, by area.
+    """Keep only the largest connected piece of every cluster, by area.
 
-    Every other piece joins the segment with which it has the longest border, those first that touch one. A piece that
-    no path leads out of keeps its cluster.
+    Every other piece joins the segment with which it has the longest border; pieces that touch a segment join first. A
+    piece without a path to any segment keeps its cluster.
 
     Parameters
     ----------
     vertices : (V, 3) of the surface.
-    cluster : (F,) of every face, >= 0.
+    cluster : (F,) cluster of every face, >= 0.
 
     Returns
     -------
-    (F,) the cluster that every face belongs to in the end.
+    (F,) new cluster of every face.
     """
     piece = _pieces(surface, cluster)
     pieces = int(piece.max()) + 1
@@ -44,7 +44,7 @@ def keep_largest_pieces(vertices: FloatArray, surface: Surface, cluster: LongArr
 
 
 def _pieces(surface: Surface, cluster: LongArray) -> IntArray:
-    """(F,): the connected piece 0, 1, ... of one cluster that every face is in."""
+    """(F,) connected piece 0, 1, ... of every face."""
     one, other = surface.adjacent_faces.T
     inside = cluster[one] == cluster[other]
     shape = (len(cluster), len(cluster))
@@ -54,7 +54,7 @@ def _pieces(surface: Surface, cluster: LongArray) -> IntArray:
 
 
 def _largest_only(cluster_of_piece: IntArray, area: FloatArray) -> IntArray:
-    """(P,): the cluster of the pieces that are the largest of it, -1 for all others."""
+    """(P,) cluster of every piece that is the largest of its cluster, -1 for all others."""
     label = np.full(len(area), -1, dtype=np.int32)
     order = np.argsort(-area, kind="stable")
     clusters, first = np.unique(cluster_of_piece[order], return_index=True)
@@ -63,7 +63,7 @@ def _largest_only(cluster_of_piece: IntArray, area: FloatArray) -> IntArray:
 
 
 def _borders(vertices: FloatArray, surface: Surface, piece: IntArray) -> coo_array:
-    """(P, P): the length of the border between two pieces, once in each direction."""
+    """(P, P) length of the border between two pieces, symmetric."""
     start, end = surface.shared_edge.T
     length = np.linalg.norm(vertices[start] - vertices[end], axis=1)
     one, other = piece[surface.adjacent_faces].T
@@ -76,7 +76,7 @@ def _borders(vertices: FloatArray, surface: Surface, piece: IntArray) -> coo_arr
 
 
 def _join_neighbours(label: IntArray, border: coo_array) -> IntArray:
-    """Give every piece without a label that touches labelled ones the label that it shares most of its border with."""
+    """Label every unlabelled piece that touches labelled ones with the label on most of its border."""
     rows, columns = border.coords
     open_border = (label[rows] < 0) & (label[columns] >= 0)
     shared = np.zeros((len(label), int(label.max()) + 1))

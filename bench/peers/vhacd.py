@@ -21,10 +21,10 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True, slots=True)
 class VHacd:
-    """At most the given number of convex hulls; every face goes to the hull that its centre is nearest to.
+    """At most the given number of convex hulls; every face belongs to the hull nearest to its centre.
 
-    Default settings but for the number of hulls, in one thread. Where hulls overlap, the one in which a centre is
-    deepest has it. Every segment is made connected, as for k-means.
+    The settings are the defaults, except the number of hulls and one thread. A centre in several hulls belongs to the
+    one in which it is deepest. Every segment is made connected, as for k-means.
 
     References
     ----------
@@ -39,12 +39,12 @@ class VHacd:
         return f"{source_digest(__file__, pieces.__file__, surface.__file__)} {version('vhacdx')}"
 
     def prepare(self) -> None:
-        """See that the package is there.
+        """Check the installation.
 
         Raises
         ------
         BenchmarkError
-            Where it is not.
+            If the package vhacdx is not installed.
         """
         try:
             version("vhacdx")
@@ -76,15 +76,15 @@ class VHacd:
 
 
 def distance_to_hull(points: FloatArray, vertices: FloatArray, faces: IntArray | LongArray) -> FloatArray:
-    """(N,): how far points are outside the plane of a convex hull that they are farthest outside of.
+    """(N,) largest signed distance of points to the planes of the faces of a convex hull.
 
-    Negative inside: minus the depth. Outside it is the distance where a face is nearest, less where an edge or a corner
-    is.
+    Inside it is negative: minus the depth. Outside it is the distance to the hull if a face is nearest, and less if an
+    edge or a vertex is.
 
     Parameters
     ----------
     points : (N, 3).
-    vertices, faces : (V, 3) and (F, 3) of the hull, whose faces may be turned either way.
+    vertices, faces : (V, 3) and (F, 3) of the hull; the orientation of its faces does not matter.
     """
     corners = vertices[faces.astype(np.int64)]
     normals = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])

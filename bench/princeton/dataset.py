@@ -7,8 +7,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-import numpy as np
-
+from bench.datasets import read_labels, read_mesh, spread_evenly
 from bench.errors import BenchmarkError
 
 if TYPE_CHECKING:
@@ -18,7 +17,7 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True, slots=True)
 class Model:
-    """One model of the benchmark: where its files are, and how many segments people give it."""
+    """One model of the benchmark: the paths of its files, and the number of segments that people give it."""
 
     number: int
     category: str
@@ -27,29 +26,22 @@ class Model:
     people_folder: Path  # seg/Benchmark/N, one N_j.seg for every person
 
     def read_mesh(self) -> Mesh:
-        """The mesh of the model.
+        """Read the mesh of the model.
 
         Raises
         ------
         BenchmarkError
-            Where the file is missing or cannot be read.
+            If the file is missing or cannot be read.
         """
-        # Imported here so that listing commands and comparing results do not load the compiled kernels.
-        from segcore.errors import CleaveError
-        from segcore.io import read_mesh
-
-        try:
-            return read_mesh(self.mesh_path)
-        except (OSError, CleaveError) as error:
-            raise BenchmarkError(f"Model {self.number} cannot be read: {error}") from error
+        return read_mesh(self.mesh_path, str(self.number))
 
     def read_people(self, face_count: int) -> list[LongArray]:
-        """The segmentations (F,) of all people of the model, in the order of their numbers.
+        """Read the segmentations (F,) of all people of the model, in the order of their numbers.
 
         Raises
         ------
         BenchmarkError
-            Where there is none, or one is not a list of ``face_count`` integers.
+            If there is none, or one is not a list of ``face_count`` integers.
         """
         paths = sorted(self.people_folder.glob(f"{self.number}_*.seg"), key=_person)
         if not paths:
@@ -58,42 +50,34 @@ class Model:
 
 
 def read_models(folder: Path, limit: int | None = None) -> list[Model]:
-    """The models listed in ``folder``/segments.tsv, in order of their numbers.
+    """Read the list of models ``folder``/segments.tsv, in order of their numbers.
 
     Parameters
     ----------
-    folder : holds segments.tsv (columns model, category, segments), off/N.off and seg/Benchmark/N/N_j.seg.
-    limit : take this many models, spread evenly over the list and so over the categories; all by default.
+    folder : contains segments.tsv (columns model, category, segments), off/N.off and seg/Benchmark/N/N_j.seg.
+    limit : return at most this many models, spread evenly over the list and so over the categories.
 
     Raises
     ------
     BenchmarkError
-        Where the list is missing, empty or malformed, or the limit is below 1.
+        If the list is missing, empty or malformed, or the limit is below 1.
     """
-    models = sorted(_listed_models(folder), key=lambda model: model.number)
-    if limit is None:
-        return models
-    if limit < 1:
-        raise BenchmarkError(f"The limit must be at least 1 model, not {limit}.")
-    count = min(limit, len(models))
-    return [models[i * len(models) // count] for i in range(count)]
+    return spread_evenly(sorted(_listed_models(folder), key=lambda model: model.number), limit)
 
 
-def read_labels(path: Path, face_count: int) -> LongArray:
-    """(F,): the labels in a .seg file, one integer in a line, line i for face i.
+def find_models(folder: Path, numbers: list[int]) -> list[Model]:
+    """Read the list of models and return those with these numbers, in the order of the numbers.
 
     Raises
     ------
     BenchmarkError
-        Where the file does not hold ``face_count`` integers.
+        If the list is missing, empty or malformed, or does not contain a number.
     """
-    try:
-        labels = np.array(path.read_text(encoding="ascii").split(), dtype=np.int64)
-    except (OSError, ValueError) as error:
-        raise BenchmarkError(f"{path} is not a list of integers: {error}") from error
-    if labels.shape != (face_count,):
-        raise BenchmarkError(f"{path} must have one label for each of {face_count} faces, not {labels.size}.")
-    return labels
+    by_number = {model.number: model for model in read_models(folder)}
+    missing = [number for number in numbers if number not in by_number]
+    if missing:
+        raise BenchmarkError(f"There is no model {missing[0]} in {folder}.")
+    return [by_number[number] for number in numbers]
 
 
 def _listed_models(folder: Path) -> list[Model]:

@@ -1,4 +1,4 @@
-"""One model: its segmentations against every person's, and its people against each other."""
+"""Evaluates one model: its segmentations against every person's, and its people against each other."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ SegmentChoice = Literal["given", "automatic"]
 
 
 class Levels(Protocol):
-    """Segmentations of one mesh at every number of segments up to a largest one, as of ``segcore.Hierarchy``."""
+    """Segmentations of one mesh into every number of segments up to a largest one, as ``segcore.Hierarchy``."""
 
     @property
     def max_segments(self) -> int: ...
@@ -30,13 +30,13 @@ class Levels(Protocol):
 
 
 class Segmenter(Protocol):
-    """A method of segmentation. It is sent to other processes, so it must be picklable."""
+    """A segmentation method. It is sent to other processes, so it must be picklable."""
 
     def warm_up(self) -> None:
-        """Compile or load what the first mesh would otherwise wait for; called once in every process."""
+        """Compile or load everything that the first mesh needs; called once in every process."""
 
     def __call__(self, mesh: Mesh, seed: int) -> Levels:
-        """Segment a mesh; BenchmarkError where that is not possible."""
+        """Segment a mesh; raises BenchmarkError if that is not possible."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -44,16 +44,16 @@ class Run:
     """One segmentation of a model with one seed."""
 
     seed: int
-    segments: int  # the number of segments that it has
-    fell_short: bool  # fewer than were asked for, because the hierarchy ends earlier
+    segments: int  # number of segments
+    fell_short: bool  # fewer segments than requested, because the hierarchy ends earlier
     cpu_s: float  # CPU time of the segmentation alone, all threads of the process
-    undefined_cut_discrepancies: int  # people against whom it is undefined
+    undefined_cut_discrepancies: int  # number of people against whom it is undefined
     scores: Scores  # mean over the people
 
 
 @dataclass(frozen=True, slots=True)
 class ModelResult:
-    """Everything measured on one model."""
+    """The measurements on one model."""
 
     model: int
     category: str
@@ -65,12 +65,12 @@ class ModelResult:
 
     @property
     def scores(self) -> Scores:
-        """The mean over the seeds."""
+        """Mean over the seeds."""
         return mean_scores([run.scores for run in self.runs])
 
 
 def evaluate_model(model: Model, segmenter: Segmenter, seeds: tuple[int, ...], choice: SegmentChoice) -> ModelResult:
-    """Segment a model once with every seed and compare with all of its people.
+    """Segment a model once per seed and compare it with all of its people.
 
     Parameters
     ----------
@@ -79,7 +79,7 @@ def evaluate_model(model: Model, segmenter: Segmenter, seeds: tuple[int, ...], c
     Raises
     ------
     BenchmarkError
-        Where a file of the model cannot be used, or the segmenter fails on it.
+        If a file of the model cannot be used, or the segmenter fails on it.
     """
     mesh = model.read_mesh()
     labels_of_people = model.read_people(len(mesh.faces))
@@ -103,7 +103,7 @@ def evaluate_model(model: Model, segmenter: Segmenter, seeds: tuple[int, ...], c
 
 
 def leave_one_out(surface: Surface, people: list[Segmentation]) -> Scores:
-    """The mean over all ordered pairs of different people: each of them judged by all of the others."""
+    """Return the mean over all ordered pairs of different people: each of them is compared with all others."""
     return mean_scores([evaluate(surface, one, other) for one, other in permutations(people, 2)])
 
 

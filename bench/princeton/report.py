@@ -1,4 +1,4 @@
-"""What a run of the Princeton benchmark prints."""
+"""The printed report of a run of the Princeton benchmark."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ HEADINGS = {
     "gce": "GCE",
     "lce": "LCE",
 }
-# Where an automatic number of segments still counts as close to people's.
+# The largest difference at which an automatic number of segments counts as close to the given one; set by hand.
 NEAR_SEGMENTS = 2
 WEIGHTING = (
     "Every score is the mean over the people of a model and over the seeds, then over models of equal weight.\n"
@@ -31,7 +31,7 @@ WEIGHTING = (
 
 
 def render(results: Sequence[ModelResult], choice: SegmentChoice) -> str:
-    """The table and the facts beside it, as text."""
+    """Return the table and the lines below it as text."""
     people = sum(result.people for result in results)
     seeds = ", ".join(str(run.seed) for run in results[0].runs)
     title = (
@@ -69,7 +69,7 @@ def _cells(scores: Scores) -> list[str]:
 
 
 def _differ(some: Scores, other: Scores) -> bool:
-    """Whether two rows would be printed differently."""
+    """Return True if two rows are printed differently."""
     return any(number(getattr(some, metric)) != number(getattr(other, metric)) for metric in METRICS)
 
 
@@ -99,7 +99,7 @@ def _undefined_fact(results: Sequence[ModelResult], runs: Sequence[Run]) -> list
     comparisons = sum(result.people * len(result.runs) for result in results)
     lost = sum(math.isnan(result.scores.cut_discrepancy) for result in results)
     return [
-        f"Cut discrepancy is undefined where one of two segmentations has no cut: {undefined} of {comparisons} "
+        f"Cut discrepancy is undefined if one of two segmentations has no cut: {undefined} of {comparisons} "
         f"comparisons are left out of it, and with them {lost} of {len(results)} models."
     ]
 

@@ -1,4 +1,4 @@
-"""Results of the Princeton benchmark as a JSON file, to be compared with another one later."""
+"""Saves results of the Princeton benchmark as JSON, and reads them for a comparison."""
 
 from __future__ import annotations
 
@@ -18,21 +18,21 @@ FORMAT = "cleave-princeton-1"
 
 @dataclass(frozen=True, slots=True)
 class SavedResults:
-    """What a comparison needs of a saved run."""
+    """The parts of a saved run that a comparison needs."""
 
-    settings: str  # how the run was made, for people
+    settings: str  # number of segments, seeds and parameters, as text
     scores: dict[int, Scores]  # by model number
 
 
 def save_results(
     path: Path, results: Sequence[ModelResult], choice: SegmentChoice, parameters: dict[str, object]
 ) -> None:
-    """Write the results; a score that is undefined is null.
+    """Write the results as JSON; an undefined score is null.
 
     Raises
     ------
     BenchmarkError
-        Where the file cannot be written.
+        If the file cannot be written.
     """
     summary = overall(results)
     document = {
@@ -51,12 +51,12 @@ def save_results(
 
 
 def load_results(path: Path) -> SavedResults:
-    """Read what ``save_results`` wrote.
+    """Read a file that ``save_results`` wrote.
 
     Raises
     ------
     BenchmarkError
-        Where the file cannot be read or is something else.
+        If the file cannot be read or has another format.
     """
     try:
         document = json.loads(path.read_text(encoding="utf-8"))

@@ -1,4 +1,4 @@
-"""Means over models: by category, over all of them, and over the categories."""
+"""Means of scores over models: by category, over all models, and over the categories."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ from bench.princeton.metrics import METRICS, Scores, mean_scores
 
 @dataclass(frozen=True, slots=True)
 class CategorySummary:
-    """The means over the models of one category."""
+    """Means over the models of one category."""
 
     category: str
     models: int
@@ -24,34 +24,34 @@ class CategorySummary:
 
 
 def by_category(results: Sequence[ModelResult]) -> list[CategorySummary]:
-    """One summary for every category, in the order in which they first appear."""
+    """Return one summary per category, in the order of their first appearance."""
     categories = dict.fromkeys(result.category for result in results)
     return [_summary(name, [result for result in results if result.category == name]) for name in categories]
 
 
 def overall(results: Sequence[ModelResult]) -> CategorySummary:
-    """The summary of all models, each with the same weight."""
+    """Return the summary of all models, each with the same weight."""
     return _summary("All models", results)
 
 
 def mean_of_categories(results: Sequence[ModelResult]) -> Scores:
-    """The mean over the categories, each with the same weight."""
+    """Return the mean over the categories, each with the same weight."""
     return mean_scores([summary.scores for summary in by_category(results)])
 
 
 def standard_error(scores: Sequence[Scores]) -> Scores:
-    """The standard error of the mean over models, for every metric; nan below two models."""
+    """Return the standard error of the mean over models for every metric; nan below two models."""
     return Scores(**{metric: standard_error_of_mean([getattr(s, metric) for s in scores]) for metric in METRICS})
 
 
 def standard_error_of_mean(values: Sequence[float]) -> float:
-    """Sample standard deviation over the root of the count, of the values that are not nan; nan below two of them."""
+    """Sample standard deviation / sqrt(count) of the values that are not nan; nan below two of them."""
     defined = [value for value in values if not math.isnan(value)]
     return statistics.stdev(defined) / math.sqrt(len(defined)) if len(defined) > 1 else math.nan
 
 
 def scores_by_seed(results: Sequence[ModelResult]) -> dict[int, Scores]:
-    """The mean over all models for each seed by itself."""
+    """Return the mean over all models for each seed."""
     runs = [run for result in results for run in result.runs]
     seeds = dict.fromkeys(run.seed for run in runs)
     return {seed: mean_scores([run.scores for run in runs if run.seed == seed]) for seed in seeds}

@@ -1,4 +1,4 @@
-"""What the metrics need to know of a mesh and of one segmentation of it, computed once for all comparisons."""
+"""The quantities of a mesh and of a segmentation that the metrics need, computed once for all comparisons."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ from scipy.sparse import csr_array
 from scipy.sparse.csgraph import dijkstra
 
 if TYPE_CHECKING:
-    # The metrics themselves run without segcore and its compiled kernels.
+    # The metrics run without segcore and its compiled kernels.
     from numpy.typing import ArrayLike
 
     from segcore.arrays import FloatArray, IntArray, LongArray
@@ -18,30 +18,30 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Surface:
-    """The areas, the edges and the size of a mesh."""
+    """Areas, edges and size of a mesh."""
 
     face_area: FloatArray  # (F,) > 0 in total
-    edge_graph: csr_array  # (V, V) symmetric, the length of every edge
-    shared_edge: LongArray  # (A, 2) the two vertices of the edge where two adjacent faces meet
-    adjacent_faces: LongArray  # (A, 2) those two faces
+    edge_graph: csr_array  # (V, V) symmetric, edge lengths
+    shared_edge: LongArray  # (A, 2) the two vertices of the common edge of two adjacent faces
+    adjacent_faces: LongArray  # (A, 2) these two faces
     mean_radius: float  # mean distance from the surface to its centroid, > 0
 
     @classmethod
     def from_mesh(cls, vertices: FloatArray, faces: IntArray) -> Surface:
-        """The surface of a triangle mesh.
+        """Compute the surface of a triangle mesh.
 
-        At an edge with more than two faces, each face is adjacent to the next one in input order, which is enough to
-        see whether their labels differ.
+        At an edge with more than two faces, each face is adjacent to the next one in input order, which suffices to
+        find out if their labels differ.
 
         Parameters
         ----------
-        vertices : (V, 3) coordinates, any unit.
+        vertices : (V, 3) coordinates in any unit.
         faces : (F, 3) indices into ``vertices``.
 
         Raises
         ------
         ValueError
-            Where the surface has no area or no extent: no metric means anything there.
+            If the surface has no area or no extent: the metrics are not defined on it.
         """
         corners = vertices[faces]
         cross = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
@@ -65,11 +65,11 @@ class Segmentation:
     label: LongArray  # (F,) contiguous 0..K - 1
     segments: int  # K
     cut_vertices: LongArray  # (C,) the ends of the edges between faces of different labels, each once
-    distance_to_cut: FloatArray  # (V,) along the edges of the mesh; infinity where no path leads to a cut
+    distance_to_cut: FloatArray  # (V,) along the edges of the mesh; infinity if no path leads to a cut
 
     @classmethod
     def of(cls, surface: Surface, labels: ArrayLike) -> Segmentation:
-        """The segmentation that gives every face a label.
+        """Compute the segmentation of a surface from the labels of its faces.
 
         Parameters
         ----------
@@ -78,7 +78,7 @@ class Segmentation:
         Raises
         ------
         ValueError
-            Where there is not one label for every face.
+            If there is not one label for every face.
         """
         values = np.asarray(labels)
         if values.shape != surface.face_area.shape:
@@ -95,7 +95,7 @@ class Segmentation:
 
 
 def _half_edges(faces: IntArray) -> LongArray:
-    """(3 F, 2): the sides of the faces, face by face, each with its smaller vertex first."""
+    """(3 F, 2) vertices of the sides of the faces, face by face, the smaller index first."""
     return np.sort(faces[:, [[0, 1], [1, 2], [2, 0]]].reshape(-1, 2).astype(np.int64), axis=1)
 
 
@@ -109,7 +109,7 @@ def _adjacency(faces: IntArray) -> tuple[LongArray, LongArray]:
 
 
 def _edge_graph(vertices: FloatArray, faces: IntArray) -> csr_array:
-    # Each edge once: a sparse matrix adds up its repeated entries. A length of 0 stays an edge.
+    # Each edge once, because a sparse matrix sums repeated entries. An edge of length 0 stays an edge.
     edges = np.unique(_half_edges(faces), axis=0)
     start, end = edges[edges[:, 0] < edges[:, 1]].T
     length = np.linalg.norm(vertices[start] - vertices[end], axis=1)

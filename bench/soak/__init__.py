@@ -1,1 +1,1 @@
-"""An installation whose processes are killed at random as it works: is anything lost, does anything come out wrong?"""
+"""A soak test: processes of an installation are killed at random, and its results compared with those without kills."""

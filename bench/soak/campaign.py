@@ -1,4 +1,4 @@
-"""One soak: what comes out without faults, then the same with them, and the difference."""
+"""Runs a soak: the same jobs without and with faults, and the difference."""
 
 import random
 import time
@@ -14,11 +14,11 @@ from bench.soak.work import LARGE_JOB_BYTES, Client, Submitted
 from worker.jobs.attempts import Attempt
 from worker.jobs.job import now
 
-_SETTLED_WITHIN_S = 180.0
-_DROPPED = "the outcome of this run is dropped"
+_SETTLED_WITHIN_S = 180.0  # several times the longest pause in the table of bench/RESULTS.md
+_DROPPED = "the outcome of this run is dropped"  # in a log message of worker.process.perform
 
-# Kills are meant for jobs here, and no work-horse can tell one from the end of a job that is poison.
 _SETTINGS = {
+    # More than the kills of one job: a worker cannot distinguish a kill from a job that crashes its work-horse.
     "CLEAVE_MAX_ATTEMPTS": "25",
     "CLEAVE_LARGE_JOB_BYTES": str(LARGE_JOB_BYTES),
     "CLEAVE_LOG_LEVEL": "info",
@@ -27,26 +27,30 @@ _SETTINGS = {
 
 @dataclass(frozen=True, slots=True)
 class SoakPlan:
+    """The size of a soak. The defaults were set by hand; bench/RESULTS.md has the outcome with them."""
+
     jobs: int = 300
     kills: int = 100  # of work-horses, workers, both at once, the janitor and the service
     queue_kills: int = 6  # of the queue server, one of them with the loss of its files
-    interval_s: float = 2.0  # between two kills, on average
-    workers: int = 4  # that are started together, of which one is for the large jobs
+    interval_s: float = 2.0  # mean time between two kills
+    workers: int = 4  # one of them for the large jobs
     seed: int = 1
-    settings: dict[str, str] = field(default_factory=dict)  # of the service, beside those of a soak
+    settings: dict[str, str] = field(default_factory=dict)  # more settings of the service
 
 
 @dataclass(frozen=True, slots=True)
 class SoakReport:
+    """The outcome of a soak."""
+
     jobs: int
     kills: Counter[str]
-    lost: int  # accepted jobs that are not there any more, or have no outcome
+    lost: int  # accepted jobs that do not exist any more or have no outcome
     failed: int
-    duplicates: int  # jobs that nobody submitted
-    differing: int  # results whose bytes are not those of an undisturbed run
-    run_again: int  # jobs that were begun more than once
-    dropped: int  # runs that came to an end when the job had its outcome already
-    resumed_s: float  # from the death of a worker to the next run of its job, at most
+    duplicates: int  # jobs that were not submitted
+    differing: int  # results whose bytes differ from those of a run without faults
+    run_again: int  # jobs with more than one attempt
+    dropped: int  # attempts that ended after the job already had an outcome
+    resumed_s: float  # longest time from the death of a worker to the next attempt of its job
     settled_s: float  # from the last kill to the end of the last job
 
     @property
@@ -55,16 +59,16 @@ class SoakReport:
 
 
 def soak(plan: SoakPlan) -> SoakReport:
-    """Run the same jobs undisturbed and under fire."""
+    """Run the same jobs without and with faults."""
     settings = _SETTINGS | plan.settings
     with installed(plan.workers, settings) as installation:
-        expected = _undisturbed(installation)
+        expected = _without_faults(installation)
     with installed(plan.workers, settings) as installation:
-        return _under_fire(installation, plan, expected)
+        return _with_faults(installation, plan, expected)
 
 
-def _undisturbed(installation: Installation) -> dict[int, str]:
-    """The digest of the result of each different mesh."""
+def _without_faults(installation: Installation) -> dict[int, str]:
+    """Return the digest of the result of each different mesh."""
     client = Client(installation)
     submitted = [client.submit(number) for number in range(client.different)]
     client.wait_for_end(_SETTLED_WITHIN_S)
@@ -73,40 +77,48 @@ def _undisturbed(installation: Installation) -> dict[int, str]:
     return {job.mesh: digests[job.id] for job in submitted}
 
 
-def _under_fire(installation: Installation, plan: SoakPlan, expected: dict[int, str]) -> SoakReport:
+def _with_faults(installation: Installation, plan: SoakPlan, expected: dict[int, str]) -> SoakReport:
     client, rng = Client(installation), random.Random(plan.seed)
     faults = schedule(plan.kills, plan.queue_kills, rng)
     submission = client.submit_evenly(plan.jobs, plan.interval_s * len(faults))
-    kills, deaths = _fire(installation, faults, plan.interval_s, submission, rng)
-    fired_at = time.monotonic()
+    done = _inflict_all(installation, faults, plan.interval_s, submission, rng)
+    ended_at = time.monotonic()
     submitted = submission.result()
     statuses = client.wait_for_end(_SETTLED_WITHIN_S)
-    settled_s = time.monotonic() - fired_at
+    settled_s = time.monotonic() - ended_at
     digests, attempts = client.results(), client.attempts()
     client.close()
     ids = {job.id for job in submitted}
     return SoakReport(
         jobs=len(ids),
-        kills=kills,
+        kills=done.kills,
         lost=sum(statuses.get(job_id) not in ("succeeded", "failed") for job_id in ids),
         failed=sum(status == "failed" for status in statuses.values()),
         duplicates=len(statuses.keys() - ids),
         differing=sum(digests.get(job.id, expected[job.mesh]) != expected[job.mesh] for job in submitted),
         run_again=sum(len(runs) > 1 for runs in attempts),
         dropped=installation.log.read_text(errors="replace").count(_DROPPED),
-        resumed_s=longest_pause_s(attempts, deaths),
+        resumed_s=longest_pause_s(attempts, done.worker_deaths),
         settled_s=settled_s,
     )
 
 
-def _fire(
+@dataclass(frozen=True, slots=True)
+class _Faults:
+    """The faults that were inflicted."""
+
+    kills: Counter[str]  # by kind
+    worker_deaths: list[datetime]
+
+
+def _inflict_all(
     installation: Installation,
     faults: list[str],
     interval_s: float,
     submission: "Future[list[Submitted]]",
     rng: random.Random,
-) -> tuple[Counter[str], list[datetime]]:
-    """One fault after the other, all of them; how many of each were done, and when workers died."""
+) -> _Faults:
+    """Inflict all faults, one after the other; stop if the submission fails."""
     kills: Counter[str] = Counter()
     deaths: list[datetime] = []
     left = deque(faults)
@@ -119,12 +131,15 @@ def _fire(
             kills[fault] += 1
             deaths += [now()] if fault in WORKER_DEATHS else []
         else:
-            left.insert(2, fault)  # there was nothing to kill just now
-    return kills, deaths
+            left.insert(2, fault)  # there was no such process: try again later
+    return _Faults(kills, deaths)
 
 
 def longest_pause_s(attempts: list[list[Attempt]], deaths: list[datetime]) -> float:
-    """From the death of a worker to the next run of its job; a run without an end is put down to the first after it."""
+    """Return the longest time from the death of a worker to the next attempt of its job.
+
+    An attempt without an end is assigned to the first death after its start.
+    """
     pauses = [0.0]
     for runs in attempts:
         for run, following in pairwise(runs):

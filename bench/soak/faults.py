@@ -1,4 +1,4 @@
-"""What is done to an installation: its processes are killed, as the kernel, an operator or a power cut would do it."""
+"""The faults of a soak: processes are killed, as by the kernel, an operator or a power cut."""
 
 import os
 import random
@@ -11,9 +11,9 @@ from contextlib import suppress
 
 from bench.load.installation import Installation
 
-_PATIENCE_S = 5.0  # until there is a process to kill
+_FOUND_WITHIN_S = 5.0  # longest wait for a process to kill; set by hand
 
-# How often each fault is, out of 20.
+# The relative frequency of each fault, out of 20; set by hand, most of them for the processes that hold jobs.
 _WEIGHTS = {"work-horse": 6, "worker": 5, "worker and work-horse": 5, "janitor": 2, "service": 2}
 WORKER_DEATHS = ("worker", "worker and work-horse")
 QUEUE_SERVER = "queue server"
@@ -21,7 +21,7 @@ EMPTIED_QUEUE_SERVER = "queue server and its files"
 
 
 def schedule(kills: int, queue_kills: int, rng: random.Random) -> list[str]:
-    """The faults in the order in which they come; the last but one of the queue server costs its files."""
+    """Return the faults in their order; the last but one of the queue server also deletes its files."""
     names = list(_WEIGHTS)
     faults = [*names, *rng.choices(names, list(_WEIGHTS.values()), k=max(0, kills - len(names)))][:kills]
     rng.shuffle(faults)
@@ -34,11 +34,12 @@ def schedule(kills: int, queue_kills: int, rng: random.Random) -> list[str]:
 
 
 def inflict(fault: str, installation: Installation, rng: random.Random) -> bool:
-    """Do one of them; False where there was nothing to kill for seconds."""
-    return _DEEDS[fault](installation, rng)
+    """Inflict a fault; return False if no such process appeared for some seconds."""
+    return _FAULTS[fault](installation, rng)
 
 
-def tell(counts: Counter[str]) -> str:
+def describe(counts: Counter[str]) -> str:
+    """Return the number of faults of each kind as text."""
     return ", ".join(f"{count} {name}" for name, count in sorted(counts.items()))
 
 
@@ -51,7 +52,7 @@ def _kill_worker(installation: Installation, rng: random.Random) -> bool:
 
 
 def _kill_both(installation: Installation, rng: random.Random) -> bool:
-    """A worker in the middle of a job, and its work-horse with it."""
+    """Kill a worker during a job together with its work-horse."""
     horses = _some(installation.work_horses, rng)
     return _kill([_parent_of(horses[0]), *horses]) if horses else False
 
@@ -61,17 +62,17 @@ def _kill_child(word: str) -> Callable[[Installation, random.Random], bool]:
 
 
 def _empty_queue_server(installation: Installation, rng: random.Random) -> bool:
-    """It comes back as another, empty one."""
+    """Kill the queue server and delete its files, so that it restarts empty."""
     servers = _some(lambda: installation.children("queue.sock"), rng)
     for server in servers:
         with suppress(ProcessLookupError):
-            os.kill(server, signal.SIGSTOP)  # so that it is not started again before its files are gone
+            os.kill(server, signal.SIGSTOP)  # so that it is not restarted before its files are deleted
     for path in (installation.data_dir / "queue").glob("append*"):
         shutil.rmtree(path, ignore_errors=True)
     return _kill(servers)
 
 
-_DEEDS: dict[str, Callable[[Installation, random.Random], bool]] = {
+_FAULTS: dict[str, Callable[[Installation, random.Random], bool]] = {
     "work-horse": _kill_work_horse,
     "worker": _kill_worker,
     "worker and work-horse": _kill_both,
@@ -83,9 +84,9 @@ _DEEDS: dict[str, Callable[[Installation, random.Random], bool]] = {
 
 
 def _some(find: Callable[[], list[int]], rng: random.Random) -> list[int]:
-    """One of the processes, once there are any; none after a while without."""
-    gives_up_at = time.monotonic() + _PATIENCE_S
-    while time.monotonic() < gives_up_at:
+    """Wait for processes and return one of them; an empty list if there is none in time."""
+    deadline = time.monotonic() + _FOUND_WITHIN_S
+    while time.monotonic() < deadline:
         found = [pid for pid in find() if pid]
         if found:
             return [rng.choice(found)]

@@ -1,4 +1,4 @@
-"""The jobs of a soak: a few different ones, over and over, by a client that does not give up."""
+"""Submits the jobs of a soak: a few different meshes repeatedly, each request with retries."""
 
 import hashlib
 import time
@@ -16,11 +16,11 @@ from cleave.settings import Settings
 from worker.jobs.attempts import Attempt
 from worker.jobs.store.opening import open_store
 
-LARGE_JOB_BYTES = 300_000  # such that the last of the meshes are large
+LARGE_JOB_BYTES = 300_000  # between the sizes of the meshes, so that the last of them are large jobs
 _FACES = (1_000, 2_500, 5_000, 8_000, 12_000, 25_000, 40_000)
 _WAVES = (3, 4, 5)
 _RETRY_S = 0.2
-_GIVE_UP_S = 120.0  # no fault keeps the service away for so long
+_GIVE_UP_S = 120.0  # longer than any fault makes the service unavailable
 _ENDED = ("succeeded", "failed", "canceled")
 
 
@@ -28,8 +28,8 @@ _ENDED = ("succeeded", "failed", "canceled")
 class Submitted:
     """One job of a soak."""
 
-    mesh: int  # its place among the different ones
-    path: str
+    mesh: int  # index of the mesh
+    path: str  # of the job, from the header Location
 
     @property
     def id(self) -> str:
@@ -37,7 +37,7 @@ class Submitted:
 
 
 class Client:
-    """Submits jobs, each under a key of its own, so that what is sent again makes no second job."""
+    """A client that retries. Every job has its own idempotency key, so that a retry creates no second job."""
 
     def __init__(self, installation: Installation) -> None:
         self._installation = installation
@@ -46,20 +46,20 @@ class Client:
 
     @property
     def different(self) -> int:
-        """How many different meshes there are."""
+        """The number of different meshes."""
         return len(self._meshes)
 
     def submit(self, number: int) -> Submitted:
-        """Submit a job and again, until it is accepted."""
+        """Submit a job, with retries until it is accepted."""
         mesh = number % self.different
         headers = {"Content-Type": "model/ply", "Idempotency-Key": f"soak-{number}", "Cache-Control": "no-cache"}
-        answer = self._until(
+        response = self._retry(
             lambda: self._http.post("/v1/jobs", content=self._meshes[mesh], headers=headers), {200, 202}
         )
-        return Submitted(mesh, answer.headers["Location"])
+        return Submitted(mesh, response.headers["Location"])
 
     def submit_evenly(self, count: int, duration_s: float) -> Future[list[Submitted]]:
-        """Submit jobs one after the other, spread over a time, in a thread."""
+        """Submit jobs one after the other in a thread, evenly spread over a duration."""
 
         def work() -> list[Submitted]:
             began_at, submitted = time.monotonic(), []
@@ -69,32 +69,32 @@ class Client:
             return submitted
 
         pool = ThreadPoolExecutor(1)
-        promise = pool.submit(work)
+        future = pool.submit(work)
         pool.shutdown(wait=False)
-        return promise
+        return future
 
     def statuses(self) -> dict[str, str]:
-        """The status of every job there is, by its id."""
+        """Return the status of every job by its id."""
         found: dict[str, str] = {}
         query: dict[str, str | int] = {"limit": 100}
         while True:
-            page = self._until(lambda: self._http.get("/v1/jobs", params=query), {200}).json()
+            page = self._retry(lambda: self._http.get("/v1/jobs", params=query), {200}).json()
             found |= {job["id"]: job["status"] for job in page["jobs"]}
             if page["next_cursor"] is None:
                 return found
             query["cursor"] = page["next_cursor"]
 
     def wait_for_end(self, within_s: float) -> dict[str, str]:
-        """Wait until every job has ended, as long as that takes at most; how they are then."""
-        gives_up_at = time.monotonic() + within_s
+        """Wait until every job has ended, at most ``within_s`` seconds, and return their statuses."""
+        deadline = time.monotonic() + within_s
         statuses = self.statuses()
-        while time.monotonic() < gives_up_at and not set(statuses.values()) <= set(_ENDED):
+        while time.monotonic() < deadline and not set(statuses.values()) <= set(_ENDED):
             time.sleep(_RETRY_S)
             statuses = self.statuses()
         return statuses
 
     def results(self) -> dict[str, str]:
-        """A digest of the stored result of every job that has one, by its id."""
+        """Return a digest of the stored result of every succeeded job by its id."""
         store = open_store(Settings(data_dir=self._installation.data_dir))
         digests: dict[str, str] = {}
         for job_id, status in self.statuses().items():
@@ -104,21 +104,23 @@ class Client:
         return digests
 
     def attempts(self) -> list[list[Attempt]]:
-        """The runs of every job."""
+        """Return the attempts of every job."""
         store = open_store(Settings(data_dir=self._installation.data_dir))
         return [store.records.attempts(job_id) for job_id in self.statuses()]
 
     def close(self) -> None:
+        """Close the connections."""
         self._http.close()
 
-    def _until(self, ask: Callable[[], httpx.Response], good: set[int]) -> httpx.Response:
-        gives_up_at = time.monotonic() + _GIVE_UP_S
-        while time.monotonic() < gives_up_at:
+    def _retry(self, send: Callable[[], httpx.Response], expected: set[int]) -> httpx.Response:
+        """Send a request until the response has an expected status code; client errors raise BenchmarkError."""
+        deadline = time.monotonic() + _GIVE_UP_S
+        while time.monotonic() < deadline:
             with suppress(httpx.TransportError):
-                answer = ask()
-                if answer.status_code in good:
-                    return answer
-                if answer.status_code < 500:
-                    raise BenchmarkError(f"The service refuses a job of the soak: {answer.text}")
+                response = send()
+                if response.status_code in expected:
+                    return response
+                if response.status_code < 500:
+                    raise BenchmarkError(f"The service rejects a request of the soak: {response.text}")
             time.sleep(_RETRY_S)
-        raise BenchmarkError(f"The service does not come back within {_GIVE_UP_S:.0f} s: see its log.")
+        raise BenchmarkError(f"The service does not respond within {_GIVE_UP_S:.0f} s: see its log.")

@@ -1,4 +1,4 @@
-"""Headless Chromium for benchmarks of the viewer."""
+"""Headless Chromium for the benchmark of the viewer."""
 
 from __future__ import annotations
 
@@ -12,17 +12,18 @@ from bench.errors import BenchmarkError
 if TYPE_CHECKING:
     from playwright.sync_api import Browser
 
+# WebGL by SwiftShader on the processor; a sandbox is not available to root and in containers.
 _ARGUMENTS = ["--no-sandbox", "--use-angle=swiftshader", "--enable-unsafe-swiftshader", "--ignore-gpu-blocklist"]
 
 
 @contextmanager
 def chromium(executable: Path) -> Iterator[Browser]:
-    """A browser that draws with the processor.
+    """Start a browser that draws with the processor, and close it at the end.
 
     Raises
     ------
     BenchmarkError
-        Where it is not there, or the package that steers it.
+        If the browser or the package playwright is not installed.
     """
     try:
         from playwright.sync_api import sync_playwright

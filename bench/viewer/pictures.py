@@ -1,7 +1,8 @@
-"""Pictures of the viewer for docs/viewer.md."""
+"""Takes the pictures of the viewer for docs/viewer.md."""
 
 from __future__ import annotations
 
+from dataclasses import dataclass, field
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -16,38 +17,52 @@ _PHONE: dict[str, Any] = {
     "is_mobile": True,
     "has_touch": True,
 }
-_TIMEOUT_MS = 300_000
-_REST_MS = 1500  # until a picture is sharp, and the list of jobs has its own
+_TIMEOUT_MS = 300_000  # the processor draws, and the largest mesh has 1.3 million faces
+_REST_MS = 1500  # until the page has drawn a sharp frame and the list of jobs; set by hand
+
+
+@dataclass(frozen=True, slots=True)
+class Shot:
+    """One picture of the page."""
+
+    name: str  # of the file, without .png
+    fragment: str = ""  # of the URL
+    device: dict[str, Any] = field(default_factory=lambda: _DESKTOP)  # options of the browser context
+    button: str = ""  # selector of a button that is clicked first
 
 
 def take_pictures(browser: Browser, url: str, large_job: str, folder: Path) -> None:
-    """Write the pictures; the samples are sent to the service for them."""
+    """Write the pictures to a folder; this submits the samples to the service."""
     folder.mkdir(parents=True, exist_ok=True)
     page = _page(browser, _DESKTOP)
     jobs = {name: _sample(page, url, name) for name in ("jack", "pawn", "stool")}
-    shots: list[tuple[str, dict[str, Any], str, str]] = [
-        ("start", _DESKTOP, "", ""),
-        ("desktop", _DESKTOP, f"#job={jobs['pawn']}", ""),
-        ("selected", _DESKTOP, f"#job={jobs['pawn']}&sel=3", ""),
-        ("dark", _DARK, f"#job={jobs['jack']}&explode=0.8&view=0.7_1.1_3.3_0_0_0", ""),
-        ("thirty", _DESKTOP, f"#job={jobs['jack']}&k=30", ""),
-        ("concavity", _DESKTOP, f"#job={jobs['jack']}&k=1&show=concavity.nolines", ""),
-        ("wireframe", _DARK, f"#job={jobs['stool']}&show=wires&explode=0.5", ""),
-        ("compare", _DESKTOP, f"#job={jobs['pawn']}&beside={jobs['stool']}", ""),
-        ("take-away", _DESKTOP, f"#job={jobs['pawn']}", "#open-take-away"),
-        ("jobs", _DARK, f"#job={jobs['stool']}", "#open-jobs"),
-        ("parameters", _DESKTOP, f"#job={jobs['stool']}", "#open-parameters"),
-        ("phone", _PHONE, f"#job={jobs['stool']}", ""),
-        ("phone-start", _PHONE, "", ""),
-        ("million", _DESKTOP, f"#job={large_job}", ""),
-    ]
     page.context.close()
-    for name, look, fragment, button in shots:
-        _shoot(browser, look, f"{url}/{fragment}", button, folder / f"{name}.png")
+    for shot in _shots(jobs, large_job):
+        _take(browser, shot, f"{url}/{shot.fragment}", folder / f"{shot.name}.png")
+
+
+def _shots(jobs: dict[str, str], large_job: str) -> list[Shot]:
+    jack, pawn, stool = (f"#job={jobs[name]}" for name in ("jack", "pawn", "stool"))
+    return [
+        Shot("start"),
+        Shot("desktop", pawn),
+        Shot("selected", f"{pawn}&sel=3"),
+        Shot("dark", f"{jack}&explode=0.8&view=0.7_1.1_3.3_0_0_0", _DARK),
+        Shot("thirty", f"{jack}&k=30"),
+        Shot("concavity", f"{jack}&k=1&show=concavity.nolines"),
+        Shot("wireframe", f"{stool}&show=wires&explode=0.5", _DARK),
+        Shot("compare", f"{pawn}&beside={jobs['stool']}"),
+        Shot("take-away", pawn, button="#open-take-away"),
+        Shot("jobs", stool, _DARK, "#open-jobs"),
+        Shot("parameters", stool, button="#open-parameters"),
+        Shot("phone", stool, _PHONE),
+        Shot("phone-start", device=_PHONE),
+        Shot("million", f"#job={large_job}"),
+    ]
 
 
 def _sample(page: Page, url: str, name: str) -> str:
-    """The id of the job of a sample."""
+    """Click on a sample and return the id of its job."""
     page.goto(url)
     page.click(f"[data-sample={name}]")
     page.wait_for_selector("#work:not([hidden])")
@@ -55,20 +70,20 @@ def _sample(page: Page, url: str, name: str) -> str:
     return job
 
 
-def _shoot(browser: Browser, look: dict[str, Any], url: str, button: str, target: Path) -> None:
-    page = _page(browser, look)
+def _take(browser: Browser, shot: Shot, url: str, target: Path) -> None:
+    page = _page(browser, shot.device)
     page.goto(url)
-    if "#" in url:
+    if shot.fragment:
         page.wait_for_selector("#work:not([hidden])")
         page.evaluate("() => document.getElementById('viewer').figures.frame()")
-    if button:
-        page.click(button)
+    if shot.button:
+        page.click(shot.button)
     page.wait_for_timeout(_REST_MS)
     page.screenshot(path=target)
     page.context.close()
 
 
-def _page(browser: Browser, look: dict[str, Any]) -> Page:
-    page = browser.new_context(reduced_motion="reduce", **look).new_page()
+def _page(browser: Browser, device: dict[str, Any]) -> Page:
+    page = browser.new_context(reduced_motion="reduce", **device).new_page()
     page.set_default_timeout(_TIMEOUT_MS)
     return page

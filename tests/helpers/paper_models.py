@@ -1,6 +1,6 @@
-"""A benchmark folder of two shapes whose parts are known, and a method that is easy to foresee.
+"""A benchmark folder of two shapes with known parts, and a method with a known result.
 
-A module of its own, under a name of its own, because other processes import the method.
+The method is in a module, not in a test, because other processes import it.
 """
 
 from dataclasses import dataclass
@@ -12,7 +12,7 @@ from bench.peers.method import MethodFailed, Outcome
 from segcore.mesh import Mesh
 from segcore.shapes import Shape, burr, dumbbell
 
-# The bearing of Figure 5 must be among them.
+# By number: category, shape, number of segments. The bearing of Figure 5 must be one of them.
 SHAPES: dict[int, tuple[str, Shape, int]] = {
     1: ("Human", burr(subdivisions=3), 7),
     341: ("Bearing", dumbbell(rings=24, around=16), 3),
@@ -20,7 +20,7 @@ SHAPES: dict[int, tuple[str, Shape, int]] = {
 
 
 def write_benchmark(folder: Path) -> Path:
-    """The two models, each with two people: one names every part, the other one sees the last two as one."""
+    """Write the two models, each with two people: one labels every part, the other one joins the last two."""
     (folder / "off").mkdir(parents=True)
     for number, (_, shape, _) in SHAPES.items():
         mesh = shape.mesh
@@ -39,7 +39,7 @@ def write_benchmark(folder: Path) -> Path:
 
 @dataclass(frozen=True)
 class Slices:
-    """Cuts a mesh across its x axis into parts of equally many faces; gives up on meshes of too many."""
+    """Cuts a mesh across its x axis into parts of equally many faces; fails on meshes with too many."""
 
     key: str = "slices"
     most_faces: int = 10**6

@@ -1,9 +1,10 @@
-"""Flat strips of triangles, on which every metric can be worked out by hand, and a segmenter for them.
+"""Flat strips of triangles, on which every metric can be computed by hand, and a segmenter for them.
 
-A module of its own, under a name of its own, because other processes import the segmenter.
+The segmenter is in a module, not in a test, because other processes import it.
 """
 
 from dataclasses import dataclass
+from pathlib import Path
 
 import numpy as np
 from numpy.typing import NDArray
@@ -14,7 +15,7 @@ from segcore.mesh import Mesh
 
 
 def strip(columns: int, rows: int = 1) -> tuple[NDArray[np.float64], NDArray[np.int32]]:
-    """Vertices and faces of a grid of unit squares, each of two triangles: square by square, column by column."""
+    """Return vertices and faces of a grid of unit squares of two triangles: square by square, column by column."""
     x, y = np.meshgrid(np.arange(columns + 1), np.arange(rows + 1), indexing="ij")
     vertices = np.column_stack([x.ravel(), y.ravel(), np.zeros(x.size)]).astype(np.float64)
     corner = (np.arange(columns)[:, None] * (rows + 1) + np.arange(rows)).ravel()
@@ -24,12 +25,36 @@ def strip(columns: int, rows: int = 1) -> tuple[NDArray[np.float64], NDArray[np.
 
 
 def strip_surface(columns: int, rows: int = 1) -> Surface:
+    """Return the surface of a strip."""
     return Surface.from_mesh(*strip(columns, rows))
 
 
 def cut_at(columns: int, *positions: int, rows: int = 1) -> NDArray[np.int64]:
-    """Labels (2 columns rows,) of a strip that is cut across at these columns."""
+    """(2 columns rows,) labels of a strip that is cut across at these columns."""
     return np.searchsorted(np.array(sorted(positions)), np.repeat(np.arange(columns), 2 * rows), side="right")
+
+
+STRIP_COLUMNS = 12
+# Two categories of different size, so that the mean over models and the mean over categories differ.
+STRIP_CATEGORIES = {1: "Rod", 3: "Rod", 21: "Slat"}
+STRIP_PEOPLE = (cut_at(STRIP_COLUMNS, 4, 8), cut_at(STRIP_COLUMNS, 4, 9), cut_at(STRIP_COLUMNS, 6))
+
+
+def write_strips(folder: Path) -> Path:
+    """Write a benchmark of three equal strips, which three people cut into 3, 3 and 2 parts."""
+    (folder / "off").mkdir(parents=True)
+    vertices, faces = strip(STRIP_COLUMNS)
+    lines = ["OFF", f"{len(vertices)} {len(faces)} 0", *(f"{x} {y} {z}" for x, y, z in vertices)]
+    lines += [f"3 {a} {b} {c}" for a, b, c in faces]
+    for number in STRIP_CATEGORIES:
+        (folder / "off" / f"{number}.off").write_text("\n".join(lines) + "\n")
+        people = folder / "seg" / "Benchmark" / str(number)
+        people.mkdir(parents=True)
+        for person, labels in enumerate(STRIP_PEOPLE):
+            np.savetxt(people / f"{number}_{person}.seg", labels, fmt="%d")
+    rows = [f"{number}\t{category}\t3" for number, category in STRIP_CATEGORIES.items()]
+    (folder / "segments.tsv").write_text("\n".join(["model\tcategory\tsegments", *rows]) + "\n")
+    return folder
 
 
 @dataclass(frozen=True)
@@ -49,7 +74,7 @@ class EvenLevels:
 
 @dataclass(frozen=True)
 class EvenSegmenter:
-    """Puts the cuts as many columns off as the seed says."""
+    """Shifts the cuts by as many columns as the value of the seed."""
 
     max_segments: int = 6
     broken: bool = False

@@ -1,0 +1,1 @@
+"""Authored assets: meshes with the parts that their authors made."""

@@ -1,0 +1,89 @@
+"""The authored assets as a folder: meshes, and the part of every face."""
+
+from __future__ import annotations
+
+import csv
+from dataclasses import dataclass
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from bench.datasets import read_labels, read_mesh, spread_evenly
+from bench.errors import BenchmarkError
+
+if TYPE_CHECKING:
+    from segcore.arrays import LongArray
+    from segcore.mesh import Mesh
+
+NO_PART = -1  # label of the faces that belong to no part
+
+
+@dataclass(frozen=True, slots=True)
+class Asset:
+    """One mesh in the vertices of its author: the paths of its files, and its number of parts."""
+
+    collection: str  # column set of models.tsv: robots, people, ...
+    name: str
+    parts: int
+    mesh_path: Path  # SET/NAME.ply
+    parts_path: Path  # SET/NAME.seg
+
+    def read_mesh(self) -> Mesh:
+        """Read the mesh of the asset.
+
+        Raises
+        ------
+        BenchmarkError
+            If the file is missing or cannot be read.
+        """
+        return read_mesh(self.mesh_path, f"{self.collection}/{self.name}")
+
+    def read_parts(self, face_count: int) -> LongArray:
+        """(F,) part of every face, NO_PART if it belongs to none.
+
+        Raises
+        ------
+        BenchmarkError
+            If the file is not a list of ``face_count`` integers.
+        """
+        return read_labels(self.parts_path, face_count)
+
+
+def read_assets(folder: Path, limit: int | None = None) -> list[Asset]:
+    """Read the list of assets ``folder``/models.tsv, in its order.
+
+    Parameters
+    ----------
+    folder : contains models.tsv (columns set, name, parts and others), SET/NAME.ply and SET/NAME.seg.
+    limit : return at most this many assets, spread evenly over the list and so over the sets.
+
+    Raises
+    ------
+    BenchmarkError
+        If the list is missing, empty or malformed, or the limit is below 1.
+    """
+    return spread_evenly(_listed_assets(folder), limit)
+
+
+def _listed_assets(folder: Path) -> list[Asset]:
+    path = folder / "models.tsv"
+    try:
+        with path.open(newline="", encoding="utf-8") as lines:
+            assets = [_asset(folder, row) for row in csv.DictReader(lines, delimiter="\t")]
+    except OSError as error:
+        raise BenchmarkError(f"{folder} is not the folder of the assets: models.tsv cannot be read.") from error
+    except (KeyError, TypeError, ValueError) as error:
+        raise BenchmarkError(f"{path} must be a table with the columns set, name, parts: {error}.") from error
+    if not assets:
+        raise BenchmarkError(f"{path} lists no model.")
+    return assets
+
+
+def _asset(folder: Path, row: dict[str, str]) -> Asset:
+    collection, name = row["set"], row["name"]
+    return Asset(
+        collection=collection,
+        name=name,
+        parts=int(row["parts"]),
+        mesh_path=folder / collection / f"{name}.ply",
+        parts_path=folder / collection / f"{name}.seg",
+    )

@@ -1,0 +1,67 @@
+"""The service under load: response times and memory while workers are busy, and the overhead of waiting for a result.
+
+busy     status polls, uploads and memory while both workers segment; needs wrk
+waiting  the overhead of Prefer: wait=10
+levels   labels at any number of segments
+
+Each measurement starts `cleave serve` with its own data folder.
+"""
+
+from __future__ import annotations
+
+import argparse
+from collections.abc import Callable
+
+import httpx
+
+import segcore
+from bench.errors import BenchmarkError
+from bench.load import measures
+from bench.load.installation import installed
+
+_POLLS_S = 60
+
+
+def add_arguments(parser: argparse.ArgumentParser) -> None:
+    parser.add_argument(
+        "names", nargs="*", metavar="NAME", help=f"some of {', '.join(_MEASURES)} (default all, in this order)"
+    )
+
+
+def run(arguments: argparse.Namespace) -> None:
+    unknown = [name for name in arguments.names if name not in _MEASURES]
+    if unknown:
+        raise BenchmarkError(f"There is no measurement {unknown[0]!r}: there are {', '.join(_MEASURES)}.")
+    for name in arguments.names or _MEASURES:
+        _MEASURES[name]()
+
+
+def _busy() -> None:
+    # Three workers, of which two run jobs of this size.
+    with installed(workers=3) as installation, httpx.Client(base_url=installation.url, timeout=120) as client:
+        path = measures.keep_busy(client, 60)[-1]
+        _print(f"status polls for {_POLLS_S} s", measures.polls(installation, path, _POLLS_S))
+        _print("upload to queued", measures.uploads(client, 60))
+        _print("memory of the service", measures.upload_memory(installation, client, 200))
+        left = client.get(path).json()["status"]
+        print(f"  (the workers were busy throughout: the last job is {left})")
+
+
+def _waiting() -> None:
+    segcore.warm_up()
+    with installed(workers=1) as installation, httpx.Client(base_url=installation.url, timeout=120) as client:
+        _print("Prefer: wait=10, 20,000 faces", measures.waiting(client, 20_000, 9))
+
+
+def _levels() -> None:
+    with installed(workers=1) as installation, httpx.Client(base_url=installation.url, timeout=600) as client:
+        for faces in (20_000, 1_000_000):
+            for form in ("json", "raw"):
+                _print(f"segments=k, {faces} faces, {form}", measures.levels(client, faces, form))
+
+
+_MEASURES: dict[str, Callable[[], None]] = {"busy": _busy, "waiting": _waiting, "levels": _levels}
+
+
+def _print(name: str, found: str) -> None:
+    print(f"| {name} | {found} |", flush=True)

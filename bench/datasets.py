@@ -1,0 +1,68 @@
+"""Functions that the readers of the data sets share."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from pathlib import Path
+from typing import TYPE_CHECKING, TypeVar
+
+import numpy as np
+
+from bench.errors import BenchmarkError
+
+if TYPE_CHECKING:
+    from segcore.arrays import LongArray
+    from segcore.mesh import Mesh
+
+Item = TypeVar("Item")
+
+
+def spread_evenly(models: Sequence[Item], limit: int | None) -> list[Item]:
+    """Return at most ``limit`` models, spread evenly over the list and so over its categories; all if it is None.
+
+    Raises
+    ------
+    BenchmarkError
+        If the limit is below 1.
+    """
+    if limit is None:
+        return list(models)
+    if limit < 1:
+        raise BenchmarkError(f"The limit must be at least 1 model, not {limit}.")
+    count = min(limit, len(models))
+    return [models[i * len(models) // count] for i in range(count)]
+
+
+def read_mesh(path: Path, name: str) -> Mesh:
+    """Read the mesh of a model.
+
+    Raises
+    ------
+    BenchmarkError
+        If the file is missing or cannot be read; the message contains ``name``.
+    """
+    # Imported here so that listing commands and comparing results do not load the compiled kernels.
+    from segcore import io
+    from segcore.errors import CleaveError
+
+    try:
+        return io.read_mesh(path)
+    except (OSError, CleaveError) as error:
+        raise BenchmarkError(f"Model {name} cannot be read: {error}") from error
+
+
+def read_labels(path: Path, face_count: int) -> LongArray:
+    """(F,) labels of a .seg file: one integer per line, line i for face i.
+
+    Raises
+    ------
+    BenchmarkError
+        If the file does not contain ``face_count`` integers.
+    """
+    try:
+        labels = np.array(path.read_text(encoding="ascii").split(), dtype=np.int64)
+    except (OSError, ValueError) as error:
+        raise BenchmarkError(f"{path} is not a list of integers: {error}") from error
+    if labels.shape != (face_count,):
+        raise BenchmarkError(f"{path} must have one label for each of {face_count} faces, not {labels.size}.")
+    return labels

@@ -1,0 +1,1 @@
+"""Measurements of the readers and writers of mesh files."""

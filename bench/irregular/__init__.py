@@ -1,0 +1,1 @@
+"""The same shapes in other meshes, and the agreement of their segmentations."""

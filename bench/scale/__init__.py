@@ -1,0 +1,1 @@
+"""Time and memory of one segmentation over the number of faces."""

@@ -1,0 +1,31 @@
+"""The scale command on small meshes."""
+
+import pytest
+
+from bench.__main__ import main
+from bench.commands.scale import render, render_crowds
+from bench.scale.cost import STAGES, Cost
+
+
+def test_costs_are_per_face_and_add_up():
+    cost = Cost("ball", 1000, dict.fromkeys(STAGES, 0.01), 500_000)
+    assert cost.total_s == pytest.approx(0.05)
+    row = render([cost]).splitlines()[2].split()
+    assert row == ["ball", "1000", *["0.010"] * 5, "0.050", "50.00", "0", "500"]
+
+
+def test_crowds_are_compared_with_the_first_one():
+    costs = [Cost(name, 12, dict.fromkeys(STAGES, seconds), 0) for name, seconds in (("one", 0.1), ("many", 0.2))]
+    assert [line.split()[-1] for line in render_crowds(costs).splitlines()[2:]] == ["1.00", "2.00"]
+
+
+def test_every_mesh_has_a_line(capsys):
+    assert main(["scale", "--sizes", "200", "--runs", "1"]) == 0
+    lines = capsys.readouterr().out.splitlines()
+    assert lines[2].split()[0] == "dumbbell"
+    assert lines[-1].startswith("1,000 boxes that touch")
+
+
+def test_a_size_below_100_faces_is_rejected(capsys):
+    assert main(["scale", "--sizes", "5"]) == 2
+    assert "--sizes" in capsys.readouterr().err
