@@ -91,7 +91,7 @@ def first_cut_graphs(model: Model) -> dict[str, SurfaceGraph]:
 
 
 def _largest_component(graph: SurfaceGraph) -> SurfaceGraph:
-    component = connected_components(graph)
+    component = connected_components(graph.edges, graph.node_count)
     return graph.subgraph(np.flatnonzero(component == np.bincount(component).argmax()).astype(np.int32))
 
 
