@@ -13,7 +13,8 @@ from segcore.coarsen.contacts import POINTS, Links, find_contacts, spread_points
 from segcore.graphs.mesh_graph import MeshGraph
 from segcore.graphs.surface_graph import connected_components
 
-# Affinity across a contact, set by hand: that of an edge with a concave bending of 3.7 (affinity "concavity").
+# Affinity across a contact, set by hand: that of an edge with a concave bending of 3.7 (affinity "concavity"). Smaller
+# values do better on models of several bodies: see docs/algorithm.md, "Constants" of section 3.
 CONTACT = 0.1
 NEGLIGIBLE = 0.002  # share of the total area below which an assembly is attached to its neighbour, as cut/rules.py has
 _SMALLEST_SIZE = 1e-4  # least size of a surface, in extents of its bounding box, in the search for contacts
