@@ -53,7 +53,7 @@ class Patches:
         places = (np.concatenate([patches, a, b]), np.concatenate([patches, b, a]))
         matrix = csc_matrix((entries, places), shape=(count, count))
         factor = splu(matrix, permc_spec="MMD_AT_PLUS_A", diag_pivot_thresh=0.0, options={"SymmetricMode": True})
-        smooth: FloatArray = factor.solve(values * (mass if values.ndim == 1 else mass[:, None]))
+        smooth: FloatArray = factor.solve((values.T * mass).T)
         return smooth
 
     def gradients(self, values: FloatArray) -> FloatArray:
