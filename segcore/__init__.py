@@ -7,6 +7,18 @@ Usage::
     mesh = segcore.read_mesh("hand.off")
     hierarchy = segcore.segment(mesh)
     hierarchy.labels(7)
+
+Public are the names of this package:
+
+- ``read_mesh``, ``Mesh``: the input
+- ``segment``, ``SegmentationParameters``, ``parameters_schema``, ``warm_up``: the method and its choices
+- ``Hierarchy``, ``Fineness``, ``keep_splits``: the result at any number of segments
+- ``mesh_report``, ``MeshReport``, ``build_surface``, ``Surface``: the cleaned mesh and the defects that were found
+- ``CleaveError``, ``InvalidMesh``, ``UnsupportedFormat``, ``InvalidParameters``, ``LimitExceeded``: the errors
+
+and the modules that define them, ``segcore.io`` (readers and writers), ``segcore.appearance``, ``segcore.progress`` and
+``segcore.shapes`` (procedural meshes). The packages of the stages (``clean``, ``affinity``, ``coarsen``, ``cut``,
+``label``) and ``solvers``, ``graphs`` and ``learned`` are internal, except for ``Surface`` and ``build_surface``.
 """
 
 from segcore.clean.surface import Surface, build_surface

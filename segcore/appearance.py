@@ -1,4 +1,4 @@
-"""What a mesh file says beside the shape: normals, texture coordinates, colours, and the names of its groups."""
+"""Normals, texture coordinates, colours and named groups of a mesh file."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass, field
@@ -13,23 +13,23 @@ from segcore.errors import InvalidMesh
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Appearance:
-    """Kept for the outputs; the segmentation does not look at it.
+    """The attributes of a mesh besides its shape. The writers keep them; the segmentation does not use them.
 
-    The arrays have a row for each of the V vertices of the mesh, then, where a vertex looks different in different
-    faces (at the seam of a texture, at a hard edge), more rows: row V + i is of vertex ``extra_vertex[i]``.
+    The arrays have a row for each of the V vertices of the mesh. A vertex with different values in different faces, as
+    at a texture border or a hard edge, has further rows: row V + i belongs to vertex ``extra_vertex[i]``.
 
     Raises
     ------
     InvalidMesh
-        Where the shapes do not fit each other.
+        If the shapes of the arrays do not match.
     """
 
     normals: NDArray[np.float32] | None = None  # (A, 3) unit vectors
-    uvs: NDArray[np.float32] | None = None  # (A, 2) texture coordinates, (0, 0) being the upper left of the image
-    colors: NDArray[np.uint8] | None = None  # (A, 4) sRGB and opacity
+    uvs: NDArray[np.float32] | None = None  # (A, 2) texture coordinates, (0, 0) is the upper left corner of the image
+    colors: NDArray[np.uint8] | None = None  # (A, 4) sRGB and opacity, 0..255
     extra_vertex: IntArray = field(default_factory=lambda: np.zeros(0, dtype=np.int32))  # (A - V,)
-    corners: IntArray | None = None  # (F, 3) the row of every corner; None where A = V and it is the vertex
-    face_group: IntArray | None = None  # (F,) entry of ``group_names``
+    corners: IntArray | None = None  # (F, 3) row of every corner; None if A = V: then it is the vertex
+    face_group: IntArray | None = None  # (F,) index into ``group_names``
     group_names: tuple[str, ...] = ()
 
     def __post_init__(self) -> None:
@@ -42,22 +42,22 @@ class Appearance:
         if len(rows) > 1 or (len(self.extra_vertex) and self.corners is None):
             raise InvalidMesh("The arrays of an appearance do not have the same number of rows.")
         if self.face_group is not None and not _are_entries(self.face_group, len(self.group_names)):
-            raise InvalidMesh("The groups of an appearance must be entries of its list of names.")
+            raise InvalidMesh("The groups of an appearance must be indices into its list of names.")
 
     @property
     def row_arrays(self) -> dict[str, NDArray[Any]]:
-        """The arrays with a row for each vertex that are there, by name."""
+        """The arrays with a row for each vertex, by name; those that are None are left out."""
         arrays = {"normals": self.normals, "uvs": self.uvs, "colors": self.colors}
         return {name: values for name, values in arrays.items() if values is not None}
 
     def groups_of(self, faces: IntArray) -> list[str]:
-        """The names of the groups that some of the faces are in; none where there are no groups."""
+        """The names of the groups of some faces, in the order of ``group_names``; empty if there are no groups."""
         if self.face_group is None:
             return []
         return [self.group_names[group] for group in np.unique(self.face_group[faces]).tolist()]
 
     def fits(self, vertex_count: int, face_count: int) -> bool:
-        """Whether this can be the appearance of a mesh of that size."""
+        """Whether the arrays match a mesh of this size."""
         rows = vertex_count + len(self.extra_vertex)
         return (
             all(len(values) == rows for values in self.row_arrays.values())
@@ -68,7 +68,7 @@ class Appearance:
 
 
 def group_appearance(names: Sequence[str], sizes: Sequence[int]) -> Appearance | None:
-    """Groups of which the i-th run of ``sizes[i]`` faces is called ``names[i]``; None where no run has a name."""
+    """Groups of consecutive faces: run i has ``sizes[i]`` faces and ``names[i]``; None if no run has a name."""
     if not any(names):
         return None
     entry = {name: i for i, name in enumerate(dict.fromkeys(names))}
@@ -77,7 +77,7 @@ def group_appearance(names: Sequence[str], sizes: Sequence[int]) -> Appearance |
 
 
 def unit_normals(values: NDArray[Any]) -> NDArray[np.float32] | None:
-    """(A, 3) normals made unit vectors; None where one of them has no direction."""
+    """(A, 3) normals scaled to length 1; None if one of them has no direction."""
     lengths = np.linalg.norm(values.astype(np.float64), axis=1)
     if not (np.isfinite(lengths) & (lengths > np.finfo(np.float32).tiny)).all():
         return None
@@ -85,13 +85,13 @@ def unit_normals(values: NDArray[Any]) -> NDArray[np.float32] | None:
 
 
 def texture_coordinates(values: NDArray[Any]) -> NDArray[np.float32] | None:
-    """(A, 2) as float32; None where one of them is not finite there."""
+    """(A, 2) texture coordinates as float32; None if one of them is not finite in that type."""
     uvs = values.astype(np.float32)
     return uvs if np.isfinite(uvs).all() else None
 
 
 def color_bytes(values: NDArray[Any]) -> NDArray[np.uint8] | None:
-    """(A, 4) of three or four columns: whole numbers of 0..255 or of 0..65535, or fractions of 0..1; else None."""
+    """(A, 4) colours from three or four columns of integers 0..255 or 0..65535, or of fractions 0..1; else None."""
     kind, top = values.dtype.kind, values.max(initial=0)
     if not 3 <= values.shape[1] <= 4 or not (values >= 0).all():
         return None
@@ -106,7 +106,7 @@ def color_bytes(values: NDArray[Any]) -> NDArray[np.uint8] | None:
 
 
 def appearance_or_none(appearance: Appearance) -> Appearance | None:
-    """None where there is nothing in it."""
+    """The appearance, or None if it is empty."""
     return appearance if appearance.row_arrays or appearance.face_group is not None else None
 
 

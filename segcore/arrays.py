@@ -1,4 +1,4 @@
-"""Names for the kinds of arrays that segcore passes around."""
+"""Type aliases of arrays, and two reductions that several stages share."""
 
 from typing import TypeAlias
 
@@ -11,16 +11,16 @@ LongArray: TypeAlias = NDArray[np.int64]
 BoolArray: TypeAlias = NDArray[np.bool_]
 
 
-_VANISHES = 1e-100  # squares of anything smaller leave the range of floating point numbers
+_VANISHES = 1e-100  # squares of smaller numbers leave the range of float64
 
 
 def at_least(values: FloatArray, share: float) -> FloatArray:
-    """Values raised to a share of their mean; all 1 where they vanish."""
+    """(N,) values raised to at least a share of their mean; all 1 if the mean is 0."""
     mean = float(values.mean()) if len(values) else 0.0
     return np.maximum(values, share * mean) if mean > _VANISHES else np.ones_like(values)
 
 
 def group_sums(group: NDArray[np.integer], values: FloatArray, count: int = 0) -> FloatArray:
-    """(max(count, groups),): the sum of the values of each group 0, 1, ...; zero for empty groups."""
+    """(max(count, groups),) the sum of the values of each group 0, 1, ...; 0 for empty groups."""
     sums: FloatArray = np.bincount(group, values, minlength=count).astype(np.float64, copy=False)
     return sums

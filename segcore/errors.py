@@ -1,17 +1,17 @@
-"""The errors that segcore raises on purpose.
+"""The exceptions of segcore.
 
 CleaveError
  |- InvalidMesh         the file or the arrays cannot be segmented as given: fix the mesh
- |- UnsupportedFormat   the file is of a kind that is not read here: convert it
+ |- UnsupportedFormat   the file has a format that is not supported: convert it
  |- InvalidParameters   a value is outside its documented range: fix the call
  `- LimitExceeded       the input is larger than this installation accepts: reduce it or raise the limit
 
-Every class has a stable ``code`` for programs; the message is one sentence for people that says what to do.
+Every class has a stable ``code`` for programs. The message is one sentence for people and names a remedy.
 """
 
 
 class CleaveError(Exception):
-    """Base of every expected failure."""
+    """Base class of all expected errors."""
 
     code = "error"
 
@@ -23,7 +23,7 @@ class InvalidMesh(CleaveError):  # noqa: N818
 
 
 class UnsupportedFormat(CleaveError):  # noqa: N818
-    """The bytes are of a file format, or use a feature of one, that is not read here."""
+    """The file has a format, or uses a feature of one, that is not supported."""
 
     code = "unsupported_format"
 

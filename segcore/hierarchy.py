@@ -1,4 +1,4 @@
-"""The binary tree of cuts: labels at any number of segments, without recomputation."""
+"""The binary tree of cuts: labels at any number of segments without recomputation."""
 
 from dataclasses import dataclass
 
@@ -9,11 +9,11 @@ from segcore.errors import InvalidParameters
 
 
 def renumbered_nodes(order: IntArray) -> IntArray:
-    """(2 S + 1,): the number that every node of a hierarchy gets where its splits are made in another order.
+    """(2 S + 1,) the new number of every node of a hierarchy if its splits are made in another order.
 
     Parameters
     ----------
-    order : (S,) the splits, first to last, parents before children.
+    order : (S,) the splits from first to last, parents before children.
     """
     number = np.zeros(2 * len(order) + 1, dtype=np.int32)
     place = np.arange(len(order), dtype=np.int32)
@@ -26,13 +26,13 @@ def renumbered_nodes(order: IntArray) -> IntArray:
 class Hierarchy:
     """The splits of a mesh in the order in which they were made.
 
-    Node 0 is the whole mesh. Split s (0, 1, ...) cuts node ``split_node[s]`` in two, the larger part becoming node
-    2 s + 1 and the smaller one node 2 s + 2; with splits 0..s made there are s + 2 segments. So the order of the
-    splits, the parents and the level at which a node appears can all be read off the node numbers.
+    Node 0 is the whole mesh. Split s (0, 1, ...) cuts node ``split_node[s]`` in two: the larger part becomes node
+    2 s + 1 and the smaller one node 2 s + 2. After splits 0..s there are s + 2 segments. The node numbers therefore
+    determine the order of the splits, the parents and the level at which a node appears.
     """
 
     split_node: IntArray  # (S,) the node that split s cuts, split_node[s] <= 2 s
-    cut_value: FloatArray  # (S,) normalized cut times sqrt(total area), dimensionless; 0 where components part
+    cut_value: FloatArray  # (S,) normalized cut times sqrt(total area), dimensionless; 0 between components
     area: FloatArray  # (2 S + 1,) surface area of every node, in squared units of the mesh
     face_count: IntArray  # (2 S + 1,) input faces of every node
     face_leaf: IntArray  # (F,) the leaf node of every input face
@@ -40,38 +40,39 @@ class Hierarchy:
 
     @property
     def max_segments(self) -> int:
-        """The number of segments with every split made."""
+        """The number of segments after all splits."""
         return len(self.split_node) + 1
 
     @property
     def node_count(self) -> int:
+        """N, the number of nodes: 2 S + 1."""
         return 2 * len(self.split_node) + 1
 
     @property
     def children(self) -> IntArray:
-        """(N, 2): the two children of every node, larger first; -1 for leaves."""
+        """(N, 2) the two children of every node, the larger one first; -1 for leaves."""
         children = np.full((self.node_count, 2), -1, dtype=np.int32)
         children[self.split_node] = 1 + np.arange(2 * len(self.split_node), dtype=np.int32).reshape(-1, 2)
         return children
 
     @property
     def parent(self) -> IntArray:
-        """(N,): the parent of every node; -1 for the root."""
+        """(N,) the parent of every node; -1 for the root."""
         return np.concatenate([np.array([-1], dtype=np.int32), np.repeat(self.split_node, 2)])
 
     @property
     def level(self) -> IntArray:
-        """(N,): the smallest number of segments at which a node is a segment of its own."""
+        """(N,) the smallest number of segments at which a node is a segment."""
         return np.concatenate(
             [np.array([1], dtype=np.int32), np.repeat(np.arange(len(self.split_node), dtype=np.int32) + 2, 2)]
         )
 
     @property
     def label(self) -> IntArray:
-        """(N,): the label that a node has wherever it is a segment.
+        """(N,) the label of a node at all levels at which it is a segment.
 
-        The larger part of a cut keeps its parent's label, the smaller one gets the next new label: a segment that does
-        not split keeps its label (and its colour) at every level.
+        The larger part of a cut keeps its parent's label and the smaller one gets the next new label. A segment that is
+        not split therefore keeps its label, and its colour, at every level.
         """
         label = np.zeros(self.node_count, dtype=np.int32)
         for split, node in enumerate(self.split_node.tolist()):
@@ -80,12 +81,16 @@ class Hierarchy:
         return label
 
     def segment_nodes(self, segments: int | None = None) -> IntArray:
-        """(K,): the node that is segment 0, 1, ..., K - 1 at a number of segments, by default the automatic one.
+        """(K,) the nodes of the segments 0, 1, ..., K - 1.
+
+        Parameters
+        ----------
+        segments : the number of segments K, by default ``automatic_segments``.
 
         Raises
         ------
         InvalidParameters
-            Where ``segments`` is not in 1..max_segments.
+            If ``segments`` is not in 1..max_segments.
         """
         count = self._checked(segments)
         nodes = np.zeros(count, dtype=np.int32)
@@ -96,14 +101,14 @@ class Hierarchy:
         return nodes
 
     def segments_at(self, granularity: float) -> int:
-        """The number of segments K at a granularity: 0 is one segment, 0.5 the automatic number, 1 every split made.
+        """The number of segments K at a granularity: 1 at 0, ``automatic_segments`` at 0.5, ``max_segments`` at 1.
 
-        Between them K grows by equal factors for equal steps.
+        In between, equal steps of the granularity multiply K by equal factors.
 
         Raises
         ------
         InvalidParameters
-            Where the granularity is not in 0..1.
+            If the granularity is not in 0..1.
         """
         if not 0.0 <= granularity <= 1.0:
             raise InvalidParameters(f"The granularity must be a number from 0 (coarse) to 1 (fine), not {granularity}.")
@@ -113,7 +118,7 @@ class Hierarchy:
         return round(self.automatic_segments * finer ** (2.0 * granularity - 1.0))
 
     def labels(self, segments: int | None = None) -> IntArray:
-        """(F,) int32: the segment of every input face, contiguous 0..K - 1, in input order.
+        """(F,) int32 labels of the input faces in input order: all of 0..K - 1 occur.
 
         Parameters
         ----------
@@ -122,7 +127,7 @@ class Hierarchy:
         Raises
         ------
         InvalidParameters
-            Where ``segments`` is not in 1..max_segments.
+            If ``segments`` is not in 1..max_segments.
         """
         count = self._checked(segments)
         label_of_node = np.zeros(self.node_count, dtype=np.int32)

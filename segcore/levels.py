@@ -1,4 +1,4 @@
-"""Other cuts through the same tree: any splits first, for people who cut one part further than the others."""
+"""Levels of a hierarchy: a requested number of segments, and hierarchies whose first splits a user has selected."""
 
 from collections.abc import Collection
 from dataclasses import dataclass
@@ -12,16 +12,16 @@ from segcore.hierarchy import Hierarchy, renumbered_nodes
 
 @dataclass(frozen=True, slots=True)
 class Fineness:
-    """At most one of the two; with neither it is what the mesh itself suggests.
+    """A requested number of segments: a number, a granularity, or neither for the automatic number.
 
     Raises
     ------
     InvalidParameters
-        Where both are given.
+        If both are given.
     """
 
     segments: int | None = None
-    granularity: float | None = None  # 0 coarse, 0.5 automatic, 1 fine
+    granularity: float | None = None  # 0 coarse, 0.5 automatic, 1 fine; see ``Hierarchy.segments_at``
 
     def __post_init__(self) -> None:
         if self.segments is not None and self.granularity is not None:
@@ -29,15 +29,16 @@ class Fineness:
 
     @property
     def is_automatic(self) -> bool:
+        """Whether neither a number nor a granularity is given."""
         return self.segments is None and self.granularity is None
 
     def segments_of(self, hierarchy: Hierarchy) -> int:
-        """The number of segments that is meant, in this hierarchy.
+        """The requested number of segments of a hierarchy.
 
         Raises
         ------
         InvalidParameters
-            Where the granularity is not in 0..1, or the hierarchy has not as many segments.
+            If the granularity is not in 0..1 or ``segments`` is not in 1..max_segments.
         """
         if self.granularity is not None:
             return hierarchy.segments_at(self.granularity)
@@ -45,19 +46,19 @@ class Fineness:
 
 
 def keep_splits(hierarchy: Hierarchy, splits: Collection[int]) -> Hierarchy:
-    """The hierarchy with some splits moved to the front: they alone are made at its automatic number of segments.
+    """The hierarchy with some splits moved to the front; its automatic number of segments makes exactly these splits.
 
-    Split s is the one that makes the nodes 2 s + 1 and 2 s + 2. The other splits follow in their order, so that every
-    level is still a cut through the same tree; nodes and labels are numbered anew.
+    Split s makes the nodes 2 s + 1 and 2 s + 2. The other splits follow in their old order, so that every level is
+    still a cut through the same tree. Nodes and labels are renumbered.
 
     Parameters
     ----------
-    splits : some of 0..max_segments - 2, and with each the split that makes the node that it cuts.
+    splits : any of 0..max_segments - 2, if each comes with the split that makes the node that it cuts.
 
     Raises
     ------
     InvalidParameters
-        Where a split does not exist or its part is not there without another split.
+        If a split does not exist, or cuts a part that is made by a split that is not given.
     """
     count = hierarchy.max_segments - 1
     chosen = sorted(set(splits))

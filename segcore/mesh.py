@@ -1,4 +1,4 @@
-"""A triangle mesh as two arrays."""
+"""A triangle mesh as two arrays, checked when it is made."""
 
 from dataclasses import dataclass
 from typing import Any
@@ -10,26 +10,26 @@ from segcore.appearance import Appearance
 from segcore.arrays import FloatArray, IntArray
 from segcore.errors import InvalidMesh
 
-_LARGEST_COORDINATE = 1e100  # areas and volumes of anything larger leave the range of floating point numbers
+_LARGEST_COORDINATE = 1e100  # areas and volumes of larger meshes leave the range of float64
 
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Mesh:
-    """A triangle mesh, face i being the i-th triangle of the input.
+    """A triangle mesh; face i is the i-th triangle of the input.
 
     Parameters
     ----------
     vertices : (V, 3) finite coordinates, any unit.
     faces : (F, 3) indices into ``vertices``, F >= 1. Repeated indices, duplicate faces, open borders,
-        non-manifold edges and several components are all allowed.
-    source_polygon : (F,) the polygon of the file that each face is a part of, counted from 0; None where every
-        polygon is one face.
-    appearance : what the file says beside the shape, kept for the outputs; None where nobody asked for it.
+        non-manifold edges and several components are allowed.
+    source_polygon : (F,) the polygon of the file, counted from 0, that each face is a part of; None if every polygon is
+        one face.
+    appearance : normals, texture coordinates, colours and groups of the file; None if they were not read.
 
     Raises
     ------
     InvalidMesh
-        Where a shape, an index or a coordinate is wrong; the message names the first offender.
+        If a shape, an index or a coordinate is wrong; the message names the first wrong one.
     """
 
     vertices: FloatArray  # (V, 3)
@@ -49,17 +49,19 @@ class Mesh:
         object.__setattr__(self, "source_polygon", _checked_polygons(source_polygon, len(self.faces)))
         object.__setattr__(self, "appearance", appearance)
         if appearance is not None and not appearance.fits(len(self.vertices), len(self.faces)):
-            raise InvalidMesh("The appearance is of another mesh: its arrays have other lengths.")
+            raise InvalidMesh(
+                "The arrays of the appearance do not match the numbers of vertices and faces of the mesh."
+            )
 
     @property
     def corners(self) -> FloatArray:
-        """(F, 3, 3): the three corner positions of every face."""
+        """(F, 3, 3) the positions of the three corners of every face."""
         corners: FloatArray = self.vertices[self.faces]
         return corners
 
 
 def face_normals_and_areas(corners: FloatArray) -> tuple[FloatArray, FloatArray]:
-    """Unit normals (F, 3), zero where the area is zero, and areas (F,) of triangles given by corners (F, 3, 3)."""
+    """Unit normals (F, 3) and areas (F,) of triangles with corners (F, 3, 3); a normal is zero if the area is zero."""
     cross = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
     double_area = np.linalg.norm(cross, axis=1)
     normals = np.divide(cross, double_area[:, None], out=np.zeros_like(cross), where=double_area[:, None] > 0)
@@ -67,7 +69,7 @@ def face_normals_and_areas(corners: FloatArray) -> tuple[FloatArray, FloatArray]
 
 
 def face_centroids(vertices: FloatArray, faces: IntArray) -> FloatArray:
-    """(F, 3): the mean of the three corners of every face."""
+    """(F, 3) the mean of the three corners of every face."""
     a, b, c = faces.T
     centroids: FloatArray = (vertices[a] + vertices[b] + vertices[c]) / 3.0
     return centroids
@@ -82,7 +84,7 @@ def _checked_vertices(values: ArrayLike) -> FloatArray:
     vertices = np.ascontiguousarray(vertices, dtype=np.float64)
     if len(vertices) == 0:
         return vertices
-    low, high = float(vertices.min()), float(vertices.max())  # not a number where one of them is none
+    low, high = float(vertices.min()), float(vertices.max())  # NaN if any coordinate is NaN
     if not (np.isfinite(low) and np.isfinite(high)):
         first = int(np.argmin(np.isfinite(vertices).all(axis=1)))
         raise InvalidMesh(f"Vertex {first} has a coordinate that is not finite: repair the mesh before sending it.")

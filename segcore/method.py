@@ -1,4 +1,4 @@
-"""The whole method on one screen."""
+"""Segmentation of a mesh into a hierarchy of parts: all stages in order."""
 
 from dataclasses import replace
 from functools import partial
@@ -33,16 +33,16 @@ def segment(
 
     Parameters
     ----------
-    mesh : any triangle mesh; open borders, non-manifold edges, duplicate and degenerate faces and several components
-        are segmented too.
+    mesh : any triangle mesh. Open borders, non-manifold edges, duplicate and degenerate faces and several components
+        are allowed.
     parameters : choices of the method, by default ``SegmentationParameters()``.
-    on_progress : called with the name of a stage and the fraction of the whole work that is done, 0 to 1; what it
-        raises ends the work and is passed on.
-    surface : ``build_surface(mesh)``, where the caller has it already.
+    on_progress : called with the name of a stage and the fraction of the whole work that is done, 0 to 1. An exception
+        that it raises ends the segmentation and is passed on.
+    surface : ``build_surface(mesh)``, if the caller has computed it already.
 
     Returns
     -------
-    The hierarchy of cuts, with a label for every face of the mesh, in its order. The same mesh and parameters give the
+    The hierarchy of cuts, with a leaf for every face of the mesh in input order. The same mesh and parameters give the
     same hierarchy.
     """
     chosen = parameters or SegmentationParameters()
@@ -67,15 +67,15 @@ def segment(
 
 
 def _over_faces(tree: Tree, clusters: Clusters, nodes: MeshGraph, links: Links, surface: Surface) -> Tree:
-    """Carry a tree over the clusters over to the faces; where faces are the nodes, draw the boundaries anew."""
-    if nodes.corners.shape[1] > 1:
-        linked = surface.face_graph().with_edges(links.faces, links.length, links.length)
-        return project(tree, clusters.of_node[nodes.corners], linked)
-    return draw_boundaries(replace(tree, leaf=tree.leaf[clusters.of_node]), nodes, links, surface)
+    """Carry a tree over the clusters over to the faces; if the nodes are the faces, draw its boundaries as well."""
+    if nodes.corners is None:
+        return draw_boundaries(replace(tree, leaf=tree.leaf[clusters.of_node]), nodes, links, surface)
+    linked = surface.face_graph().with_edges(links.faces, links.length, links.length)
+    return project(tree, clusters.of_node[nodes.corners], linked)
 
 
 def _of_input(surface: Surface, tree: Tree) -> Hierarchy:
-    """Carry a tree over the faces of a surface to those of the input, and sum up areas and faces from the leaves."""
+    """Carry a tree over the faces of a surface to the input faces; sum areas and face counts from the leaves up."""
     leaf_of_input = tree.leaf[surface.face_of_input]
     nodes = 2 * len(tree.split_node) + 1
     area = group_sums(tree.leaf, surface.areas * surface.unit**2, nodes)

@@ -1,4 +1,4 @@
-"""What a caller may choose about a segmentation, and the only home of the defaults."""
+"""Parameters of a segmentation with their ranges, defaults and JSON Schema."""
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field, fields, replace
@@ -15,7 +15,7 @@ Order: TypeAlias = Literal["learned", "ncut", "ncc", "volume"]
 
 
 def _about(description: str, *, exception: int | None = None, **limits: float) -> dict[str, Any]:
-    """What is said of a field, and its limits as keywords of JSON Schema; ``exception`` is allowed outside them."""
+    """Metadata of a field: its description, its limits in JSON Schema's words, and a value allowed outside them."""
     return {"description": description, "exception": exception, "limits": limits}
 
 
@@ -23,28 +23,31 @@ def _about(description: str, *, exception: int | None = None, **limits: float) -
 class SegmentationParameters:
     """Choices of the method; every value is checked when the object is made.
 
+    The number of clusters was fitted (docs/algorithm.md, section 3), the six starts are those of the paper, and the
+    learned models were trained on hierarchies of 64 segments. The exponent 1.2 was set by hand.
+
     Raises
     ------
     InvalidParameters
-        Where a value is outside its range; the message has the range and the value.
+        If a value is outside its range; the message contains the range and the value.
     """
 
-    graph: Graph = field(default="faces", metadata=_about("The nodes of the graph that is cut."))
+    graph: Graph = field(default="faces", metadata=_about("Nodes of the graph: the faces or the vertices of the mesh."))
     affinity: Affinity = field(
         default="learned",
-        metadata=_about("The weights of its edges; learned, concavity: on faces only."),
+        metadata=_about("Weights of the edges of the graph; learned and concavity need graph faces."),
     )
     thinning: Thinning = field(
-        default="none", metadata=_about("How concave regions are thinned, for affinity minima_rule.")
+        default="none", metadata=_about("Thinning of the concave regions, for affinity minima_rule.")
     )
-    solver: Solver = field(default="flow", metadata=_about("How a segment is cut."))
+    solver: Solver = field(default="flow", metadata=_about("Algorithm that cuts a segment in two."))
     p: float = field(
-        default=1.2, metadata=_about("The exponent of solver p_laplacian.", exclusiveMinimum=1, exclusiveMaximum=2)
+        default=1.2, metadata=_about("Exponent of solver p_laplacian.", exclusiveMinimum=1, exclusiveMaximum=2)
     )
     starts: int = field(
         default=6,
         metadata=_about(
-            "Of solvers inverse_power and split_bregman: the second eigenvector is one, the others are random.",
+            "Number of starts of solvers inverse_power and split_bregman: the second eigenvector and random ones.",
             minimum=1,
             maximum=1000,
         ),
@@ -52,29 +55,31 @@ class SegmentationParameters:
     iterations: int | None = field(
         default=None,
         metadata=_about(
-            "Limit of the inner problems of these two; null is the solver's own.", minimum=1, maximum=1_000_000
+            "Iteration limit of inner problems of solvers inverse_power and split_bregman; null is their own limit.",
+            minimum=1,
+            maximum=1_000_000,
         ),
     )
     order: Order = field(
         default="learned",
         metadata=_about(
-            "Which split is next: learned as people would, with affinity learned (ncut with any other); or that of the "
-            "segment with the least value, or the largest volume."
+            "Which segment is split next: learned is the order that people would choose (ncut if the affinity is not "
+            "learned); ncut and ncc take the least value of the cut, volume takes the largest segment."
         ),
     )
     max_segments: int = field(
-        default=64, metadata=_about("The number of segments at which the hierarchy ends.", minimum=1, maximum=10_000)
+        default=64, metadata=_about("Number of segments at which the hierarchy ends.", minimum=1, maximum=10_000)
     )
     clusters: int = field(
         default=2500,
         metadata=_about(
-            "Nodes of the coarse graph that is cut in place of the mesh; 0 is the mesh itself.",
+            "Nodes of the coarse graph that is cut in place of the mesh; 0 cuts the mesh itself.",
             exception=0,
             minimum=100,
             maximum=100_000,
         ),
     )
-    seed: int = field(default=0, metadata=_about("Of everything that is random.", minimum=0, maximum=2**32 - 1))
+    seed: int = field(default=0, metadata=_about("Seed of all random numbers.", minimum=0, maximum=2**32 - 1))
 
     def __post_init__(self) -> None:
         for name, schema in _schemas().items():
@@ -84,15 +89,20 @@ class SegmentationParameters:
 
     @property
     def split_order(self) -> Order:
-        """``order``, with "ncut" in place of "learned" where the affinity is not learned."""
+        """``order``, with "ncut" in place of "learned" if the affinity is not learned."""
         return "ncut" if self.order == "learned" and self.affinity != "learned" else self.order
 
     @classmethod
     def preset(cls, name: str) -> "SegmentationParameters":
-        """Parameters that belong together under a name.
+        """The parameters of a named preset.
 
         ``"chahhou2014"`` is the method of Chahhou et al. 2014: the vertex graph with the thinned and cleaned minima
         rule, cut by the inverse power method from six starts, the segment with the least normalized Cheeger cut first.
+
+        Raises
+        ------
+        InvalidParameters
+            If there is no preset of that name.
         """
         if name not in _PRESETS:
             raise InvalidParameters(f"preset must be one of {', '.join(_PRESETS)}, not {name!r}.")
@@ -100,9 +110,14 @@ class SegmentationParameters:
 
     @classmethod
     def from_mapping(cls, values: Mapping[str, object]) -> "SegmentationParameters":
-        """Parameters from names and values, as they come from JSON or a command line.
+        """Parameters from names and values, as read from JSON or a command line.
 
-        Under the name ``"preset"`` they may have the name of a preset, which the others then change.
+        The name ``"preset"`` selects a preset; the other values override those of the preset.
+
+        Raises
+        ------
+        InvalidParameters
+            If a name is unknown or a value is outside its range.
         """
         known = {field.name for field in fields(cls)}
         unknown = sorted(set(values) - known - {"preset"})
@@ -128,8 +143,12 @@ _PRESETS: dict[str, dict[str, object]] = {
 
 
 def parameters_schema() -> dict[str, Any]:
-    """The JSON Schema (2020-12) of what ``from_mapping`` takes, with ranges, defaults and descriptions."""
-    preset = {"type": "string", "enum": sorted(_PRESETS), "description": "Parameters that the others then change."}
+    """The JSON Schema (2020-12) of the argument of ``from_mapping``, with ranges, defaults and descriptions."""
+    preset = {
+        "type": "string",
+        "enum": sorted(_PRESETS),
+        "description": "A named set of parameters; the others override its values.",
+    }
     return {"type": "object", "properties": {"preset": preset, **_schemas()}, "additionalProperties": False}
 
 

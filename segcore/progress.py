@@ -1,12 +1,13 @@
-"""How far a segmentation is: fractions of the whole work, from what each stage takes on a mesh of a given size."""
+"""Progress of a segmentation as a fraction of its work, estimated from the size of the mesh."""
 
 from collections.abc import Callable
 from math import log
 
 OnProgress = Callable[[str, float], None]
 
-# Processor seconds of every stage: fixed, and for every million faces. Measured on 20,000 and 2,000,000 faces; only
-# their proportions matter.
+# Processor seconds of every stage in the order of the work, fixed and per million faces; only their proportions matter.
+# The times per million are those of 2,000,000 faces in the section "Scale" of bench/RESULTS.md. The fixed times were
+# measured on 20,000 faces before rays and features of cuts became faster: both have fallen to less than half since.
 _SECONDS = {
     "clean": (0.0, 0.4),
     "affinity": (0.3, 3.0),
@@ -17,8 +18,11 @@ _SECONDS = {
 STAGES = tuple(_SECONDS)  # in order
 
 
+STAGES = tuple(_SECONDS)
+
+
 class Progress:
-    """Reports stages and fractions to a callback, which may end the work by raising an exception."""
+    """Reports stages and fractions to a callback, which may end the segmentation by raising an exception."""
 
     def __init__(self, on_progress: OnProgress, face_count: int) -> None:
         self._on_progress = on_progress
@@ -29,9 +33,9 @@ class Progress:
         self._begin = {stage: sum(self._share[s] for s in stages[:i]) for i, stage in enumerate(stages)}
 
     def after_splits(self, most: int, done: float) -> None:
-        """A fraction of at most ``most`` segments is made: later ones are smaller and take less time."""
+        """Report the fraction of ``most`` segments that is done. Later segments are smaller and take less time."""
         self("cut", 1.0 + log(done) / log(most))
 
     def __call__(self, stage: str, within: float = 0.0) -> None:
-        """A fraction of a stage is done, 0 where it begins."""
+        """Report the fraction of a stage that is done, 0 at its start."""
         self._on_progress(stage, min(1.0, self._begin[stage] + within * self._share[stage]))

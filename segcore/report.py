@@ -1,10 +1,10 @@
-"""What is found in a mesh: how it hangs together, and what had to be put right before it could be cut."""
+"""Report on a mesh: its size, its components and the defects that cleaning repairs."""
 
 from dataclasses import dataclass
 
 import numpy as np
 
-from segcore.arrays import BoolArray, FloatArray
+from segcore.arrays import BoolArray, FloatArray, IntArray
 from segcore.clean.surface import Surface, build_surface
 from segcore.clean.topology import dual_edges
 from segcore.clean.welding import weld
@@ -14,29 +14,29 @@ from segcore.mesh import Mesh
 
 @dataclass(frozen=True, slots=True)
 class MeshReport:
-    """Counts of a mesh as it was sent; nothing of it keeps a mesh from being segmented.
+    """Counts and measures of a mesh as it was read. None of the defects prevents a segmentation.
 
-    Edges and components are those after welding, without degenerate and duplicate faces.
+    Edges and components are counted after welding, without degenerate and duplicate faces.
     """
 
     vertices: int
     faces: int
-    polygons: int  # of the file, before they were cut into triangles
-    welded_vertices: int  # taken for another one at the same place
-    unused_vertices: int  # that no face has
-    degenerate_faces: int  # with two corners at the same place
-    sliver_faces: int  # without a reliable direction, as their corners are nearly on a line
-    duplicate_faces: int  # with the corners of an earlier face
-    flipped_faces: int  # turned round, so that neighbours agree and closed parts face outward
-    components: int  # sets of faces joined by edges
+    polygons: int  # of the file, before triangulation
+    welded_vertices: int  # replaced by another one at the same place
+    unused_vertices: int  # used by no face
+    degenerate_faces: int  # two of their corners are at the same place
+    sliver_faces: int  # without a reliable normal: their corners are nearly collinear
+    duplicate_faces: int  # with the same corners as an earlier face
+    flipped_faces: int  # reversed, so that neighbours agree and closed parts face outward
+    components: int  # sets of faces that are connected by edges
     border_edges: int  # with one face
-    non_manifold_edges: int  # with three faces or more
-    is_closed: bool  # no border edges and no non-manifold ones: the surface bounds a volume
+    non_manifold_edges: int  # with three or more faces
+    is_closed: bool  # no border edges and no non-manifold edges: the surface bounds a volume
     lower: tuple[float, float, float]  # corner of the bounding box, in units of the mesh
     upper: tuple[float, float, float]
     area: float  # in squared units of the mesh
-    volume: float | None  # in cubed units of the mesh; None where the surface is not closed
-    groups: tuple[str, ...]  # names in the file
+    volume: float | None  # in cubed units of the mesh; None if the surface is not closed
+    groups: tuple[str, ...]  # names of the groups of the file
 
 
 def mesh_report(mesh: Mesh, surface: Surface | None = None) -> MeshReport:
@@ -44,32 +44,33 @@ def mesh_report(mesh: Mesh, surface: Surface | None = None) -> MeshReport:
 
     Parameters
     ----------
-    surface : ``build_surface(mesh)``, where the caller has it already.
+    surface : ``build_surface(mesh)``, if the caller has computed it already.
     """
     surface = surface or build_surface(mesh)
     corners = weld(mesh.vertices, mesh.faces)[mesh.faces]
     a, b, c = corners.T
     proper = (a != b) & (b != c) & (c != a)
-    _, edge_vertices, manifold, _ = dual_edges(surface.faces, len(surface.vertices))
-    non_manifold = len(np.unique(edge_vertices[~manifold], axis=0))
-    border = 3 * len(surface.faces) - 2 * int(manifold.sum()) - int((~manifold).sum()) - non_manifold
+    dual = dual_edges(surface.faces, len(surface.vertices))
+    non_manifold = len(np.unique(dual.vertices[~dual.is_manifold], axis=0))
+    pairs, chained = int(dual.is_manifold.sum()), int((~dual.is_manifold).sum())
+    border = 3 * len(surface.faces) - 2 * pairs - chained - non_manifold  # m chained faces have m - 1 dual edges
     used = np.zeros(len(mesh.vertices), dtype=bool)
     used[mesh.faces] = True
-    standing = np.zeros(len(mesh.vertices), dtype=bool)
-    standing[corners] = True
+    representatives = np.zeros(len(mesh.vertices), dtype=bool)
+    representatives[corners] = True
     is_closed = bool(proper.any()) and border == 0 and non_manifold == 0
     points = mesh.vertices[used]
     return MeshReport(
         vertices=len(mesh.vertices),
         faces=len(mesh.faces),
         polygons=_polygons(mesh),
-        welded_vertices=int(used.sum() - standing.sum()),
+        welded_vertices=int(used.sum() - representatives.sum()),
         unused_vertices=int((~used).sum()),
         degenerate_faces=int((~proper).sum()),
         sliver_faces=_slivers(surface) if proper.any() else 0,
         duplicate_faces=int(proper.sum()) - len(surface.faces) if proper.any() else 0,
         flipped_faces=_flipped(corners[proper], surface, proper) if proper.any() else 0,
-        components=int(connected_components(surface.face_graph()).max()) + 1,
+        components=int(connected_components(surface.edge_faces, len(surface.faces)).max()) + 1,
         border_edges=border if proper.any() else 0,
         non_manifold_edges=non_manifold,
         is_closed=is_closed,
@@ -89,17 +90,16 @@ def _slivers(surface: Surface) -> int:
     return int((~surface.normals.any(axis=1)).sum())
 
 
-def _flipped(corners: FloatArray, surface: Surface, proper: BoolArray) -> int:
-    """Faces that run through their corners the other way round in the surface."""
-    stands_for = surface.face_of_input[proper]
-    _, first = np.unique(stands_for, return_index=True)
+def _flipped(corners: IntArray, surface: Surface, proper: BoolArray) -> int:
+    """The number of faces with the opposite orientation in the surface."""
+    _, first = np.unique(surface.face_of_input[proper], return_index=True)
     before, after = corners[first], surface.faces
-    # Welded corners are numbered anew in the surface, but in the same order.
+    # The surface renumbers the welded corners, but keeps their order.
     return int(((before[:, 1] < before[:, 2]) != (after[:, 1] < after[:, 2])).sum())
 
 
 def _volume(surface: Surface) -> float:
-    """Enclosed volume, from the divergence theorem."""
+    """The enclosed volume in cubed units of the mesh, by the divergence theorem."""
     p, q, r = surface.vertices[surface.faces].transpose(1, 0, 2)
     return float(np.einsum("ij,ij->", p, np.cross(q, r)) / 6) * surface.unit**3
 

@@ -1,4 +1,4 @@
-"""Procedural meshes whose parts are known: for demonstrations, tests, benchmarks and the warming of the kernels."""
+"""Procedural meshes with known parts, for demonstrations, tests, benchmarks and compiling the kernels."""
 
 from dataclasses import dataclass
 
@@ -10,14 +10,14 @@ from segcore.mesh import Mesh
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Shape:
-    """A mesh and the part 0, 1, ... that every face of it belongs to."""
+    """A mesh and the part 0, 1, ... of every face."""
 
     mesh: Mesh
     parts: IntArray  # (F,)
 
 
 def icosphere(subdivisions: int = 4, radius: float = 1.0) -> Mesh:
-    """A sphere of 20 * 4**subdivisions nearly equal faces."""
+    """A sphere of 20 * 4**subdivisions nearly equal faces around the origin."""
     golden = (1 + 5**0.5) / 2
     signs = [(s, t * golden) for s in (-1, 1) for t in (-1, 1)]
     corners = [p for s, t in signs for p in ((0.0, s, t), (s, t, 0.0), (t, 0.0, s))]
@@ -30,7 +30,7 @@ def icosphere(subdivisions: int = 4, radius: float = 1.0) -> Mesh:
 
 
 def subdivide(vertices: FloatArray, faces: IntArray) -> tuple[FloatArray, IntArray]:
-    """Every face cut in four at the midpoints of its edges; the four follow each other in the order of the faces."""
+    """Cut every face in four at the midpoints of its edges; the quarters of face i are faces 4 i to 4 i + 3."""
     edges = np.sort(faces[:, [[0, 1], [1, 2], [2, 0]]].reshape(-1, 2), axis=1)
     unique, which = np.unique(edges, axis=0, return_inverse=True)
     middle = len(vertices) + which.reshape(-1, 3)
@@ -45,8 +45,8 @@ def revolve(radius: FloatArray, height: FloatArray, around: int) -> Mesh:
 
     Parameters
     ----------
-    radius, height : (R,) of the rings, from the lowest to the highest, each radius > 0; poles close both ends.
-    around : vertices on every ring.
+    radius, height : (R,) of the rings from the lowest to the highest, each radius > 0. A pole closes either end.
+    around : number of vertices on every ring.
     """
     angle = 2 * np.pi * np.arange(around) / around
     ring = np.stack([np.cos(angle), np.sin(angle)], axis=1)
@@ -64,7 +64,7 @@ def revolve(radius: FloatArray, height: FloatArray, around: int) -> Mesh:
 
 
 def dumbbell(rings: int = 100, around: int = 48, neck: float = 0.3) -> Shape:
-    """Two balls of radius 1, their centres 3 apart, joined by a neck: the lower ball, the upper ball, the neck."""
+    """Two balls of radius 1, their centres 3 apart, and a neck between them: lower ball 0, upper ball 1, neck 2."""
     height = 2.5 * np.cos(np.linspace(np.pi, 0, rings + 2)[1:-1])
     ball = np.sqrt(np.maximum(0.0, 1 - (np.abs(height) - 1.5) ** 2))
     between = np.where(np.abs(height) < 1.5, neck, 0.0)
@@ -74,7 +74,7 @@ def dumbbell(rings: int = 100, around: int = 48, neck: float = 0.3) -> Shape:
 
 
 def burr(subdivisions: int = 5, arms: int = 6) -> Shape:
-    """A ball with up to six smooth round arms along the axes: part 0 is the ball, parts 1 to ``arms`` are the arms."""
+    """A ball with up to six round arms along the axes: part 0 is the ball, parts 1 to ``arms`` are the arms."""
     direction = np.array([sign * np.eye(3)[i] for i in range(3) for sign in (1, -1)][:arms])
     sphere = icosphere(subdivisions)
     reach = 1.6 / (1 + np.exp(60 * (0.93 - sphere.vertices @ direction.T)))
@@ -95,7 +95,7 @@ def box(
 
 
 def joined(*meshes: Mesh) -> Shape:
-    """Several meshes as the components of one: part i is mesh i."""
+    """One mesh of several components: part i is mesh i."""
     first = np.cumsum([0] + [len(mesh.vertices) for mesh in meshes])
     faces = np.concatenate([mesh.faces + start for mesh, start in zip(meshes, first, strict=False)])
     parts = np.repeat(np.arange(len(meshes), dtype=np.int32), [len(mesh.faces) for mesh in meshes])
@@ -103,7 +103,7 @@ def joined(*meshes: Mesh) -> Shape:
 
 
 def _hull_of_icosahedron(vertices: FloatArray) -> IntArray:
-    """The 20 faces, counter-clockwise from outside: the triples of mutually nearest corners."""
+    """(20, 3) the triples of mutually nearest vertices, counter-clockwise seen from outside."""
     near = vertices @ vertices.T > 0.4
     triples = [
         (i, j, k) for i in range(12) for j in range(i) for k in range(j) if near[i, j] and near[j, k] and near[k, i]

@@ -1,4 +1,4 @@
-"""Loading of the compiled kernels before they are needed."""
+"""Compiling or loading of the numba kernels before their first use."""
 
 from segcore.io.limits import ReadLimits
 from segcore.io.obj.reader import read_obj
@@ -9,9 +9,9 @@ from segcore.shapes import burr, icosphere, joined
 
 
 def warm_up() -> None:
-    """Compile the kernels, or load them from the cache: cut two small shapes, draw one, and read two small files.
+    """Compile the kernels, or load them from numba's cache, by segmenting, drawing and reading small meshes.
 
-    A process that forks workers calls this first: the children then start with everything in memory.
+    A process that forks workers calls this first, so that its children start with the kernels in memory.
     """
     arms = burr(subdivisions=4).mesh
     draw(arms, segment(arms).labels(), size=16)

@@ -53,7 +53,7 @@ def warm_up(solvers: Sequence[str]) -> None:
 
 
 def _largest_component(graph: SurfaceGraph) -> SurfaceGraph:
-    component = connected_components(graph)
+    component = connected_components(graph.edges, graph.node_count)
     return graph.subgraph(np.flatnonzero(component == np.bincount(component).argmax()).astype(np.int32))
 
 

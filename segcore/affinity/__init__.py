@@ -1,1 +1,1 @@
-"""How strongly neighbouring faces or vertices belong together, and what is measured for it."""
+"""Affinity: the weights of a graph of faces or vertices, and the measurements that they are made of."""

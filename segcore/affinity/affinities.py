@@ -1,8 +1,8 @@
-"""How strongly two neighbouring faces belong together: the edge weights of the face dual graph.
+"""The affinities of two neighbouring faces or vertices: how strongly they belong together.
 
-An affinity turns a surface into g, one number in (0, 1] for every dual edge; the weight of the edge is its length
-times g and the volume of a node is the area of its face, so that cuts and volumes do not depend on how finely the
-shape is meshed.
+An affinity turns a surface into one number g in (0, 1] for every edge of a graph. On the face dual graph the weight of
+an edge is its length times g and the volume of a node is the area of its face, so that cuts and volumes do not depend
+on how finely the shape is meshed.
 """
 
 from dataclasses import dataclass
@@ -16,17 +16,18 @@ from segcore.arrays import FloatArray, IntArray
 from segcore.clean.surface import Surface
 from segcore.parameters import SegmentationParameters
 
+# Fitted on the benchmark; the results of their neighbours are in docs/algorithm.md, "Constants" of section 2.
 _FLOOR = 0.03  # g of the strongest boundary: lower lets noise be cut out, higher lets boundaries be ignored
-_BENDING_SCALE = 1.4  # concave bending
-_CHANGE_SCALE = 0.3  # change of thickness
-_CHANCE_SCALE = 0.05  # learned probability of a cut
-_LEARNED_BENDING = 0.4  # weights of what is measured next to what is learned
+_BENDING_SCALE = 1.4  # of concave bending
+_CHANGE_SCALE = 0.3  # of the change of thickness
+_PROBABILITY_SCALE = 0.05  # of the learned probability of a cut
+_LEARNED_BENDING = 0.4  # weights of the measurements beside the learned probability
 _LEARNED_CHANGE = 1.5
 
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Affinity:
-    """The affinity of a surface, and what was measured on the way."""
+    """The affinity of a surface, and the thickness if it was measured for it."""
 
     value: FloatArray  # (E,) g in (0, 1]
     thickness: FloatArray | None = None  # (F,) logarithm of the shape diameter over sqrt(total area), smoothed
@@ -42,24 +43,25 @@ def concavity(surface: Surface, parameters: SegmentationParameters) -> Affinity:
 
 
 def learned(surface: Surface, parameters: SegmentationParameters) -> Affinity:
-    """g = 0.03 + 0.97 exp(-p / 0.05 - 0.4 x - 1.5 x3), p the chance that a person cuts along the edge.
+    """g = 0.03 + 0.97 exp(-p / 0.05 - 0.4 x - 1.5 x3), p the probability that a person cuts along the edge.
 
     See ``segcore.affinity.boundary_features``.
     """
     measured = measure(surface, parameters.seed)
-    chance = boundary_probability(surface, measured)
+    probability = boundary_probability(surface, measured)
     return _affinity(
-        measured, chance / _CHANCE_SCALE + _LEARNED_BENDING * measured.bending + _LEARNED_CHANGE * measured.change
+        measured,
+        probability / _PROBABILITY_SCALE + _LEARNED_BENDING * measured.bending + _LEARNED_CHANGE * measured.change,
     )
 
 
 def adjacency_of_faces(surface: Surface, _: SegmentationParameters) -> Affinity:
-    """g = 1: the standard adjacency matrix."""
+    """g = 1: the standard adjacency matrix of the faces."""
     return Affinity(np.ones(len(surface.edge_faces)))
 
 
 def adjacency_of_vertices(_surface: Surface, ends: IntArray, _: SegmentationParameters) -> FloatArray:
-    """g = 1: the standard adjacency matrix."""
+    """(E,) g = 1: the standard adjacency matrix of the vertices."""
     return np.ones(len(ends))
 
 
@@ -73,4 +75,5 @@ VERTEX_AFFINITIES = {"minima_rule": minima_rule_of_vertices, "adjacency": adjace
 
 
 def _affinity(measured: Measurements, distance: FloatArray) -> Affinity:
+    """g = 0.03 + 0.97 exp(-distance) with distances (E,), and the thickness of the patch of every face."""
     return Affinity(_FLOOR + (1.0 - _FLOOR) * np.exp(-distance), measured.log_thickness[measured.patches.of_face])

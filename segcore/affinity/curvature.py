@@ -1,11 +1,12 @@
 """Principal curvatures at the vertices of a mesh.
 
-Rusinkiewicz, Estimating curvatures and their derivatives on triangle meshes, 3DPVT 2004: on every face the second
-fundamental form is fitted to the differences of the vertex normals along the three edges; a vertex averages the forms
-of its faces, turned into its own tangent plane and weighted by the part of the face that lies nearest to it.
+Rusinkiewicz, Estimating curvatures and their derivatives on triangle meshes, 3DPVT 2004. On every face the second
+fundamental form is fitted to the differences of the vertex normals along the three edges. A vertex averages the forms
+of its faces, rotated into its own tangent plane and weighted by the part of the face that is nearest to it.
 """
 
 from dataclasses import dataclass
+from typing import NamedTuple, TypeAlias
 
 import numpy as np
 from numba import njit
@@ -13,7 +14,10 @@ from numba import njit
 from segcore.affinity.frames import tangent_frame
 from segcore.arrays import FloatArray, IntArray
 
-_SLIVER = 1e-6  # twice the area over the squared longest edge below which the direction of a face is rounding noise
+_SLIVER = 1e-6  # twice the area over the squared longest edge below which a normal is rounding noise; set by hand
+_OPPOSITE = -0.999  # cosine of two normals below which the rotation between them is replaced by a reflection
+
+Vector: TypeAlias = tuple[float, float, float]
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -25,16 +29,16 @@ class PrincipalCurvatures:
 
 
 def principal_curvatures(vertices: FloatArray, faces: IntArray) -> PrincipalCurvatures:
-    """Principal curvatures of consistently oriented faces.
+    """Principal curvatures of consistently oriented faces. O(V + F).
 
     Parameters
     ----------
     vertices : (V, 3)
-    faces : (F, 3), outward normals counter-clockwise. Slivers take no part.
+    faces : (F, 3), counter-clockwise seen from outside. Slivers are ignored.
 
     Returns
     -------
-    Zero at vertices that only slivers touch.
+    Curvatures of the vertices; 0 at vertices without a face that is not a sliver.
     """
     curvature = _curvature_tensors(vertices, faces)
     e, f, g = curvature.T
@@ -42,31 +46,53 @@ def principal_curvatures(vertices: FloatArray, faces: IntArray) -> PrincipalCurv
     return PrincipalCurvatures(k1=mean + spread, k2=mean - spread)
 
 
+class _VertexFrames(NamedTuple):
+    """A tangent frame at every vertex, and the area that the vertex stands for."""
+
+    normal: FloatArray  # (V, 3) unit normals
+    u: FloatArray  # (V, 3) unit tangents
+    v: FloatArray  # (V, 3) unit tangents, perpendicular to u
+    area: FloatArray  # (V,) of the mixed Voronoi cell
+
+
+class _Plane(NamedTuple):
+    """The plane of a face: two perpendicular unit vectors."""
+
+    t: Vector
+    b: Vector
+
+
+class _Form(NamedTuple):
+    """A symmetric form [e f; f g] in a plane."""
+
+    e: float
+    f: float
+    g: float
+
+
 @njit(cache=True)
 def _curvature_tensors(vertices: FloatArray, faces: IntArray) -> FloatArray:
-    """(V, 3): the entries (e, f, g) of the second fundamental form in a tangent frame of every vertex."""
-    vertex_count = len(vertices)
-    normal = np.zeros((vertex_count, 3))
-    share = np.zeros(vertex_count)
-    corner_share = np.zeros((len(faces), 3))
+    """(V, 3) the entries (e, f, g) of the second fundamental form in a tangent frame of every vertex."""
+    count = len(vertices)
+    frames = _VertexFrames(np.zeros((count, 3)), np.empty((count, 3)), np.empty((count, 3)), np.zeros(count))
+    cells = np.zeros((len(faces), 3))
     for i in range(len(faces)):
-        _add_normals_and_shares(vertices, faces[i], normal, share, corner_share[i])
-    frame_u = np.empty((vertex_count, 3))
-    frame_v = np.empty((vertex_count, 3))
-    for v in range(vertex_count):
-        _normalize(normal[v])
-        tangent_frame(normal[v], frame_u[v], frame_v[v])
-    tensor = np.zeros((vertex_count, 3))
+        _add_normals_and_cells(vertices, faces[i], frames, cells[i])
+    for v in range(count):
+        _normalize(frames.normal[v])
+        tangent_frame(frames.normal[v], frames.u[v], frames.v[v])
+    tensor = np.zeros((count, 3))
     for i in range(len(faces)):
-        _add_face_tensor(vertices, faces[i], normal, frame_u, frame_v, share, corner_share[i], tensor)
+        _add_face_tensor(vertices, faces[i], frames, cells[i], tensor)
     return tensor
 
 
 @njit(cache=True)
-def _add_normals_and_shares(
-    vertices: FloatArray, face: IntArray, normal: FloatArray, share: FloatArray, corner_share: FloatArray
-) -> None:
-    """Add one face to its vertices' normals (weights of Max 1999) and shares of area (mixed Voronoi cells)."""
+def _add_normals_and_cells(vertices: FloatArray, face: IntArray, frames: _VertexFrames, cells: FloatArray) -> None:
+    """Add a face to the normals of its vertices (weights of Max 1999) and to their areas (mixed Voronoi cells).
+
+    The areas that its three corners get are written into ``cells`` (3,); they stay 0 for a sliver.
+    """
     a, b, c = vertices[face[0]], vertices[face[1]], vertices[face[2]]
     ax, ay, az = c[0] - b[0], c[1] - b[1], c[2] - b[2]
     bx, by, bz = a[0] - c[0], a[1] - c[1], a[2] - c[2]
@@ -81,30 +107,30 @@ def _add_normals_and_shares(
     weights = (1.0 / (lb * lc), 1.0 / (lc * la), 1.0 / (la * lb))
     for k in range(3):
         v = face[k]
-        normal[v, 0] += weights[k] * nx
-        normal[v, 1] += weights[k] * ny
-        normal[v, 2] += weights[k] * nz
+        frames.normal[v, 0] += weights[k] * nx
+        frames.normal[v, 1] += weights[k] * ny
+        frames.normal[v, 2] += weights[k] * nz
     area = 0.5 * double_area
-    # An obtuse angle at a corner gives that corner half of the face and the others a quarter.
+    # A corner with an obtuse angle gets half of the face and the others get a quarter.
     if la >= lb + lc:
-        cells = (0.5 * area, 0.25 * area, 0.25 * area)
+        shares = (0.5 * area, 0.25 * area, 0.25 * area)
     elif lb >= lc + la:
-        cells = (0.25 * area, 0.5 * area, 0.25 * area)
+        shares = (0.25 * area, 0.5 * area, 0.25 * area)
     elif lc >= la + lb:
-        cells = (0.25 * area, 0.25 * area, 0.5 * area)
+        shares = (0.25 * area, 0.25 * area, 0.5 * area)
     else:
         cot_a = (lb + lc - la) / (2.0 * double_area)
         cot_b = (lc + la - lb) / (2.0 * double_area)
         cot_c = (la + lb - lc) / (2.0 * double_area)
-        cells = ((lb * cot_b + lc * cot_c) / 8.0, (lc * cot_c + la * cot_a) / 8.0, (la * cot_a + lb * cot_b) / 8.0)
+        shares = ((lb * cot_b + lc * cot_c) / 8.0, (lc * cot_c + la * cot_a) / 8.0, (la * cot_a + lb * cot_b) / 8.0)
     for k in range(3):
-        corner_share[k] = cells[k]
-        share[face[k]] += cells[k]
+        cells[k] = shares[k]
+        frames.area[face[k]] += shares[k]
 
 
 @njit(cache=True)
 def _normalize(normal: FloatArray) -> None:
-    """Give a normal the length 1, in place; one of length 0 becomes the z-axis."""
+    """Scale a normal (3,) to length 1, in place; a zero vector becomes the z-axis."""
     length = np.sqrt(normal[0] ** 2 + normal[1] ** 2 + normal[2] ** 2)
     if length > 0.0:
         normal /= length
@@ -114,17 +140,10 @@ def _normalize(normal: FloatArray) -> None:
 
 @njit(cache=True)
 def _add_face_tensor(
-    vertices: FloatArray,
-    face: IntArray,
-    normal: FloatArray,
-    frame_u: FloatArray,
-    frame_v: FloatArray,
-    share: FloatArray,
-    corner_share: FloatArray,
-    tensor: FloatArray,
+    vertices: FloatArray, face: IntArray, frames: _VertexFrames, cells: FloatArray, tensor: FloatArray
 ) -> None:
-    """Fit the second fundamental form of one face and add it to its vertices."""
-    if corner_share.max() <= 0.0:
+    """Fit the second fundamental form of a face and add it to the tensors (V, 3) of its vertices."""
+    if cells.max() <= 0.0:
         return
     tx, ty, tz = _edge(vertices, face, 0)
     length = np.sqrt(tx * tx + ty * ty + tz * tz)
@@ -139,7 +158,7 @@ def _add_face_tensor(
     for k in range(3):
         x, y, z = _edge(vertices, face, k)
         du, dv = x * tx + y * ty + z * tz, x * bx + y * by + z * bz
-        n0, n1 = normal[face[(k + 1) % 3]], normal[face[(k + 2) % 3]]
+        n0, n1 = frames.normal[face[(k + 1) % 3]], frames.normal[face[(k + 2) % 3]]
         dx, dy, dz = n1[0] - n0[0], n1[1] - n0[1], n1[2] - n0[2]
         nu, nv = dx * tx + dy * ty + dz * tz, dx * bx + dy * by + dz * bz
         suu += du * du
@@ -148,51 +167,39 @@ def _add_face_tensor(
         re += nu * du
         rf += nu * dv + nv * du
         rg += nv * dv
-    # Elimination in [suu suv 0; suv suu+svv suv; 0 suv svv], which is positive definite for a proper triangle.
+    # Elimination in [suu suv 0; suv suu+svv suv; 0 suv svv], which is positive definite unless the face is degenerate.
     middle = suu + svv - suv * suv / suu - suv * suv / svv
     f = (rf - suv * re / suu - suv * rg / svv) / middle
-    e = (re - suv * f) / suu
-    g = (rg - suv * f) / svv
+    form = _Form((re - suv * f) / suu, f, (rg - suv * f) / svv)
+    plane = _Plane((tx, ty, tz), (bx, by, bz))
     for k in range(3):
         v = face[k]
-        _add_turned(
-            e, f, g, tx, ty, tz, bx, by, bz, normal[v], frame_u[v], frame_v[v], corner_share[k] / share[v], tensor[v]
-        )
+        _add_rotated(form, plane, frames, v, cells[k] / frames.area[v], tensor[v])
 
 
 @njit(cache=True)
-def _edge(vertices: FloatArray, face: IntArray, k: int) -> tuple[float, float, float]:
+def _edge(vertices: FloatArray, face: IntArray, k: int) -> Vector:
     """The edge opposite corner k, counter-clockwise."""
     a, b = vertices[face[(k + 1) % 3]], vertices[face[(k + 2) % 3]]
     return b[0] - a[0], b[1] - a[1], b[2] - a[2]
 
 
 @njit(cache=True)
-def _add_turned(
-    e: float,
-    f: float,
-    g: float,
-    tx: float,
-    ty: float,
-    tz: float,
-    bx: float,
-    by: float,
-    bz: float,
-    normal: FloatArray,
-    u: FloatArray,
-    v: FloatArray,
-    weight: float,
-    tensor: FloatArray,
+def _add_rotated(
+    form: _Form, plane: _Plane, frames: _VertexFrames, vertex: int, weight: float, tensor: FloatArray
 ) -> None:
-    """Turn the frame (u, v) of a vertex into the plane of a face, read the form along it, and add it."""
+    """Rotate the frame of a vertex into the plane of a face, and add the form in that frame to the tensor (3,)."""
+    (tx, ty, tz), (bx, by, bz) = plane
+    e, f, g = form
+    normal, u, v = frames.normal[vertex], frames.u[vertex], frames.v[vertex]
     nx, ny, nz = ty * bz - tz * by, tz * bx - tx * bz, tx * by - ty * bx
     cosine = normal[0] * nx + normal[1] * ny + normal[2] * nz
-    if cosine <= -0.999:
+    if cosine <= _OPPOSITE:
         u1, u2 = -(u[0] * tx + u[1] * ty + u[2] * tz), -(u[0] * bx + u[1] * by + u[2] * bz)
         v1, v2 = -(v[0] * tx + v[1] * ty + v[2] * tz), -(v[0] * bx + v[1] * by + v[2] * bz)
     else:
-        # Rotation that takes the vertex normal n to the face normal m: x -> x - (m.x) (n + m) / (1 + n.m) for x in n's
-        # plane.
+        # The rotation that takes the vertex normal n to the face normal m maps a vector x of the tangent plane to
+        # x - (m.x) (n + m) / (1 + n.m).
         along = (u[0] * nx + u[1] * ny + u[2] * nz) / (1.0 + cosine)
         x, y, z = u[0] - along * (normal[0] + nx), u[1] - along * (normal[1] + ny), u[2] - along * (normal[2] + nz)
         u1, u2 = x * tx + y * ty + z * tz, x * bx + y * by + z * bz

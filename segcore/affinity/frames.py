@@ -10,7 +10,7 @@ from segcore.arrays import FloatArray
 
 
 def tangent_frames(normals: FloatArray) -> tuple[FloatArray, FloatArray]:
-    """Frames (u, v), each (N, 3), of unit normals (N, 3)."""
+    """Frames (u, v), each (N, 3), of unit normals (N, 3): u x v is the normal."""
     u, v = np.empty_like(normals), np.empty_like(normals)
     _tangent_frames(normals, u, v)
     return u, v
@@ -18,7 +18,7 @@ def tangent_frames(normals: FloatArray) -> tuple[FloatArray, FloatArray]:
 
 @njit(cache=True)
 def tangent_frame(normal: FloatArray, u: FloatArray, v: FloatArray) -> None:
-    """Write the frame of one unit normal (3,) into ``u`` and ``v``."""
+    """Write the frame of a unit normal (3,) into ``u`` and ``v``."""
     sign = 1.0 if normal[2] >= 0.0 else -1.0
     a = -1.0 / (sign + normal[2])
     b = normal[0] * normal[1] * a

@@ -1,4 +1,4 @@
-"""What is measured on a surface before anything is cut: bending along its edges, and how thick the body is under it."""
+"""Measurements on a surface: bending along its edges, and the change of thickness across them."""
 
 from dataclasses import dataclass
 
@@ -11,10 +11,11 @@ from segcore.arrays import FloatArray, IntArray
 from segcore.clean.edge_geometry import EdgeGeometry
 from segcore.clean.surface import Surface
 
-_CURVATURE_SCALE = 8.0  # concave minimum curvatures are measured in 1 / sqrt(total area)
-_LOWEST_GUARD = 0.03  # affinity of the deepest concavity where patches are concerned
-THICKNESS_RADIUS = 0.06  # over which the thickness is smoothed, in sqrt(total area)
+# The sources of these numbers are in docs/algorithm.md, "Constants" of section 2.
+_CURVATURE_SCALE = 8.0  # concave minimum curvature, times sqrt(total area), that bends as much as a mean dihedral angle
+THICKNESS_RADIUS = 0.06  # of the smoothing of the thickness, in sqrt(total area)
 _LARGEST_CHANGE = 3.0
+_LOWEST_GUARD = 0.03  # affinity at the deepest concavity when patches are made, as that of the edge weights
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -34,17 +35,17 @@ class Measurements:
 def measure(surface: Surface, seed: int) -> Measurements:
     """Measure a surface.
 
-    The concave bending of an edge is x1 + x2 / 8, x1 = max(0, -theta) / mean |theta|, theta the dihedral angle (0 where
-    flat, negative where concave), the mean weighted by edge length; x2 = sqrt(A) max(0, -k2), k2 the minimum curvature
-    averaged over the ends of the edge, A the total area.
+    The concave bending of an edge is x1 + x2 / 8 with x1 = max(0, -theta) / mean |theta| and x2 = sqrt(A) max(0, -k2),
+    where theta is the dihedral angle (0 where flat, negative where concave), the mean is weighted by edge length, k2 is
+    the minimum curvature averaged over the ends of the edge, and A is the total area.
 
-    The change of thickness is x3 = min(3, 0.06 sqrt(A) c |dt|), dt the derivative across the edge of the logarithm of
-    the shape diameter, smoothed over 0.06 sqrt(A), and c the share of rays that met the other side from within: where
-    the surface is open or turned the wrong way there is no thickness to go by.
+    The change of thickness is x3 = min(3, 0.06 sqrt(A) c |dt|), where dt is the derivative across the edge of the
+    logarithm of the shape diameter, smoothed over 0.06 sqrt(A), and c is the share of rays that met the other side from
+    inside. If the surface is open or inside out, c and with it x3 is 0.
 
     Parameters
     ----------
-    seed : of the random order in which faces are gathered into patches.
+    seed : of the random order in which faces are merged into patches.
     """
     edges = EdgeGeometry.of(surface)
     size = float(np.sqrt(surface.areas.sum()))
@@ -61,8 +62,8 @@ def measure(surface: Surface, seed: int) -> Measurements:
     return Measurements(edges, k1, k2, bending, change, patches, thickness, log)
 
 
-def _change_across(slope: FloatArray, ends: IntArray, across: FloatArray) -> FloatArray:
+def _change_across(slope: FloatArray, sides: IntArray, across: FloatArray) -> FloatArray:
     """(E,) the derivative across every edge, from the slopes (P, 3) of the patches (E, 2) at its sides."""
-    along = np.einsum("ij,ij->i", 0.5 * (slope[ends[:, 0]] + slope[ends[:, 1]]), across)
+    along = np.einsum("ij,ij->i", 0.5 * (slope[sides[:, 0]] + slope[sides[:, 1]]), across)
     change: FloatArray = np.minimum(_LARGEST_CHANGE, np.abs(along))
     return change

@@ -10,16 +10,17 @@ from segcore.clean.topology import mesh_edges
 from segcore.graphs.surface_graph import rows_of
 from segcore.parameters import SegmentationParameters
 
-_STEEP = 2.0  # difference of z-scores
-_ACROSS_STEEP = 0.1
-_ACROSS = 0.2
+# The numbers of the paper.
+_STEEP = 2.0  # difference of the z-scores at the ends of an edge from which it is steep
+_ACROSS_STEEP = 0.1  # affinity of steep edges that touch a concave region
+_ACROSS = 0.2  # affinity of other edges that touch one
 
 
 def minima_rule_of_vertices(surface: Surface, ends: IntArray, parameters: SegmentationParameters) -> FloatArray:
-    """The matrix of the paper on the vertex graph.
+    """(E,) the weights of the paper on the vertex graph.
 
-    On edges that touch a vertex of a concave region g = 0.1 where the z-scores of the minimum curvature differ by 2 or
-    more along the edge, else 0.2.
+    An edge that touches a vertex of a concave region has g = 0.1 if the z-scores of the minimum curvature at its ends
+    differ by 2 or more, else 0.2.
 
     Parameters
     ----------
@@ -30,10 +31,10 @@ def minima_rule_of_vertices(surface: Surface, ends: IntArray, parameters: Segmen
 
 
 def minima_rule_of_faces(surface: Surface, parameters: SegmentationParameters) -> FloatArray:
-    """The same rule on the face dual graph.
+    """(E,) the same rule on the face dual graph.
 
-    An edge of the mesh lies in a concave region where both of its ends do, or, without thinning, where their mean
-    z-score is below -0.8. The z-score of a face is the mean of its corners.
+    An edge of the mesh lies in a concave region if both of its ends do, or, without thinning, if their mean z-score is
+    below -0.8. The z-score of a face is the mean over its corners.
     """
     z, concave = _concave_regions(surface, parameters)
     along = surface.edge_vertices
@@ -45,7 +46,7 @@ def minima_rule_of_faces(surface: Surface, parameters: SegmentationParameters) -
 
 
 def _concave_regions(surface: Surface, parameters: SegmentationParameters) -> tuple[FloatArray, BoolArray]:
-    """z-score of the minimum curvature of every vertex, and which vertices lie in a concave region."""
+    """(V,) z-scores of the minimum curvature, and (V,) True for vertices of concave regions."""
     curvatures = principal_curvatures(surface.vertices, surface.faces)
     edges = mesh_edges(surface.faces)
     rows = rows_of(edges, len(surface.vertices))
@@ -53,5 +54,6 @@ def _concave_regions(surface: Surface, parameters: SegmentationParameters) -> tu
 
 
 def _weights(inside: BoolArray, z: FloatArray) -> FloatArray:
+    """(E,) affinities, from whether an edge lies in a concave region and the z-scores (E, 2) at its two ends."""
     steep = np.abs(z[:, 0] - z[:, 1]) >= _STEEP
     return np.where(inside, np.where(steep, _ACROSS_STEEP, _ACROSS), 1.0)

@@ -1,6 +1,6 @@
-"""A surface as some two thousand small patches, on which whatever varies slowly is measured and smoothed.
+"""A surface as about 2,000 small patches, on which slowly varying quantities are measured and smoothed.
 
-Their number does not grow with the mesh, so that neither does the cost of rays, smoothing and gradients.
+The number of patches does not grow with the mesh, and with it the cost of rays, smoothing and gradients.
 """
 
 from dataclasses import dataclass
@@ -15,10 +15,11 @@ from segcore.coarsen.matching import coarsen
 from segcore.graphs.surface_graph import SurfaceGraph
 from segcore.mesh import face_centroids
 
-COUNT = 2000
-_LARGEST_SHARE = 1.5  # largest patch, in mean areas
-_SMALLEST_FACE = 1e-4  # least area of a face, in mean areas
-_FLAT = 1e-3  # of a squared mean distance: keeps gradients of patches with few neighbours finite
+COUNT = 2000  # of patches; set by hand
+_LARGEST_SHARE = 1.5  # largest patch in mean areas: patches of similar size; set by hand
+_SMALLEST_FACE = 1e-4  # least area of a face in mean areas, as in affinity/mesh_graphs.py
+_SHORTEST_STEP = 0.1  # least distance of two centres, in the square root of the mean area of a patch; set by hand
+_FLAT = 1e-3  # of a squared mean distance: keeps gradients of patches with few neighbours finite; set by hand
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -33,31 +34,30 @@ class Patches:
     border: FloatArray  # (Q,) length of their common border
     distance: FloatArray  # (Q,) between their centres
 
-    def smoothed(self, values: FloatArray, radius: float, mass: FloatArray | None = None) -> FloatArray:
+    def smoothed(self, values: FloatArray, radius: float, mass: FloatArray) -> FloatArray:
         """Values after an implicit step of diffusion, (I - radius^2 / 6 Laplace) x = values.
 
         Parameters
         ----------
         values : (P,) or (P, C) means over the patches.
         radius : in units of the surface.
-        mass : (P,) what each value counts for, at most the area (by default the area); patches of little mass take the
-            values of their neighbours.
+        mass : (P,) weight of each value, at most the area. Patches of little mass take the values of their neighbours;
+            with the areas as mass the smoothing keeps the mean.
         """
-        mass = self.area if mass is None else mass
         count = len(self.area)
         a, b = self.pairs.T
         exchange = radius**2 / 6 * self.border / self.distance
         diagonal = mass + group_sums(a, exchange, count) + group_sums(b, exchange, count)
-        everyone = np.arange(count, dtype=np.int32)
+        patches = np.arange(count, dtype=np.int32)
         entries = np.concatenate([diagonal, -exchange, -exchange])
-        places = (np.concatenate([everyone, a, b]), np.concatenate([everyone, b, a]))
+        places = (np.concatenate([patches, a, b]), np.concatenate([patches, b, a]))
         matrix = csc_matrix((entries, places), shape=(count, count))
         factor = splu(matrix, permc_spec="MMD_AT_PLUS_A", diag_pivot_thresh=0.0, options={"SymmetricMode": True})
-        smooth: FloatArray = factor.solve(values * (mass if values.ndim == 1 else mass[:, None]))
+        smooth: FloatArray = factor.solve((values.T * mass).T)
         return smooth
 
     def gradients(self, values: FloatArray) -> FloatArray:
-        """(P, 3): the gradient of values (P,) in the tangent plane of every patch, by least squares over neighbours."""
+        """(P, 3) the gradient of values (P,) in the tangent plane of every patch, by least squares over neighbours."""
         count = len(self.area)
         here, there = np.concatenate([self.pairs, self.pairs[:, ::-1]]).T
         weight = np.tile(self.border / self.distance, 2)
@@ -80,7 +80,7 @@ class Patches:
 
 
 def patches_of(surface: Surface, affinity: FloatArray, length: FloatArray, rng: np.random.Generator) -> Patches:
-    """Cut a surface into about two thousand patches of similar area that end at strong concavities.
+    """Divide a surface into about 2,000 patches of similar area that end at strong concavities.
 
     Parameters
     ----------
@@ -97,9 +97,10 @@ def patches_of(surface: Surface, affinity: FloatArray, length: FloatArray, rng: 
     size = np.linalg.norm(normal, axis=1, keepdims=True)
     normal = np.divide(normal, size, out=np.zeros_like(normal), where=size > 0)
     distance = np.linalg.norm(centre[coarse.edges[:, 1]] - centre[coarse.edges[:, 0]], axis=1)
-    least = 0.1 * np.sqrt(coarse.total_volume / count)
+    least = _SHORTEST_STEP * np.sqrt(coarse.total_volume / count)
     return Patches(of_face, coarse.volume, centre, normal, coarse.edges, coarse.length, np.maximum(distance, least))
 
 
 def _sums(group: IntArray, weight: FloatArray, values: FloatArray, count: int) -> FloatArray:
+    """(count, 3) the weighted sums of values (N, 3) over groups."""
     return np.stack([group_sums(group, weight * values[:, axis], count) for axis in range(3)], axis=1)

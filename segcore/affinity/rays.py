@@ -1,12 +1,12 @@
-"""The nearest face that a ray meets: a bounding volume hierarchy over the faces of a mesh.
+"""The nearest face on a ray, by a bounding volume hierarchy over the faces of a mesh.
 
-The tree is complete and split at medians: every node halves its faces by their centres along the axis in which these
-spread most, so that it needs no pointers (on such trees: Wald, Boulos and Shirley, Ray tracing deformable scenes using
-dynamic bounding volume hierarchies, ACM Transactions on Graphics 26, 2007). Intersections are those of Moeller
+The tree is complete and split at medians: every node halves its faces by their centres along the axis of their largest
+spread, so that it needs no pointers (on such trees: Wald, Boulos and Shirley, Ray tracing deformable scenes using
+dynamic bounding volume hierarchies, ACM Transactions on Graphics 26, 2007). The intersection test is that of Moeller
 and Trumbore, Fast, minimum storage ray/triangle intersection, 1997.
 """
 
-from dataclasses import dataclass
+from typing import NamedTuple
 
 import numpy as np
 from numba import njit
@@ -15,16 +15,17 @@ from numpy.typing import NDArray
 from segcore.arrays import FloatArray, IntArray
 from segcore.mesh import face_centroids
 
-_LEAF = 4  # faces in a leaf, at most
+_LEAF = 4  # faces in a leaf, at most; set by hand
+_DEPTH = 64  # of the stack of nodes; more than the tree can have levels
+_HUGE = 1e30  # inverse of a zero component of a direction
 
 
-@dataclass(frozen=True, slots=True, eq=False)
-class RayCaster:
-    """Faces arranged for ray casting."""
+class RayCaster(NamedTuple):
+    """Faces arranged for ray casting. Node i of the tree has the children 2 i and 2 i + 1; the leaves start at L."""
 
-    boxes: NDArray[np.float32]  # (2 L, 6) bounding boxes; node i has children 2 i, 2 i + 1; leaves from L
+    boxes: NDArray[np.float32]  # (2 L, 6) bounding boxes of the nodes: least, then largest coordinates
     corner: NDArray[np.float32]  # (F, 3) first corner of the faces in the order of the leaves
-    sides: NDArray[np.float32]  # (F, 6) the sides from there to the two others
+    sides: NDArray[np.float32]  # (F, 6) the vectors from there to the two other corners
 
     @classmethod
     def of(cls, vertices: FloatArray, faces: IntArray) -> "RayCaster":
@@ -36,7 +37,7 @@ class RayCaster:
         return cls(_boxes(corners, leaves), np.ascontiguousarray(corners[:, 0]), sides)
 
     def inner_distances(self, origins: FloatArray, directions: FloatArray) -> FloatArray:
-        """How far rays go until they leave a body.
+        """Distances at which rays leave a body.
 
         Parameters
         ----------
@@ -44,15 +45,36 @@ class RayCaster:
 
         Returns
         -------
-        (N,) the distance to the nearest face, infinity where there is none or where it is met from its front, that is
-        where the ray has not been inside a body.
+        (N,) the distance to the nearest face; infinity if there is none, or if the ray meets its front, in which case
+        the ray was not inside a body.
         """
-        return _inner_distances(self.boxes, self.corner, self.sides, origins, directions)
+        return _inner_distances(self, origins, directions)
+
+
+class _Ray(NamedTuple):
+    """Origin, direction and reciprocal direction of a ray."""
+
+    ox: np.float32
+    oy: np.float32
+    oz: np.float32
+    dx: np.float32
+    dy: np.float32
+    dz: np.float32
+    ix: np.float32
+    iy: np.float32
+    iz: np.float32
+
+
+class _Stack(NamedTuple):
+    """Nodes that are still to be visited, and the distances at which the ray enters their boxes."""
+
+    node: IntArray  # (64,)
+    entry: NDArray[np.float32]  # (64,)
 
 
 @njit(cache=True)
 def _arranged(centres, leaves):  # type: ignore[no-untyped-def]
-    """The faces in the order of the leaves; the centres are put into that order too."""
+    """(F,) the faces in the order of the leaves. The centres (F, 3) are reordered in place."""
     count = len(centres)
     order = np.arange(count)
     nodes = [(0, leaves)]
@@ -70,6 +92,7 @@ def _arranged(centres, leaves):  # type: ignore[no-untyped-def]
 
 @njit(cache=True)
 def _widest_axis(centres, low, high):  # type: ignore[no-untyped-def]
+    """The axis of the largest spread of the centres low..high - 1."""
     best, widest = 0, np.float32(-1.0)
     for axis in range(3):
         least, most = np.float32(np.inf), np.float32(-np.inf)
@@ -82,7 +105,7 @@ def _widest_axis(centres, low, high):  # type: ignore[no-untyped-def]
 
 @njit(cache=True)
 def _halve(centres, order, low, high, middle, axis):  # type: ignore[no-untyped-def]
-    """Quickselect: what lies before ``middle`` is afterwards nowhere larger along the axis than what lies behind it."""
+    """Quickselect: reorder so that centres before ``middle`` are not larger along the axis than those after it."""
     last = high - 1
     while low < last:
         pivot = centres[(low + last) // 2, axis]
@@ -108,6 +131,7 @@ def _halve(centres, order, low, high, middle, axis):  # type: ignore[no-untyped-
 
 @njit(cache=True)
 def _boxes(corners, leaves):  # type: ignore[no-untyped-def]
+    """(2 L, 6) the bounding boxes of the nodes over faces with corners (F, 3, 3) in the order of the leaves."""
     count = len(corners)
     boxes = np.empty((2 * leaves, 6), dtype=np.float32)
     boxes[:, :3] = np.inf
@@ -127,76 +151,80 @@ def _boxes(corners, leaves):  # type: ignore[no-untyped-def]
 
 
 @njit(cache=True)
-def _inner_distances(boxes, corner, sides, origins, directions):  # type: ignore[no-untyped-def]
+def _inner_distances(caster: RayCaster, origins: FloatArray, directions: FloatArray) -> FloatArray:
     distances = np.empty(len(origins))
-    stack = np.empty(64, dtype=np.int32)
-    entry = np.empty(64, dtype=np.float32)
+    stack = _Stack(np.empty(_DEPTH, dtype=np.int32), np.empty(_DEPTH, dtype=np.float32))
     for i in range(len(origins)):
-        distances[i] = _inner_distance(boxes, corner, sides, origins[i], directions[i], stack, entry)
+        distances[i] = _inner_distance(caster, _ray(origins[i], directions[i]), stack)
     return distances
 
 
 @njit(cache=True)
-def _inner_distance(boxes, corner, sides, origin, direction, stack, entry):  # type: ignore[no-untyped-def]
+def _ray(origin, direction):  # type: ignore[no-untyped-def]
     ox, oy, oz = np.float32(origin[0]), np.float32(origin[1]), np.float32(origin[2])
     dx, dy, dz = np.float32(direction[0]), np.float32(direction[1]), np.float32(direction[2])
-    ix, iy, iz = _inverse(dx), _inverse(dy), _inverse(dz)
-    leaves = len(boxes) // 2
-    count = len(corner)
+    return _Ray(ox, oy, oz, dx, dy, dz, _inverse(dx), _inverse(dy), _inverse(dz))
+
+
+@njit(cache=True)
+def _inner_distance(caster, ray, stack):  # type: ignore[no-untyped-def]
+    leaves = len(caster.boxes) // 2
+    count = len(caster.corner)
     nearest = np.float32(np.inf)
     from_inside = False
     size = 1
-    stack[0] = 1
-    entry[0] = 0.0
+    stack.node[0] = 1
+    stack.entry[0] = 0.0
     while size > 0:
         size -= 1
-        if entry[size] > nearest:
+        if stack.entry[size] > nearest:
             continue
-        node = stack[size]
+        node = stack.node[size]
         if node >= leaves:
             leaf = node - leaves
             for f in range(count * leaf // leaves, count * (leaf + 1) // leaves):
-                determinant, distance = _meets(corner[f], sides[f], ox, oy, oz, dx, dy, dz)
+                determinant, distance = _meets(caster.corner[f], caster.sides[f], ray)
                 if distance < nearest:
                     nearest = distance
                     from_inside = determinant < 0.0
             continue
-        near = _enters(boxes[2 * node], ox, oy, oz, ix, iy, iz, nearest)
-        far = _enters(boxes[2 * node + 1], ox, oy, oz, ix, iy, iz, nearest)
+        near = _enters(caster.boxes[2 * node], ray, nearest)
+        far = _enters(caster.boxes[2 * node + 1], ray, nearest)
         first, second = 2 * node, 2 * node + 1
         if far < near:
             first, second, near, far = second, first, far, near
         if far < np.inf:
-            stack[size] = second
-            entry[size] = far
+            stack.node[size] = second
+            stack.entry[size] = far
             size += 1
         if near < np.inf:
-            stack[size] = first
-            entry[size] = near
+            stack.node[size] = first
+            stack.entry[size] = near
             size += 1
     return nearest if from_inside else np.inf
 
 
 @njit(cache=True)
 def _inverse(x):  # type: ignore[no-untyped-def]
-    return np.float32(1.0) / x if x != 0.0 else np.float32(1e30)
+    return np.float32(1.0) / x if x != 0.0 else np.float32(_HUGE)
 
 
 @njit(cache=True)
-def _enters(box, ox, oy, oz, ix, iy, iz, nearest):  # type: ignore[no-untyped-def]
-    """The distance at which a ray enters a box, infinity where it misses it."""
-    a, b = (box[0] - ox) * ix, (box[3] - ox) * ix
+def _enters(box, ray, nearest):  # type: ignore[no-untyped-def]
+    """The distance at which a ray enters a box; infinity if it misses the box or enters beyond ``nearest``."""
+    a, b = (box[0] - ray.ox) * ray.ix, (box[3] - ray.ox) * ray.ix
     low, high = min(a, b), max(a, b)
-    a, b = (box[1] - oy) * iy, (box[4] - oy) * iy
+    a, b = (box[1] - ray.oy) * ray.iy, (box[4] - ray.oy) * ray.iy
     low, high = max(low, min(a, b)), min(high, max(a, b))
-    a, b = (box[2] - oz) * iz, (box[5] - oz) * iz
+    a, b = (box[2] - ray.oz) * ray.iz, (box[5] - ray.oz) * ray.iz
     low, high = max(low, min(a, b), np.float32(0.0)), min(high, max(a, b), nearest)
     return low if low <= high else np.float32(np.inf)
 
 
 @njit(cache=True)
-def _meets(corner, sides, ox, oy, oz, dx, dy, dz):  # type: ignore[no-untyped-def]
-    """The determinant (negative where the face is met from behind) and the distance, infinity where there is none."""
+def _meets(corner, sides, ray):  # type: ignore[no-untyped-def]
+    """The determinant, negative if the ray meets the face from behind, and the distance, infinity if it misses it."""
+    dx, dy, dz = ray.dx, ray.dy, ray.dz
     ax, ay, az, bx, by, bz = sides[0], sides[1], sides[2], sides[3], sides[4], sides[5]
     px, py, pz = dy * bz - dz * by, dz * bx - dx * bz, dx * by - dy * bx
     determinant = ax * px + ay * py + az * pz
@@ -204,7 +232,7 @@ def _meets(corner, sides, ox, oy, oz, dx, dy, dz):  # type: ignore[no-untyped-de
     if determinant == 0.0:
         return determinant, missed
     scale = np.float32(1.0) / determinant
-    tx, ty, tz = ox - corner[0], oy - corner[1], oz - corner[2]
+    tx, ty, tz = ray.ox - corner[0], ray.oy - corner[1], ray.oz - corner[2]
     u = (tx * px + ty * py + tz * pz) * scale
     if u < 0.0 or u > 1.0:
         return determinant, missed

@@ -1,9 +1,8 @@
 """The shape diameter function: how thick the body is behind every patch of a surface.
 
 Shapira, Shamir and Cohen-Or, Consistent mesh partitioning and skeletonisation using the shape diameter function, The
-Visual Computer 24, 2008: a cone of rays goes inward and the typical distance to the other side is taken. The rays of a
-patch start all over it, each face lending its normal, so that a few dozen rays a patch see what thousands from single
-faces would.
+Visual Computer 24, 2008: the typical length of a cone of rays that go inward to the other side. The rays of a patch
+start at places spread over its faces, around the normals of these faces, so that a few dozen rays per patch suffice.
 """
 
 from dataclasses import dataclass
@@ -17,19 +16,23 @@ from segcore.affinity.rays import RayCaster
 from segcore.arrays import FloatArray, IntArray, at_least
 from segcore.clean.surface import Surface
 
-RAYS = 24  # of every patch
-_HALF_ANGLE = np.deg2rad(60.0)
-_START = 1e-4  # how far below the surface rays start, in units of the square root of the total area
-_SMALLEST_FACE = 1e-9  # least area of a face that is sampled, in mean areas
-_GOLDEN = np.pi * (3.0 - np.sqrt(5.0))
+RAYS = 24  # per patch; with 8 or 12 1-Rand is 0.000 to 0.003 worse, see "What helped" in bench/RESULTS.md
+_HALF_ANGLE = np.deg2rad(60.0)  # of the cone, as in the paper of Shapira et al.
+_START = 1e-4  # distance below the surface at which rays start, in sqrt(total area); set by hand
+_SMALLEST_FACE = 1e-9  # least area of a sampled face in mean areas: keeps the steps of area positive
+_LEAST_CONFIDENCE = 1e-6  # in the mass of a patch: keeps the system of the smoothing regular
+_EQUAL = 1e-12  # relative tolerance around the median: keeps all distances of a patch whose distances are equal
+_GOLDEN_RATIO = 0.6180339887498949
+_GOLDEN_ANGLE = np.pi * (3.0 - np.sqrt(5.0))
+_STRIDE = 7  # between the places of a patch and the spokes of the disc; coprime to RAYS
 
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Thickness:
-    """The shape diameter of every patch, before any smoothing."""
+    """The shape diameter of every patch, not smoothed."""
 
-    logarithm: FloatArray  # (P,) logarithm of the shape diameter over the square root of the total area; 0 unknown
-    confidence: FloatArray  # (P,) share of the rays that met the other side from within, 0 to 1
+    logarithm: FloatArray  # (P,) logarithm of the shape diameter over sqrt(total area); 0 if unknown
+    confidence: FloatArray  # (P,) share of the rays that met the other side from inside, 0 to 1
 
 
 def patch_thickness(surface: Surface, patches: Patches) -> Thickness:
@@ -41,46 +44,60 @@ def patch_thickness(surface: Surface, patches: Patches) -> Thickness:
 
     Notes
     -----
-    A ray that meets nothing, or a face from its front, tells that the surface is open, turned the wrong way, or runs
-    through another part: it only lowers the confidence.
+    A ray that meets nothing, or the front of a face, shows that the surface is open, inside out or runs through another
+    part. Such rays only lower the confidence.
     """
     size = float(np.sqrt(patches.area.sum()))
-    origins, directions, cosines = _rays(surface, patches, size)
-    caster = RayCaster.of(surface.vertices, surface.faces)
-    distance = caster.inner_distances(origins, directions).reshape(-1, RAYS)
-    value, confidence = _typical(distance, cosines.reshape(-1, RAYS))
+    rays = _rays(surface, patches, size)
+    distance = RayCaster.of(surface.vertices, surface.faces).inner_distances(rays.origins, rays.directions)
+    value, confidence = _typical(distance.reshape(-1, RAYS), rays.cosines.reshape(-1, RAYS))
     known = value > 0
     logarithm = np.zeros(len(value))
     logarithm[known] = np.log(value[known] / size)
     return Thickness(logarithm, confidence)
 
 
-def _rays(surface: Surface, patches: Patches, size: float) -> tuple[FloatArray, FloatArray, FloatArray]:
-    """Origins, directions and cosines to the inward normal of the rays, ``RAYS`` for patch 0, then for patch 1, ..."""
+def smooth_logarithm(thickness: Thickness, patches: Patches, radius: float) -> FloatArray:
+    """(P,) logarithm of the shape diameter smoothed over a radius; unknown patches take the values around them."""
+    mass = patches.area * np.maximum(thickness.confidence, _LEAST_CONFIDENCE)
+    return patches.smoothed(thickness.logarithm, radius, mass)
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class _Rays:
+    """The rays of all patches: ``RAYS`` of patch 0, then of patch 1, ..."""
+
+    origins: FloatArray  # (N, 3)
+    directions: FloatArray  # (N, 3) unit vectors
+    cosines: FloatArray  # (N,) of the angle to the inward normal
+
+
+def _rays(surface: Surface, patches: Patches, size: float) -> _Rays:
     face, place = _sample_faces(patches.of_face, surface.areas, len(patches.area))
     corners = surface.vertices[surface.faces[face]]
     inward = -surface.normals[face]
-    flat = ~inward.any(axis=1)
-    inward[flat] = -np.repeat(patches.normal, RAYS, axis=0)[flat]
-    # A low-discrepancy pair for the place inside the triangle: the fraction left over by the choice of the face, and
-    # the golden ratio sequence.
+    is_sliver = ~inward.any(axis=1)
+    inward[is_sliver] = -np.repeat(patches.normal, RAYS, axis=0)[is_sliver]
+    # The place inside the triangle is a low-discrepancy pair: the fraction that is left from the choice of the face,
+    # and the golden ratio sequence.
     number = np.tile(np.arange(RAYS), len(patches.area))
     root = np.sqrt(place)
-    other = np.modf(0.5 + number * 0.6180339887498949)[0]
+    other = np.modf(0.5 + number * _GOLDEN_RATIO)[0]
     weights = np.stack([1.0 - root, root * (1.0 - other), root * other], axis=1)
     origins = np.einsum("ij,ijk->ik", weights, corners) + _START * size * inward
-    # The order of the disc is not that of the places on the patch: otherwise one side would look one way only.
-    spoke = (number * 7) % RAYS
+    # The spokes of the disc follow another order than the places; otherwise all rays from one side of the patch would
+    # have similar directions.
+    spoke = (number * _STRIDE) % RAYS
     sine = np.sin(_HALF_ANGLE) * np.sqrt((spoke + 0.5) / RAYS)
     cosine = np.sqrt(1.0 - sine**2)
-    turn = _GOLDEN * spoke
+    turn = _GOLDEN_ANGLE * spoke
     u, v = tangent_frames(inward)
     directions = (sine * np.cos(turn))[:, None] * u + (sine * np.sin(turn))[:, None] * v + cosine[:, None] * inward
-    return origins, directions, cosine
+    return _Rays(origins, directions, cosine)
 
 
 def _sample_faces(of_face: IntArray, areas: FloatArray, count: int) -> tuple[IntArray, FloatArray]:
-    """Faces at ``RAYS`` equal steps of area through every patch, and where within the face the step falls, 0 to 1."""
+    """Faces at ``RAYS`` equal steps of area through every patch, and the position of the step in the face, 0 to 1."""
     order = np.argsort(of_face, kind="stable").astype(np.int32)
     sizes = at_least(areas, _SMALLEST_FACE)[order]
     end = np.cumsum(sizes)
@@ -95,8 +112,13 @@ def _sample_faces(of_face: IntArray, areas: FloatArray, count: int) -> tuple[Int
 
 
 @njit(cache=True)
-def _typical(distances, cosines):  # type: ignore[no-untyped-def]
-    """(P,) the weighted mean of the distances near their median, 0 where there are none, and (P,) the share of hits."""
+def _typical(distances: FloatArray, cosines: FloatArray) -> tuple[FloatArray, FloatArray]:
+    """(P,) the weighted mean of the distances near their median, 0 if there are none, and (P,) the share of hits.
+
+    Parameters
+    ----------
+    distances, cosines : (P, RAYS); the distance of a ray without a hit is infinity.
+    """
     count, rays = distances.shape
     value = np.zeros(count)
     confidence = np.zeros(count)
@@ -111,7 +133,7 @@ def _typical(distances, cosines):  # type: ignore[no-untyped-def]
         if hits == 0:
             continue
         middle = np.median(hit[:hits])
-        spread = np.std(hit[:hits]) + 1e-12 * middle
+        spread = np.std(hit[:hits]) + _EQUAL * middle
         total, weight = 0.0, 0.0
         for j in range(rays):
             if abs(distances[i, j] - middle) <= spread:
@@ -119,9 +141,3 @@ def _typical(distances, cosines):  # type: ignore[no-untyped-def]
                 weight += cosines[i, j]
         value[i] = total / weight if weight > 0.0 else middle
     return value, confidence
-
-
-def smooth_logarithm(thickness: Thickness, patches: Patches, radius: float) -> FloatArray:
-    """(P,) logarithm of the shape diameter smoothed over a radius; unknown patches take what is known around them."""
-    mass = patches.area * np.maximum(thickness.confidence, 1e-6)
-    return patches.smoothed(thickness.logarithm, radius, mass)

@@ -1,1 +1,1 @@
-"""A mesh becomes a surface that can be measured and cut: welded, oriented, its edges found."""
+"""Cleaning: a mesh becomes a welded and consistently oriented surface with its dual edges."""

@@ -1,35 +1,36 @@
-"""What single dual edges look like: length, dihedral angle, the direction across."""
+"""Length, dihedral angle and direction of the mesh edges at the dual edges of a surface."""
 
 from dataclasses import dataclass
 
 import numpy as np
 from numba import njit
 
-from segcore.arrays import FloatArray, at_least
+from segcore.arrays import FloatArray, IntArray, at_least
 from segcore.clean.surface import Surface
 
 _TINY = float(np.finfo(float).tiny)
-_SHORTEST = 1e-9  # least length of an edge that counts, in mean lengths
+_SHORTEST = 1e-9  # least length of an edge in mean lengths: keeps weights positive and is too short to matter
 
 
 @dataclass(frozen=True, slots=True, eq=False)
 class EdgeGeometry:
-    """The mesh edges that the dual edges of a surface cross."""
+    """Geometry of the mesh edges that the dual edges of a surface cross."""
 
     length: FloatArray  # (E,)
     dihedral: FloatArray  # (E,) angle between the normals in radians, 0 where flat, negative where concave
-    typical_dihedral: float  # mean of its absolute value, weighted by length; > 0
-    across: FloatArray  # (E, 3) unit vectors in the surface, perpendicular to the edge; 0 where there is none
+    typical_dihedral: float  # mean of the absolute dihedral angle, weighted by length; > 0
+    across: FloatArray  # (E, 3) unit vectors in the surface, perpendicular to the edge; 0 if undefined
 
     @classmethod
     def of(cls, surface: Surface) -> "EdgeGeometry":
+        """The geometry of all edges of a surface. O(E)."""
         length, dihedral = edge_lengths(surface), dihedral_angles(surface)
         typical = float(np.dot(length, np.abs(dihedral)) / max(length.sum(), _TINY))
-        return cls(length, dihedral, max(typical, _TINY), _across(surface))
+        return cls(length, dihedral, max(typical, _TINY), across_edges(surface))
 
     @property
     def positive_length(self) -> FloatArray:
-        """(E,) lengths, those of degenerate edges raised a little above 0."""
+        """(E,) lengths, those of degenerate edges raised to 1e-9 of the mean."""
         return at_least(self.length, _SHORTEST)
 
 
@@ -41,19 +42,22 @@ def edge_lengths(surface: Surface) -> FloatArray:
 def dihedral_angles(surface: Surface) -> FloatArray:
     """(E,) angle between the normals of the two faces in radians, 0 where flat, negative where concave.
 
-    Zero where one of the faces is a sliver without a reliable normal.
+    The angle is 0 if one of the faces is a sliver without a reliable normal.
     """
     return _dihedral_angles(surface.vertices, surface.faces, surface.normals, surface.edge_faces)
 
 
-def _across(surface: Surface) -> FloatArray:
-    a, b = surface.edge_vertices.T
-    f, g = surface.edge_faces.T
-    return _across_edges(surface.vertices, surface.normals, a, b, f, g)
+def across_edges(surface: Surface) -> FloatArray:
+    """(E, 3) unit vectors in the surface, perpendicular to each edge.
+
+    The plane of the surface at an edge is that of the mean normal of its two faces. The vector is 0 if that normal or
+    the length of the edge is 0.
+    """
+    return _across_edges(surface.vertices, surface.normals, surface.edge_vertices, surface.edge_faces)
 
 
 @njit(cache=True)
-def _lengths(vertices, ends):  # type: ignore[no-untyped-def]
+def _lengths(vertices: FloatArray, ends: IntArray) -> FloatArray:
     length = np.empty(len(ends))
     for e in range(len(ends)):
         p, q = vertices[ends[e, 0]], vertices[ends[e, 1]]
@@ -62,10 +66,11 @@ def _lengths(vertices, ends):  # type: ignore[no-untyped-def]
 
 
 @njit(cache=True)
-def _across_edges(vertices, normals, a, b, f, g):  # type: ignore[no-untyped-def]
-    across = np.zeros((len(a), 3))
-    for e in range(len(a)):
-        p, q, n, m = vertices[a[e]], vertices[b[e]], normals[f[e]], normals[g[e]]
+def _across_edges(vertices: FloatArray, normals: FloatArray, ends: IntArray, sides: IntArray) -> FloatArray:
+    across = np.zeros((len(ends), 3))
+    for e in range(len(ends)):
+        p, q = vertices[ends[e, 0]], vertices[ends[e, 1]]
+        n, m = normals[sides[e, 0]], normals[sides[e, 1]]
         ux, uy, uz = q[0] - p[0], q[1] - p[1], q[2] - p[2]
         nx, ny, nz = n[0] + m[0], n[1] + m[1], n[2] + m[2]
         x, y, z = uy * nz - uz * ny, uz * nx - ux * nz, ux * ny - uy * nx
@@ -76,10 +81,10 @@ def _across_edges(vertices, normals, a, b, f, g):  # type: ignore[no-untyped-def
 
 
 @njit(cache=True)
-def _dihedral_angles(vertices, faces, normals, pairs):  # type: ignore[no-untyped-def]
-    theta = np.zeros(len(pairs))
-    for e in range(len(pairs)):
-        f, g = pairs[e, 0], pairs[e, 1]
+def _dihedral_angles(vertices: FloatArray, faces: IntArray, normals: FloatArray, sides: IntArray) -> FloatArray:
+    theta = np.zeros(len(sides))
+    for e in range(len(sides)):
+        f, g = sides[e, 0], sides[e, 1]
         n, m = normals[f], normals[g]
         x, y, z = n[1] * m[2] - n[2] * m[1], n[2] * m[0] - n[0] * m[2], n[0] * m[1] - n[1] * m[0]
         cosine = n[0] * m[0] + n[1] * m[1] + n[2] * m[2]

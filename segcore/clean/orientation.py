@@ -1,25 +1,26 @@
-"""Compiled kernels for which way faces look. Arrays in, arrays out, nothing in between."""
+"""Compiled kernels for normals, areas, enclosed volumes and the orientation of faces."""
 
 import numpy as np
 from numba import njit
 
 from segcore.arrays import BoolArray, FloatArray, IntArray
 
-_SLIVER = 1e-6  # area over squared longest edge below which the direction of a face is rounding noise
+_SLIVER = 1e-6  # area over squared longest edge below which the normal is rounding noise; set by hand
 
 
 @njit(cache=True)
 def patch_volumes(
-    vertices: FloatArray, faces: IntArray, patch: IntArray, turned: BoolArray, count: int
+    vertices: FloatArray, faces: IntArray, patch: IntArray, is_flipped: BoolArray, count: int
 ) -> tuple[FloatArray, FloatArray]:
-    """Areas and enclosed volumes (P,) of patches, positive where the faces look outward.
+    """Areas (P,) and enclosed volumes (P,) of patches of faces.
 
-    The volume of an open patch is that of the cone to its centroid.
+    A volume is positive if the faces look outward. The volume of an open patch is that of the cone to its centroid.
 
     Parameters
     ----------
     patch : (F,) the patch 0..P - 1 of every face.
-    turned : (F,) True for faces that are to be turned round.
+    is_flipped : (F,) True for faces that count with the opposite orientation.
+    count : P.
     """
     area = np.zeros(count)
     moment = np.zeros((count, 3))
@@ -29,7 +30,7 @@ def patch_volumes(
         (cx, cy, cz), (nx, ny, nz) = _centroid_and_cross(vertices, faces[f])
         p = patch[f]
         doubled = np.sqrt(nx * nx + ny * ny + nz * nz)
-        sign = -1.0 if turned[f] else 1.0
+        sign = -1.0 if is_flipped[f] else 1.0
         area[p] += 0.5 * doubled
         moment[p, 0] += 0.5 * doubled * cx
         moment[p, 1] += 0.5 * doubled * cy
@@ -46,11 +47,11 @@ def patch_volumes(
 
 
 @njit(cache=True)
-def turned_round(faces: IntArray, turn: BoolArray) -> IntArray:
-    """(F, 3): the faces, some of them with their last two corners exchanged."""
+def flipped(faces: IntArray, is_flipped: BoolArray) -> IntArray:
+    """(F, 3) the faces, some of them with their last two corners exchanged."""
     oriented = faces.copy()
     for f in range(len(faces)):
-        if turn[f]:
+        if is_flipped[f]:
             oriented[f, 1], oriented[f, 2] = faces[f, 2], faces[f, 1]
     return oriented
 

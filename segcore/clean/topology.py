@@ -1,16 +1,28 @@
-"""Compiled kernels that find out how the faces of a mesh hang together. Arrays in, arrays out."""
+"""Compiled kernels for the connectivity of the faces of a mesh: dual edges, borders, orientation."""
+
+from typing import NamedTuple
 
 import numpy as np
 from numba import njit
 
 from segcore.arrays import BoolArray, FloatArray, IntArray, LongArray
+from segcore.graphs.surface_graph import Rows
 
 _EMPTY = -1
 
 
+class DualEdges(NamedTuple):
+    """Pairs of faces that share a mesh edge."""
+
+    faces: IntArray  # (E, 2) the two faces
+    vertices: IntArray  # (E, 2) the ends of the shared edge, the smaller first
+    is_manifold: BoolArray  # (E,) exactly two faces share the edge
+    disagrees: BoolArray  # (E,) both faces run through the edge in the same direction: their orientations differ
+
+
 @njit(cache=True)
 def _mix(key: np.uint64) -> np.uint64:
-    """The finaliser of SplitMix64: spreads the bits of a key over the whole word."""
+    """The finaliser of SplitMix64: mixes the bits of a key over the whole word."""
     key = (key ^ (key >> np.uint64(30))) * np.uint64(0xBF58476D1CE4E5B9)
     key = (key ^ (key >> np.uint64(27))) * np.uint64(0x94D049BB133111EB)
     return key ^ (key >> np.uint64(31))
@@ -18,7 +30,7 @@ def _mix(key: np.uint64) -> np.uint64:
 
 @njit(cache=True)
 def first_equal_row(rows: LongArray) -> IntArray:
-    """For every row of (N, 3) the index of the first row that equals it, found by open addressing."""
+    """(N,) for every row of (N, 3) the index of the first row equal to it, by a hash table with open addressing."""
     count = len(rows)
     capacity = 16
     while capacity < 2 * count:
@@ -44,7 +56,7 @@ def first_equal_row(rows: LongArray) -> IntArray:
 
 @njit(cache=True)
 def _first_half_edges(faces: IntArray, vertex_count: int) -> LongArray:
-    """(V + 1,): where the half-edges of every vertex begin, when they are sorted by their smaller end."""
+    """(V + 1,) the first half-edge of every vertex if half-edges are sorted by their smaller end."""
     start = np.zeros(vertex_count + 1, np.int64)
     for f in range(len(faces)):
         for k in range(3):
@@ -55,15 +67,10 @@ def _first_half_edges(faces: IntArray, vertex_count: int) -> LongArray:
 
 
 @njit(cache=True)
-def dual_edges(faces: IntArray, vertex_count: int) -> tuple[IntArray, IntArray, BoolArray, BoolArray]:
-    """Pairs of faces that share an edge.
+def dual_edges(faces: IntArray, vertex_count: int) -> DualEdges:
+    """Pairs of faces (F, 3) that share an edge, ordered by the ends of the edge. O(F) at bounded vertex degrees.
 
-    Where m > 2 faces share one edge, they are chained in the order of their indices (m - 1 pairs).
-
-    Returns
-    -------
-    (E, 2) the faces of a pair; (E, 2) the vertices of the shared edge; (E,) True where exactly two faces share it;
-    (E,) True where both faces run through it in the same direction, which means that their orientations disagree.
+    If m > 2 faces share one edge, they are chained in the order of their indices (m - 1 pairs).
     """
     half_edges = 3 * len(faces)
     start = _first_half_edges(faces, vertex_count)
@@ -84,8 +91,8 @@ def dual_edges(faces: IntArray, vertex_count: int) -> tuple[IntArray, IntArray, 
             fill[low] += 1
     pairs = np.empty((half_edges, 2), np.int32)
     ends = np.empty((half_edges, 2), np.int32)
-    manifold = np.empty(half_edges, np.bool_)
-    disagree = np.empty(half_edges, np.bool_)
+    is_manifold = np.empty(half_edges, np.bool_)
+    disagrees = np.empty(half_edges, np.bool_)
     count = 0
     for v in range(vertex_count):
         p = start[v]
@@ -98,16 +105,16 @@ def dual_edges(faces: IntArray, vertex_count: int) -> tuple[IntArray, IntArray, 
                     continue
                 pairs[count, 0], pairs[count, 1] = owner[r], owner[r + 1]
                 ends[count, 0], ends[count, 1] = v, far_end[p]
-                manifold[count] = q - p == 2
-                disagree[count] = forward[r] == forward[r + 1]
+                is_manifold[count] = q - p == 2
+                disagrees[count] = forward[r] == forward[r + 1]
                 count += 1
             p = q
-    return pairs[:count].copy(), ends[:count].copy(), manifold[:count].copy(), disagree[:count].copy()
+    return DualEdges(pairs[:count].copy(), ends[:count].copy(), is_manifold[:count].copy(), disagrees[:count].copy())
 
 
 @njit(cache=True)
 def border_vertices(faces: IntArray, vertex_count: int) -> BoolArray:
-    """(V,): the vertices at edges that only one face (F, 3) has; edges between equal corners do not count."""
+    """(V,) True for the ends of edges of exactly one face (F, 3); edges between equal corners do not count."""
     start = _first_half_edges(faces, vertex_count)
     far_end = np.empty(3 * len(faces), np.int32)
     uses = np.zeros(3 * len(faces), np.int32)
@@ -132,20 +139,22 @@ def border_vertices(faces: IntArray, vertex_count: int) -> BoolArray:
 
 
 @njit(cache=True)
-def consistent_orientation(
-    start: IntArray, neighbour: IntArray, edge: IntArray, manifold: BoolArray, disagree: BoolArray
-) -> tuple[IntArray, BoolArray]:
-    """Patches of faces that are joined by edges of exactly two faces, and which faces to turn round within each.
+def consistent_orientation(rows: Rows, dual: DualEdges) -> tuple[IntArray, BoolArray]:
+    """Patches of faces that are connected by manifold edges, and the faces to flip within each.
 
-    The lowest face of a patch keeps its orientation. On a one-sided surface the breadth-first order decides.
+    The first face of a patch keeps its orientation. On a one-sided surface the breadth-first order decides.
+
+    Parameters
+    ----------
+    rows : the dual edges of every face.
 
     Returns
     -------
-    (F,) the patch of every face; (F,) True where the face must be turned to agree with the first one of its patch.
+    (F,) the patch 0, 1, ... of every face; (F,) True for faces to flip so that all agree with the first of their patch.
     """
-    face_count = len(start) - 1
+    face_count = len(rows.start) - 1
     patch = np.full(face_count, _EMPTY, np.int32)
-    turned = np.zeros(face_count, np.bool_)
+    is_flipped = np.zeros(face_count, np.bool_)
     queue = np.empty(face_count, np.int32)
     patches = 0
     for seed in range(face_count):
@@ -157,19 +166,19 @@ def consistent_orientation(
         while head < tail:
             f = queue[head]
             head += 1
-            for p in range(start[f], start[f + 1]):
-                g = neighbour[p]
-                if manifold[edge[p]] and patch[g] == _EMPTY:
+            for p in range(rows.start[f], rows.start[f + 1]):
+                g, e = rows.neighbour[p], rows.edge[p]
+                if dual.is_manifold[e] and patch[g] == _EMPTY:
                     patch[g] = patches
-                    turned[g] = turned[f] != disagree[edge[p]]
+                    is_flipped[g] = is_flipped[f] != dual.disagrees[e]
                     queue[tail] = g
                     tail += 1
         patches += 1
-    return patch, turned
+    return patch, is_flipped
 
 
 def mesh_edges(faces: IntArray) -> IntArray:
-    """(E, 2) the different edges of faces (F, 3), smaller vertex first, in ascending order."""
+    """(E, 2) the distinct edges of faces (F, 3), the smaller vertex first, in ascending order."""
     pairs = np.sort(faces[:, [[0, 1], [1, 2], [2, 0]]].reshape(-1, 2), axis=1).astype(np.int64)
     pairs = pairs[pairs[:, 0] != pairs[:, 1]]
     count = int(faces.max()) + 1

@@ -1,1 +1,1 @@
-"""A small graph that is cut in place of the mesh, over all components that touch."""
+"""Coarsening: the clusters that are cut in place of the mesh, and the links between components that touch."""

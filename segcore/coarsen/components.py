@@ -1,4 +1,4 @@
-"""Meshes of several components: the largest ones, the nearest to each other, and groups of near ones."""
+"""Components of a mesh: the largest ones, the nearest to each other, and groups by distance."""
 
 import numpy as np
 from scipy.cluster.hierarchy import linkage
@@ -7,41 +7,43 @@ from scipy.spatial.distance import cdist, squareform
 
 from segcore.arrays import BoolArray, FloatArray, IntArray, group_sums
 
-_SAMPLES = 2048  # points that represent all components when their distances are measured
+_SAMPLES = 2048  # points that represent all components in the matrix of distances: 34 MB
+_NEVER_NEGLIGIBLE = 0.1  # share of the area of the largest component; set by hand
 
 
 def largest(component: IntArray, areas: FloatArray, most: int, negligible: float = 0.0) -> BoolArray:
-    """(C,): True for the ``most`` largest components, without those that are negligible.
+    """(C,) True for the ``most`` largest components, without negligible ones.
 
     Parameters
     ----------
     component : (P,) the component 0..C - 1 of every point, face or node.
     areas : (P,)
-    negligible : share of the total area; a component with a tenth of the largest one's area is never negligible.
+    negligible : share of the total area below which a component is negligible, unless it has a tenth of the area of the
+        largest one.
     """
     area = group_sums(component, areas)
     chosen = np.zeros(len(area), dtype=bool)
     chosen[np.argsort(-area, kind="stable")[:most]] = True
-    return chosen & (area >= min(negligible * area.sum(), 0.1 * area.max()))
+    return chosen & (area >= min(negligible * area.sum(), _NEVER_NEGLIGIBLE * area.max()))
 
 
 def nearest_hosts(component: IntArray, is_host: BoolArray, points: FloatArray) -> IntArray:
-    """(N, 2): for every component that is not a host the point of it that is nearest to any host, and that one's point.
+    """(N, 2) for every component that is not a host its point that is nearest to a host, and that host's point.
 
     Parameters
     ----------
     component : (P,) the component of every point.
-    is_host : (C,), True somewhere.
+    is_host : (C,) True for the components that others are attached to; at least one.
     points : (P, 3)
     """
-    follows = ~is_host[component]
-    own, hosts = np.flatnonzero(follows), np.flatnonzero(~follows)
-    if len(own) == 0:
+    is_other = ~is_host[component]
+    others, hosts = np.flatnonzero(is_other), np.flatnonzero(~is_other)
+    if len(others) == 0:
         return np.empty((0, 2), dtype=np.int32)
-    distance, nearest = map(np.asarray, KDTree(points[hosts]).query(points[own]))
-    order = np.lexsort((distance, component[own]))
-    first = np.unique(component[own][order], return_index=True)[1]
-    return np.stack([own[order[first]], hosts[nearest[order[first]]]], axis=1).astype(np.int32)
+    distance, nearest = map(np.asarray, KDTree(points[hosts]).query(points[others]))
+    order = np.lexsort((distance, component[others]))
+    first = np.unique(component[others][order], return_index=True)[1]
+    return np.stack([others[order[first]], hosts[nearest[order[first]]]], axis=1).astype(np.int32)
 
 
 def group_by_nearness(points: FloatArray, component: IntArray) -> IntArray:
@@ -67,7 +69,7 @@ def group_by_nearness(points: FloatArray, component: IntArray) -> IntArray:
 
 
 def _sample(component: IntArray, count: int) -> tuple[IntArray, IntArray]:
-    """Evenly strided points of every component, grouped by component, and where each group starts."""
+    """Evenly strided points of every component, grouped by component, and the first one of each group."""
     order = np.argsort(component, kind="stable")
     size = np.bincount(component, minlength=count)
     first = np.cumsum(size) - size

@@ -1,13 +1,14 @@
-"""Where the components of a surface touch, and along how long a line.
+"""Contacts between the components of a surface, and the length of the lines along which they touch.
 
 Contacts are measured between points that are spread evenly over the area, so that they depend on the shape and not on
-how it is meshed. Two components touch where points of theirs are nearer than one *reach*. The *band* of the contact are
-the points of either that are more than one reach and at most two from the other: its area over twice the reach is the
-length of the line along which two bodies meet, as a leg and a seat, and twice the length of a curve in which two shells
-cross.
+its meshing. Two components touch if points of theirs are closer than one *reach*. The *band* of the contact consists of
+the points of either that are more than one reach and at most two from the other. Its area over twice the reach is the
+length of the line along which two bodies meet, such as a leg and a seat, and twice the length of a curve in which two
+shells cross.
 """
 
 from dataclasses import dataclass
+from typing import NamedTuple
 
 import numpy as np
 from numba import njit
@@ -15,11 +16,14 @@ from numba import njit
 from segcore.arrays import FloatArray, IntArray, group_sums
 from segcore.clean.surface import Surface
 
-POINTS = 32768  # samples of the whole surface
-REACH = 1 / 120  # of the size: components that are nearer than this touch; 1.5 times the spacing of the points
-_LAYER = 0.1  # of the size: layers that lie on each other hold together like a border of area / this length
-_MOST_PARTNERS = 8  # components that one point can touch
-# The additive recurrence of Roberts: points that fill a square evenly however many are taken.
+POINTS = 32768  # samples of the whole surface; set by hand
+# Of the size: components that are closer than this touch. Set by hand: 1.5 times the spacing of the points, which is
+# sqrt(1 / POINTS) = 1 / 181 of the size, so that points of two surfaces in contact find each other.
+REACH = 1 / 120
+_LAYER = 0.1  # of the size: layers that lie on each other count as a border of length area / this; set by hand
+_MOST_PARTNERS = 8  # components that one point can touch; a limit of memory
+# The additive recurrence of Roberts, The unreasonable effectiveness of quasirandom sequences: evenly spread points in a
+# square for any number of points.
 _R2 = (0.7548776662466927, 0.5698402909980532)
 
 
@@ -29,7 +33,7 @@ class SurfacePoints:
 
     position: FloatArray  # (P, 3)
     face: IntArray  # (P,)
-    area: FloatArray  # (P,) of the piece of surface that a point stands for
+    area: FloatArray  # (P,) of the piece of surface that a point represents
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -37,10 +41,11 @@ class Links:
     """Pairs of faces of different components that belong together; pairs may be repeated."""
 
     faces: IntArray  # (C, 2)
-    length: FloatArray  # (C,) of the border that a pair stands for, > 0, in units of the surface
+    length: FloatArray  # (C,) of the border that a pair represents, > 0, in units of the surface
 
     @classmethod
     def none(cls) -> "Links":
+        """No pairs."""
         return cls(np.empty((0, 2), dtype=np.int32), np.empty(0))
 
 
@@ -57,16 +62,17 @@ def spread_points(surface: Surface, component: IntArray, count: int) -> SurfaceP
     if total <= 0.0:
         area, total = np.ones(len(area)), float(len(area))
     until = np.cumsum(area) * (count / total)
-    # A component gets the points k with k + 1/2 in its stretch of the line, or else one in the middle of it.
+    # All faces lie one after the other on a line of length count. A component gets the points k with k + 1/2 in its
+    # interval of the line, or one in the middle of it if there are none.
     last = np.flatnonzero(np.append(np.diff(component[order]) != 0, True))
     end = until[last]
     begin = np.concatenate([[0.0], end[:-1]])
     points = np.maximum(np.ceil(end - 0.5) - np.ceil(begin - 0.5), 1.0).astype(np.int64)
-    stretch = np.repeat(np.arange(len(points)), points)
+    interval = np.repeat(np.arange(len(points)), points)
     within = np.arange(points.sum()) - np.repeat(np.cumsum(points) - points, points)
-    at = begin[stretch] + (within + 0.5) * ((end - begin) / points)[stretch]
-    face = order[np.minimum(np.searchsorted(until, at, side="right"), last[stretch])].astype(np.int32)
-    share = ((end - begin) / points)[stretch] * (total / count)
+    at = begin[interval] + (within + 0.5) * ((end - begin) / points)[interval]
+    face = order[np.minimum(np.searchsorted(until, at, side="right"), last[interval])].astype(np.int32)
+    share = ((end - begin) / points)[interval] * (total / count)
     return SurfacePoints(_inside(surface.vertices[surface.faces[face]]), face, share)
 
 
@@ -82,16 +88,16 @@ def _inside(corners: FloatArray) -> FloatArray:
 
 
 def find_contacts(points: SurfacePoints, component: IntArray, size: float) -> Links:
-    """The contacts between components, as links of total length equal to that of the contacts.
+    """The contacts between components, as links whose lengths sum to that of the contacts.
 
-    Between two components with the least distance d and the areas B of the band and N within reach, lengths sum up to
-    (1 - (d / reach)**2) min(1, N / B) B / (2 reach) + N / (2 layer), with a tenth of the size as the layer. The first
-    term vanishes with the contact, the second one holds layers together that lie on each other.
+    Between two components with the least distance d and the areas B of the band and N within reach, lengths sum to
+    (1 - (d / reach)**2) min(1, N / B) B / (2 reach) + N / (2 layer), where a layer is a tenth of the size. The first
+    term vanishes with the contact, the second one connects layers that lie on each other.
 
     Parameters
     ----------
     component : (P,) the component of every point.
-    size : of the surface, by which reach and layer are measured: sqrt(total area), or its extent where that is less.
+    size : of the surface, the unit of reach and layer: sqrt(total area), or its extent if that is less.
     """
     reach = REACH * size
     pair, distance = _partners(points.position, component, 2 * reach)
@@ -109,14 +115,21 @@ def find_contacts(points: SurfacePoints, component: IntArray, size: float) -> Li
 
 
 def _numbered_pairs(ends: IntArray) -> IntArray:
-    """(P,): the number 0, 1, ... of the unordered pair in every row of (P, 2)."""
+    """(P,) the number 0, 1, ... of the unordered pair in every row of (P, 2)."""
     low, high = ends.min(axis=1).astype(np.int64), ends.max(axis=1).astype(np.int64)
     numbers = np.unique(low * (high.max(initial=0) + 1) + high, return_inverse=True)[1]
     return numbers.astype(np.int32)
 
 
+class _Found(NamedTuple):
+    """Pairs of points that have been found so far; the arrays have room for all."""
+
+    pairs: IntArray  # (P * 8, 2) a point, and the nearest point of another component
+    squared: FloatArray  # (P * 8,) their squared distance
+
+
 def _partners(position: FloatArray, component: IntArray, radius: float) -> tuple[IntArray, FloatArray]:
-    """For every point the nearest one of each other component within a radius: pairs (C, 2) and distances (C,)."""
+    """Pairs (C, 2) and distances (C,): for every point the nearest one of each other component within a radius."""
     cell = np.floor((position - position.min(axis=0)) / radius).astype(np.int64) + 1
     key = (cell[:, 0] << 42) | (cell[:, 1] << 21) | cell[:, 2]
     order = np.argsort(key, kind="stable")
@@ -126,10 +139,9 @@ def _partners(position: FloatArray, component: IntArray, radius: float) -> tuple
 
 @njit(cache=True)
 def _pairs_in_cells(position, component, key, squared_radius):  # type: ignore[no-untyped-def]
-    """The search of ``_partners`` among points sorted by the keys of their cells."""
+    """The search of ``_partners`` among points that are sorted by the keys of their cells."""
     count = len(position)
-    pairs = np.empty((count * _MOST_PARTNERS, 2), dtype=np.int32)
-    distance = np.empty(count * _MOST_PARTNERS)
+    found = _Found(np.empty((count * _MOST_PARTNERS, 2), dtype=np.int32), np.empty(count * _MOST_PARTNERS))
     used = 0
     for i in range(count):
         first = used
@@ -143,25 +155,26 @@ def _pairs_in_cells(position, component, key, squared_radius):  # type: ignore[n
                         for axis in range(3):
                             squared += (position[i, axis] - position[j, axis]) ** 2
                         if squared <= squared_radius:
-                            used = _keep_nearest(pairs, distance, component, first, used, i, j, squared)
+                            used = _keep_nearest(found, component, first, used, i, j, squared)
                     j += 1
-    for k in range(used):
-        distance[k] = np.sqrt(distance[k])
-    return pairs[:used].copy(), distance[:used].copy()
+    return found.pairs[:used].copy(), np.sqrt(found.squared[:used])
 
 
 @njit(cache=True)
-def _keep_nearest(pairs, distance, component, first, used, i, j, squared):  # type: ignore[no-untyped-def]
-    """Enter j as the nearest point of its component to i where it is; how many entries are used then."""
+def _keep_nearest(found, component, first, used, i, j, squared):  # type: ignore[no-untyped-def]
+    """Enter j as the partner of i if it is the nearest point of its component; return the number of pairs then.
+
+    The pairs first..used - 1 are those of i.
+    """
     for k in range(first, used):
-        if component[pairs[k, 1]] == component[j]:
-            if squared < distance[k]:
-                pairs[k, 1] = j
-                distance[k] = squared
+        if component[found.pairs[k, 1]] == component[j]:
+            if squared < found.squared[k]:
+                found.pairs[k, 1] = j
+                found.squared[k] = squared
             return used
     if used - first == _MOST_PARTNERS:
         return used
-    pairs[used, 0] = i
-    pairs[used, 1] = j
-    distance[used] = squared
+    found.pairs[used, 0] = i
+    found.pairs[used, 1] = j
+    found.squared[used] = squared
     return used + 1

@@ -1,8 +1,10 @@
-"""Guarded heavy-edge coarsening: a few thousand clusters of faces that stand for a mesh of any size.
+"""Guarded heavy-edge coarsening: a few thousand clusters of faces in place of a mesh of any size.
 
 Pairs of neighbouring clusters are merged level by level. A pair is only merged while the mean affinity along its common
-border is high, so that clusters end at concavities and the cuts of the coarse graph are cuts that the fine one has too.
+border is high, so that clusters end at concavities and the cuts of the coarse graph are also cuts of the fine one.
 """
+
+from typing import NamedTuple
 
 import numpy as np
 from numba import njit
@@ -10,6 +12,7 @@ from numba import njit
 from segcore.arrays import FloatArray, IntArray, LongArray, group_sums
 from segcore.graphs.surface_graph import SurfaceGraph
 
+# The sources of these numbers are in docs/algorithm.md, "Constants" of section 3.
 _GUARD = 0.5  # mean affinity along a border below which two clusters are not merged
 _RELAXATION = 0.6  # factor on the guard whenever a level removes too few clusters
 _STALLED = 0.10  # share of clusters removed below which the guard is relaxed
@@ -19,6 +22,15 @@ LARGEST_SHARE = 10.0  # largest cluster, in mean cluster volumes of the target
 _NOISE = 0.3  # standard deviation of the logarithm of the random factor in the order of visits
 
 
+class _Adjacency(NamedTuple):
+    """A weighted graph by rows: node i has the entries start[i]..start[i + 1] - 1 of the other arrays."""
+
+    start: IntArray  # (N + 1,)
+    neighbour: IntArray  # (2 E,)
+    weight: FloatArray  # (2 E,)
+    border: FloatArray  # (2 E,) length of the common border
+
+
 def coarsen(
     graph: SurfaceGraph,
     target: int,
@@ -26,13 +38,13 @@ def coarsen(
     *,
     largest_share: float = LARGEST_SHARE,
 ) -> tuple[SurfaceGraph, IntArray]:
-    """Merge the nodes of a graph into about ``target`` connected clusters.
+    """Merge the nodes of a graph into about ``target`` connected clusters. O(E log E).
 
     Parameters
     ----------
-    target : number of clusters at which to stop; a graph that has no more nodes is returned as it is.
+    target : number of clusters at which to stop. A graph without more nodes is returned as it is.
     largest_share : volume of the largest cluster, in mean volumes of the target.
-    rng : breaks up the regular patterns that visiting nodes in the order of their volumes leaves on regular meshes.
+    rng : randomises the order of visits; visiting nodes by volume alone leaves regular patterns on regular meshes.
 
     Returns
     -------
@@ -41,14 +53,13 @@ def coarsen(
     """
     cluster = np.arange(graph.node_count, dtype=np.int32)
     rows = graph.rows()
-    start, neighbour = rows.start, rows.neighbour
-    weight, border = graph.weight[rows.edge], graph.length[rows.edge]
+    adjacency = _Adjacency(rows.start, rows.neighbour, graph.weight[rows.edge], graph.length[rows.edge])
     volume = graph.volume
     largest = largest_share * float(volume.sum()) / target
     guard = _GUARD
     while len(volume) > target:
         order = np.argsort(volume * rng.lognormal(sigma=_NOISE, size=len(volume)), kind="stable")
-        merged, count = _match(order, start, neighbour, weight, border, volume, guard, largest, len(volume) - target)
+        merged, count = _match(order, adjacency, volume, guard, largest, len(volume) - target)
         removed = 1.0 - count / len(volume)
         if removed < _STALLED and guard <= _LEAST_GUARD and removed < _GIVEN_UP:
             break
@@ -56,32 +67,29 @@ def coarsen(
             guard = max(guard * _RELAXATION, _LEAST_GUARD)
         if count == len(volume):
             continue
-        start, neighbour, weight, border = _contract(merged, count, start, neighbour, weight, border)
+        adjacency = _contract(merged, count, adjacency)
         volume = group_sums(merged, volume, count)
         cluster = merged[cluster]
-    row = np.repeat(np.arange(len(volume), dtype=np.int32), np.diff(start))
-    once = row < neighbour
-    edges = np.stack([row[once], neighbour[once]], axis=1)
-    return SurfaceGraph(edges, weight[once], volume, border[once]), cluster
+    row = np.repeat(np.arange(len(volume), dtype=np.int32), np.diff(adjacency.start))
+    once = row < adjacency.neighbour
+    edges = np.stack([row[once], adjacency.neighbour[once]], axis=1)
+    return SurfaceGraph(edges, adjacency.weight[once], volume, adjacency.border[once]), cluster
 
 
 @njit(cache=True)
 def _match(
-    order: LongArray,
-    start: IntArray,
-    neighbour: IntArray,
-    weight: FloatArray,
-    border: FloatArray,
-    volume: FloatArray,
-    guard: float,
-    largest: float,
-    most_merges: int,
+    order: LongArray, graph: _Adjacency, volume: FloatArray, guard: float, largest: float, most_merges: int
 ) -> tuple[IntArray, int]:
-    """Give every node the free neighbour with the largest w (w / l)**2 / sqrt(vol vol) that the guard allows.
+    """Merge every node with the free neighbour with the largest w (w / l)**2 / sqrt(vol vol) that the guard allows.
+
+    Parameters
+    ----------
+    order : (N,) the nodes in the order of their visits.
+    largest : volume of a cluster, at most.
 
     Returns
     -------
-    (N,) the new cluster of every node, and how many there are.
+    (N,) the new cluster of every node, and the number of clusters.
     """
     node_count = len(volume)
     mate = np.full(node_count, -1, np.int32)
@@ -92,12 +100,12 @@ def _match(
         if mate[i] != -1:
             continue
         best, best_score = -1, 0.0
-        for p in range(start[i], start[i + 1]):
-            j = neighbour[p]
-            if mate[j] != -1 or weight[p] < guard * border[p] or volume[i] + volume[j] > largest:
+        for p in range(graph.start[i], graph.start[i + 1]):
+            j, w, border = graph.neighbour[p], graph.weight[p], graph.border[p]
+            if mate[j] != -1 or w < guard * border or volume[i] + volume[j] > largest:
                 continue
-            affinity = weight[p] / border[p] if border[p] > 0.0 else 1.0
-            score = weight[p] * affinity * affinity / np.sqrt(volume[i] * volume[j])
+            affinity = w / border if border > 0.0 else 1.0
+            score = w * affinity * affinity / np.sqrt(volume[i] * volume[j])
             if score > best_score or (score == best_score and (best == -1 or j < best)):
                 best, best_score = j, score
         if best != -1:
@@ -115,15 +123,13 @@ def _match(
 
 
 @njit(cache=True)
-def _contract(
-    merged: IntArray,
-    count: int,
-    start: IntArray,
-    neighbour: IntArray,
-    weight: FloatArray,
-    border: FloatArray,
-) -> tuple[IntArray, IntArray, FloatArray, FloatArray]:
-    """The adjacency of the merged nodes, parallel edges summed."""
+def _contract(merged: IntArray, count: int, graph: _Adjacency) -> _Adjacency:
+    """The graph of the merged nodes, at most two in each; parallel edges are summed.
+
+    Parameters
+    ----------
+    merged : (N,) the new node 0..count - 1 of every node.
+    """
     first = np.full(count, -1, np.int32)
     second = np.full(count, -1, np.int32)
     for i in range(len(merged)):
@@ -131,10 +137,10 @@ def _contract(
             first[merged[i]] = i
         else:
             second[merged[i]] = i
-    new_start = np.zeros(count + 1, np.int32)
-    new_neighbour = np.empty(len(neighbour), np.int32)
-    new_weight = np.empty(len(neighbour))
-    new_border = np.empty(len(neighbour))
+    start = np.zeros(count + 1, np.int32)
+    neighbour = np.empty(len(graph.neighbour), np.int32)
+    weight = np.empty(len(graph.neighbour))
+    border = np.empty(len(graph.neighbour))
     place = np.full(count, -1, np.int64)
     used = 0
     for c in range(count):
@@ -142,18 +148,18 @@ def _contract(
         for member in (first[c], second[c]):
             if member == -1:
                 continue
-            for p in range(start[member], start[member + 1]):
-                d = merged[neighbour[p]]
+            for p in range(graph.start[member], graph.start[member + 1]):
+                d = merged[graph.neighbour[p]]
                 if d == c:
                     continue
                 if place[d] < row:
                     place[d] = used
-                    new_neighbour[used] = d
-                    new_weight[used] = weight[p]
-                    new_border[used] = border[p]
+                    neighbour[used] = d
+                    weight[used] = graph.weight[p]
+                    border[used] = graph.border[p]
                     used += 1
                 else:
-                    new_weight[place[d]] += weight[p]
-                    new_border[place[d]] += border[p]
-        new_start[c + 1] = used
-    return new_start, new_neighbour[:used].copy(), new_weight[:used].copy(), new_border[:used].copy()
+                    weight[place[d]] += graph.weight[p]
+                    border[place[d]] += graph.border[p]
+        start[c + 1] = used
+    return _Adjacency(start, neighbour[:used].copy(), weight[:used].copy(), border[:used].copy())

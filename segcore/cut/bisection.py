@@ -34,7 +34,7 @@ def bisect(
     Volumes stay those of the whole graph. A cut whose smaller side has less than 0.2 % of the total volume comes after
     all others.
     """
-    component = connected_components(graph)
+    component = connected_components(graph.edges, graph.node_count)
     tree = _GrowingTree(graph, rule)
     for node, members in tree.part_components(component, group_by_nearness(points, component)):
         tree.add(node, Segment(members, graph.subgraph(members), 0, 0.0))

@@ -27,7 +27,7 @@ def with_connected_sides(graph: SurfaceGraph, cut: Cut) -> Cut:
 def _pieces(graph: SurfaceGraph, side: BoolArray) -> IntArray:
     """(N,) the connected piece of every node when the edges across the cut are taken away."""
     kept = side[graph.edges[:, 0]] == side[graph.edges[:, 1]]
-    return connected_components(SurfaceGraph(graph.edges[kept], graph.weight[kept], graph.volume))
+    return connected_components(graph.edges[kept], graph.node_count)
 
 
 def _best_piece(graph: SurfaceGraph, pieces: IntArray, excluded: int = -1) -> Cut:

@@ -2,6 +2,8 @@
 
 from dataclasses import dataclass
 
+import numpy as np
+
 from segcore.arrays import FloatArray, IntArray
 from segcore.graphs.surface_graph import SurfaceGraph
 
@@ -12,5 +14,10 @@ class MeshGraph:
 
     graph: SurfaceGraph
     points: FloatArray  # (N, 3) where the nodes are
-    corners: IntArray  # (F, C) the nodes of every face: itself, or its three vertices
+    corners: IntArray | None  # (F, 3) the nodes at the corners of every face; None if the nodes are the faces
     thickness: FloatArray | None = None  # (N,) logarithm of the shape diameter over sqrt(total area)
+
+    @property
+    def of_face(self) -> IntArray:
+        """(F,) a node of every face: the face itself, or its first corner."""
+        return np.arange(self.graph.node_count, dtype=np.int32) if self.corners is None else self.corners[:, 0]

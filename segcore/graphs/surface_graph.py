@@ -1,7 +1,7 @@
 """A weighted graph whose nodes have volumes: what every cut is made on."""
 
 from dataclasses import dataclass, field
-from typing import Any, TypeAlias
+from typing import Any, NamedTuple, TypeAlias
 
 import numpy as np
 from numba import njit
@@ -13,8 +13,7 @@ from segcore.arrays import FloatArray, IntArray, group_sums
 IndexArray: TypeAlias = NDArray[np.uint32]  # unsigned: compiled loops then need not look for negative indices
 
 
-@dataclass(frozen=True, slots=True, eq=False)
-class Rows:
+class Rows(NamedTuple):
     """The rows of an adjacency matrix: node i has the entries start[i]..start[i + 1] of the two other arrays."""
 
     start: IntArray  # (N + 1,)
@@ -58,7 +57,7 @@ class SurfaceGraph:
 
     def degrees(self) -> FloatArray:
         """(N,): the weighted degree of every node, the sum of its row of W."""
-        return group_sums(self.edges.ravel(), np.repeat(self.weight, 2), self.node_count)
+        return weighted_degrees(self.edges, self.weight, self.node_count)
 
     def subgraph(self, nodes: IntArray) -> "SurfaceGraph":
         """The edges inside a set of nodes; the nodes keep their volumes. O(N + E).
@@ -85,12 +84,17 @@ class SurfaceGraph:
 
 def rows_of(edges: IntArray, node_count: int) -> Rows:
     """The adjacency of an edge list (E, 2); parallel edges are allowed. O(N + E)."""
-    return Rows(*_rows(edges, node_count))
+    return _rows(edges, node_count)
 
 
-def connected_components(graph: SurfaceGraph) -> IntArray:
+def weighted_degrees(edges: IntArray, weight: FloatArray, node_count: int) -> FloatArray:
+    """(N,) sum of the weights (E,) of the edges (E, 2) at every node."""
+    return group_sums(edges.ravel(), np.repeat(weight, 2), node_count)
+
+
+def connected_components(edges: IntArray, node_count: int) -> IntArray:
     """(N,) int32: the component of every node, numbered 0, 1, ... by the smallest node in each."""
-    return _components(graph.edges, graph.node_count)
+    return _components(edges, node_count)
 
 
 @njit(cache=True)
@@ -110,7 +114,7 @@ def _rows(edges, node_count):  # type: ignore[no-untyped-def]
             neighbour[filled[here]] = edges[e, 1 - end]
             edge[filled[here]] = e
             filled[here] += 1
-    return start, neighbour, edge
+    return Rows(start, neighbour, edge)
 
 
 @njit(cache=True)

@@ -1,1 +1,1 @@
-"""The models that were learned from people's segmentations."""
+"""The models that were fitted to segmentations by people."""

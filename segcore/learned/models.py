@@ -14,10 +14,10 @@ from segcore.learned.logistic import LogisticModel
 
 @dataclass(frozen=True, slots=True, eq=False)
 class LearnedModels:
-    """What ``python -m bench train`` has learned."""
+    """The models that ``python -m bench train`` fits; see docs/learned-model.md."""
 
-    boundary: LogisticModel  # of a cut along an edge, see segcore.affinity.boundary_features
-    split: LogisticModel  # of what people keep together across a cut, see segcore.cut.features
+    boundary: LogisticModel  # probability of a cut along an edge, see segcore.affinity.boundary_features
+    split: LogisticModel  # share of the pairs across a cut that people keep together, see segcore.cut.features
 
     @classmethod
     def from_document(cls, document: Mapping[str, Any]) -> "LearnedModels":
@@ -29,22 +29,22 @@ class LearnedModels:
         return {"boundary": self.boundary.document(), "split": self.split.document()}
 
 
-_instead: ContextVar[LearnedModels | None] = ContextVar("learned models", default=None)
+_override: ContextVar[LearnedModels | None] = ContextVar("learned models", default=None)
 
 
 def learned_models() -> LearnedModels:
-    """The models of the data file models.json in this package, or those given with ``using``."""
-    return _instead.get() or _shipped()
+    """The models of the data file models.json in this package, or those of an enclosing ``using``."""
+    return _override.get() or _shipped()
 
 
 @contextmanager
 def using(models: LearnedModels) -> Iterator[None]:
-    """Let everything inside go by other models: to train them, and to judge them on shapes that they have not seen."""
-    token = _instead.set(models)
+    """Context manager that replaces the models, to train them or to evaluate them on shapes they have not seen."""
+    token = _override.set(models)
     try:
         yield
     finally:
-        _instead.reset(token)
+        _override.reset(token)
 
 
 @cache

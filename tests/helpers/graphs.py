@@ -1,4 +1,4 @@
-"""Small graphs for the tests of the solvers: random ones, ones with a known best cut, and brute force."""
+"""Small graphs for the tests of the solvers: random ones, ones with a known best cut, and brute force over all cuts."""
 
 from itertools import combinations
 
@@ -12,7 +12,7 @@ from segcore.graphs.surface_graph import SurfaceGraph
 def graph_of(
     pairs: list[tuple[int, int]], weight: list[float] | None = None, volume: FloatArray | None = None
 ) -> SurfaceGraph:
-    """A graph from any list of pairs; weights 1 and degree volumes where none are given."""
+    """A graph from any list of pairs, by default with weights 1 and the degrees as volumes."""
     edges = np.sort(np.array(pairs, dtype=np.int32).reshape(-1, 2), axis=1)
     weights = np.ones(len(edges)) if weight is None else np.array(weight, dtype=np.float64)
     node_count = len(volume) if volume is not None else int(edges.max()) + 1
@@ -21,10 +21,12 @@ def graph_of(
 
 
 def path(node_count: int) -> SurfaceGraph:
+    """Nodes 0, 1, ... in a row."""
     return graph_of([(i, i + 1) for i in range(node_count - 1)])
 
 
 def cycle(node_count: int) -> SurfaceGraph:
+    """Nodes 0, 1, ... in a ring."""
     return graph_of([(i, (i + 1) % node_count) for i in range(node_count)])
 
 
@@ -46,7 +48,7 @@ def grid(rows: int, columns: int) -> SurfaceGraph:
 
 @st.composite
 def graphs(draw: st.DrawFn, most_nodes: int = 9, decades: float = 1.0, connected: bool = True) -> SurfaceGraph:
-    """Any graph without loops, with weights and volumes over some decades; volumes are degrees half of the time."""
+    """Any graph without loops, with weights and volumes over some decades; in half of them volumes are degrees."""
     node_count = draw(st.integers(2, most_nodes))
     pairs = list(combinations(range(node_count), 2))
     chosen = set(draw(st.lists(st.sampled_from(pairs), min_size=1)))
@@ -62,7 +64,7 @@ def graphs(draw: st.DrawFn, most_nodes: int = 9, decades: float = 1.0, connected
 
 
 def laplacian(graph: SurfaceGraph) -> FloatArray:
-    """(N, N) dense L = diag(degree) - W, one edge at a time."""
+    """(N, N) dense L = diag(degree) - W, added up edge by edge."""
     L = np.zeros((graph.node_count, graph.node_count))
     for (a, b), weight in zip(graph.edges.tolist(), graph.weight.tolist(), strict=True):
         L[a, b] -= weight
@@ -73,19 +75,19 @@ def laplacian(graph: SurfaceGraph) -> FloatArray:
 
 
 def all_sides(node_count: int) -> BoolArray:
-    """(2^N, N): every set of nodes."""
+    """(2^N, N) every set of nodes."""
     return (np.arange(2**node_count)[:, None] >> np.arange(node_count)) % 2 == 1
 
 
 def cuts(graph: SurfaceGraph, sides: BoolArray) -> FloatArray:
-    """(M,): cut(S, rest) of every row of ``sides``."""
+    """(M,) cut(S, rest) of every row of ``sides``."""
     crossing = sides[:, graph.edges[:, 0]] != sides[:, graph.edges[:, 1]]
     values: FloatArray = crossing @ graph.weight
     return values
 
 
 def best_ncc(graph: SurfaceGraph) -> float:
-    """h: the least normalized Cheeger cut of all bipartitions."""
+    """The least normalized Cheeger cut of all bipartitions."""
     sides = all_sides(graph.node_count)[1:-1]
     inside = sides @ graph.volume
     outside = ~sides @ graph.volume
@@ -93,7 +95,7 @@ def best_ncc(graph: SurfaceGraph) -> float:
 
 
 def mesh_like(seed: int, rows: int = 20, columns: int = 30) -> SurfaceGraph:
-    """A grid with random weights over two decades and random volumes: no symmetry, no best cut known."""
+    """A grid with random weights over two decades and random volumes: without symmetry, its best cut unknown."""
     rng = np.random.default_rng(seed)
     graph = grid(rows, columns)
     return SurfaceGraph(

@@ -9,7 +9,7 @@ from segcore.hierarchy import Hierarchy
 
 @st.composite
 def hierarchies(draw):
-    """Random trees: each split takes a random one of the present leaves."""
+    """Random trees: each split cuts a random one of the current leaves."""
     splits = draw(st.integers(0, 12))
     leaves, split_node = [0], []
     for s in range(splits):
@@ -46,7 +46,7 @@ def test_finer_levels_refine_coarser_ones_and_only_the_new_label_differs(hierarc
 
 
 @given(hierarchies())
-def test_the_segment_nodes_hold_the_faces_that_carry_their_labels(hierarchy):
+def test_the_segment_nodes_contain_the_faces_with_their_labels(hierarchy):
     parent = hierarchy.parent
     for k in range(1, hierarchy.max_segments + 1):
         nodes = hierarchy.segment_nodes(k)
@@ -58,7 +58,7 @@ def test_the_segment_nodes_hold_the_faces_that_carry_their_labels(hierarchy):
 
 
 @given(hierarchies())
-def test_children_parents_and_levels_tell_the_same_tree(hierarchy):
+def test_children_parents_and_levels_are_of_the_same_tree(hierarchy):
     for node, pair in enumerate(hierarchy.children):
         for child in pair[pair >= 0]:
             assert hierarchy.parent[child] == node
@@ -68,12 +68,12 @@ def test_children_parents_and_levels_tell_the_same_tree(hierarchy):
 
 
 @given(hierarchies())
-def test_without_a_number_the_automatic_one_is_used(hierarchy):
+def test_the_default_number_of_segments_is_the_automatic_one(hierarchy):
     np.testing.assert_array_equal(hierarchy.labels(), hierarchy.labels(hierarchy.automatic_segments))
 
 
 @given(hierarchies(), st.sampled_from([-1, 0, 1000]))
-def test_a_number_of_segments_that_the_tree_lacks_is_refused_with_the_range(hierarchy, segments):
+def test_a_number_of_segments_outside_the_tree_is_refused_with_the_range(hierarchy, segments):
     with pytest.raises(InvalidParameters, match=rf"from 1 to {hierarchy.max_segments} .*not {segments}"):
         hierarchy.labels(segments)
 

@@ -1,4 +1,4 @@
-"""The same shape gets the same parts, however it is placed and meshed."""
+"""Laws: a shape gets the same parts in any position and with any meshing."""
 
 from functools import cache
 
@@ -22,16 +22,18 @@ SEED = 7
 
 @cache
 def labels_of(name):
+    """The labels of a shape on its own mesh, with as many segments as it has parts."""
     shape = SHAPES[name]
     return segment(shape.mesh).labels(int(shape.parts.max()) + 1)
 
 
 def labels_in(mesh, name):
+    """The labels of another mesh of a shape, with as many segments as the shape has parts."""
     return segment(mesh).labels(int(SHAPES[name].parts.max()) + 1)
 
 
 def same(name, labels, weights=None):
-    """The agreement of labels of the faces of a shape with those of its own mesh, by area."""
+    """The agreement by area of labels of the faces of a shape with those of its own mesh."""
     return agreement(labels, labels_of(name), areas(SHAPES[name].mesh) if weights is None else weights)
 
 
@@ -92,7 +94,7 @@ def test_duplicated_faces(name):
 
 @anyshape
 def test_faces_that_are_points(name):
-    """A triangle whose corners nearly coincide, as simplification leaves them, is no part, and hides none."""
+    """Triangles whose corners nearly coincide, as after a simplification, are no parts and do not hide any."""
     mesh = SHAPES[name].mesh
     faces, vertices = mesh.faces, mesh.vertices
     for f in range(0, len(faces), len(faces) // 5):
@@ -122,7 +124,7 @@ def test_subdivision_of_one_half(name):
 
 
 def half_refined(mesh):
-    """The upper half with every face cut at its centre; part i of the shape is face i of the mesh."""
+    """The mesh with every face of its upper half cut at the centre; part i of the shape is face i of the mesh."""
     upper = mesh.corners[:, :, 2].mean(axis=1) > 0
     centre = len(mesh.vertices) + np.arange(upper.sum())
     a, b, c = mesh.faces[upper].T

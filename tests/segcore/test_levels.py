@@ -1,4 +1,4 @@
-"""Splits can be moved to the front of a hierarchy wherever the parts that they cut are there."""
+"""Requested numbers of segments, and splits that are moved to the front of a hierarchy."""
 
 from dataclasses import fields
 
@@ -9,7 +9,7 @@ from hypothesis import strategies as st
 
 from segcore.errors import InvalidParameters
 from segcore.hierarchy import Hierarchy
-from segcore.levels import keep_splits
+from segcore.levels import Fineness, keep_splits
 
 
 @st.composite
@@ -39,6 +39,7 @@ def hierarchies(draw: st.DrawFn) -> Hierarchy:
 
 @st.composite
 def closed_choices(draw: st.DrawFn) -> tuple[Hierarchy, set[int]]:
+    """A tree and some of its splits, each with the splits above it."""
     hierarchy = draw(hierarchies())
     wanted = draw(st.sets(st.integers(0, hierarchy.max_segments - 2))) if hierarchy.max_segments > 1 else set()
     closed = set()
@@ -50,15 +51,43 @@ def closed_choices(draw: st.DrawFn) -> tuple[Hierarchy, set[int]]:
     return hierarchy, closed
 
 
+@given(hierarchies())
+def test_the_automatic_number_is_meant_if_nothing_is_given(hierarchy: Hierarchy) -> None:
+    assert Fineness().is_automatic
+    assert Fineness().segments_of(hierarchy) == hierarchy.automatic_segments
+
+
+@given(hierarchies(), st.floats(0, 1), st.data())
+def test_a_number_or_a_granularity_selects_the_level(
+    hierarchy: Hierarchy, granularity: float, data: st.DataObject
+) -> None:
+    segments = data.draw(st.integers(1, hierarchy.max_segments))
+    assert Fineness(segments=segments).segments_of(hierarchy) == segments
+    assert Fineness(granularity=granularity).segments_of(hierarchy) == hierarchy.segments_at(granularity)
+    assert not Fineness(segments=segments).is_automatic
+    assert not Fineness(granularity=granularity).is_automatic
+
+
+def test_a_number_and_a_granularity_together_are_refused() -> None:
+    with pytest.raises(InvalidParameters, match="either segments or granularity"):
+        Fineness(segments=3, granularity=0.5)
+
+
+@given(hierarchies())
+def test_a_number_outside_the_hierarchy_is_refused(hierarchy: Hierarchy) -> None:
+    with pytest.raises(InvalidParameters, match=f"from 1 to {hierarchy.max_segments} "):
+        Fineness(segments=hierarchy.max_segments + 1).segments_of(hierarchy)
+
+
 @given(closed_choices())
-def test_exactly_the_kept_splits_part_faces(choice: tuple[Hierarchy, set[int]]) -> None:
+def test_exactly_the_kept_splits_separate_faces(choice: tuple[Hierarchy, set[int]]) -> None:
     hierarchy, splits = choice
     kept = keep_splits(hierarchy, splits)
     labels = kept.labels()
     assert sorted(set(labels.tolist())) == list(range(len(splits) + 1))
     for i, a in enumerate(hierarchy.face_leaf.tolist()):
         for j, b in enumerate(hierarchy.face_leaf.tolist()):
-            assert (labels[i] != labels[j]) == (_parted_by(hierarchy, a, b) in splits)
+            assert (labels[i] != labels[j]) == (_separated_by(hierarchy, a, b) in splits)
 
 
 @given(closed_choices())
@@ -101,8 +130,8 @@ def test_splits_that_cannot_be_made_are_refused(chain: Hierarchy, splits: list[i
         keep_splits(chain, splits)
 
 
-def _parted_by(hierarchy: Hierarchy, a: int, b: int) -> int:
-    """The split that puts two leaves into different parts; -1 for one leaf."""
+def _separated_by(hierarchy: Hierarchy, a: int, b: int) -> int:
+    """The split that puts two leaves into different parts; -1 if they are the same."""
     if a == b:
         return -1
     above_a = _path(hierarchy, a)
@@ -113,6 +142,7 @@ def _parted_by(hierarchy: Hierarchy, a: int, b: int) -> int:
 
 
 def _path(hierarchy: Hierarchy, node: int) -> set[int]:
+    """A node and all nodes above it."""
     path = set()
     while node >= 0:
         path.add(node)
@@ -121,7 +151,7 @@ def _path(hierarchy: Hierarchy, node: int) -> set[int]:
 
 
 def _facts(hierarchy: Hierarchy) -> set[tuple[frozenset[int], float, int, float]]:
-    """The faces of every node with what is said about it, whatever its number."""
+    """The faces, area, number of faces and cut value of every node, independent of the numbers of the nodes."""
     cut_value = dict(zip(hierarchy.split_node.tolist(), hierarchy.cut_value.tolist(), strict=True))
     faces = [set[int]() for _ in range(hierarchy.node_count)]
     for face, leaf in enumerate(hierarchy.face_leaf.tolist()):

@@ -8,7 +8,7 @@ TRIANGLE = [[0.0, 0, 0], [1, 0, 0], [0, 1, 0]]
 
 
 @pytest.mark.parametrize(
-    ("vertices", "faces", "complaint"),
+    ("vertices", "faces", "message"),
     [
         ([[0.0, 0, np.nan], [1, 0, 0], [0, 1, 0]], [[0, 1, 2]], "Vertex 0 has a coordinate that is not finite"),
         ([[0.0, 0, 0], [1, 0, 0], [0, np.inf, 0]], [[0, 1, 2]], "Vertex 2"),
@@ -23,8 +23,8 @@ TRIANGLE = [[0.0, 0, 0], [1, 0, 0], [0, 1, 0]]
         ([[0.0, 0, 0], [1e300, 0, 0], [0, 1, 0]], [[0, 1, 2]], "larger than"),
     ],
 )
-def test_arrays_that_are_no_mesh_are_refused_with_the_offender(vertices, faces, complaint):
-    with pytest.raises(InvalidMesh, match=complaint):
+def test_arrays_that_are_no_mesh_are_refused_with_the_first_wrong_entry(vertices, faces, message):
+    with pytest.raises(InvalidMesh, match=message):
         Mesh(vertices, faces)
 
 

@@ -92,7 +92,7 @@ def test_an_open_mesh_gets_its_parts():
     assert agreement(labels, BURR.parts[kept], areas(mesh)) > 0.9
 
 
-def test_a_fin_on_a_non_manifold_edge_is_segmented_with_the_rest():
+def test_a_face_at_a_non_manifold_edge_is_segmented_with_the_rest():
     a, b = BURR.mesh.faces[0, :2]
     mesh = Mesh(np.concatenate([BURR.mesh.vertices, [[0.0, 0, 9]]]),
                 np.concatenate([BURR.mesh.faces, [[a, b, len(BURR.mesh.vertices)]]]))  # fmt: skip
@@ -101,7 +101,7 @@ def test_a_fin_on_a_non_manifold_edge_is_segmented_with_the_rest():
         assert pieces_of_labels(mesh, hierarchy.labels(k)) == k
 
 
-def test_components_that_lie_apart_are_parted_before_anything_is_cut():
+def test_components_that_lie_apart_are_separated_before_any_cut():
     shape = shapes.joined(DUMBBELL.mesh, shapes.box(centre=(5, 0, 0)), shapes.box(centre=(-3, 0, 0)))
     hierarchy = segment(shape.mesh)
     labels = hierarchy.labels(3)
@@ -119,7 +119,7 @@ def test_fewer_segments_than_components_group_the_near_ones():
     assert groups[1][0] == groups[1][1] != groups[1][2] == groups[1][3] != groups[1][4]
 
 
-def test_a_thousand_components_end_in_a_hierarchy_of_the_size_asked_for():
+def test_a_thousand_components_end_in_a_hierarchy_of_the_requested_size():
     rng = np.random.default_rng(0)
     large = [shapes.icosphere(2, 5.0), shapes.box((5, 5, 5), (20, 0, 0))]
     dust = [shapes.box((0.1, 0.1, 0.1), tuple(rng.uniform(-5, 25, 3))) for _ in range(998)]
@@ -132,13 +132,13 @@ def test_a_thousand_components_end_in_a_hierarchy_of_the_size_asked_for():
 
 
 @pytest.mark.parametrize("most", [1, 2, 9])
-def test_the_hierarchy_ends_where_it_is_told_to(most):
+def test_the_hierarchy_ends_at_the_requested_number_of_segments(most):
     hierarchy = segment(BURR.mesh, SegmentationParameters(max_segments=most))
     assert hierarchy.max_segments == most
     assert set(hierarchy.labels(most)) == set(range(most))
 
 
-def test_as_many_components_as_segments_are_all_parted():
+def test_as_many_components_as_segments_are_all_separated():
     boxes = shapes.joined(*[shapes.box(centre=(2.0 * (x % 8), 2.0 * (x // 8), 0)) for x in range(64)])
     labels = segment(boxes.mesh).labels(64)
     np.testing.assert_array_equal(labels.reshape(64, 12).min(axis=1), labels.reshape(64, 12).max(axis=1))
@@ -159,19 +159,19 @@ def test_small_meshes_have_as_many_segments_as_faces_with_an_area(mesh, most):
 
 
 def test_progress_runs_from_0_to_1():
-    told = []
-    segment(BURR.mesh, on_progress=lambda stage, fraction: told.append((stage, fraction)))
-    fractions = [fraction for _, fraction in told]
+    reported = []
+    segment(BURR.mesh, on_progress=lambda stage, fraction: reported.append((stage, fraction)))
+    fractions = [fraction for _, fraction in reported]
     assert fractions[0] == 0
     assert fractions[-1] == 1
     assert fractions == sorted(fractions)
-    assert [stage for i, (stage, _) in enumerate(told) if i == 0 or told[i - 1][0] != stage] == [
+    assert [stage for i, (stage, _) in enumerate(reported) if i == 0 or reported[i - 1][0] != stage] == [
         "clean", "affinity", "coarsen", "cut", "label"]  # fmt: skip
 
 
 @settings(max_examples=60, deadline=None)
 @given(npst.arrays(np.int32, st.tuples(st.integers(1, 20), st.just(3)), elements=st.integers(0, 7)), st.data())
-def test_whatever_the_faces_every_one_gets_a_label(faces, data):
+def test_every_one_of_any_faces_gets_a_label(faces, data):
     coordinate = st.sampled_from([0.0, 1.0, -1.0, 0.5, 1e-20, 1e20])
     mesh = Mesh(data.draw(npst.arrays(np.float64, (8, 3), elements=coordinate)), faces)
     hierarchy = segment(mesh)

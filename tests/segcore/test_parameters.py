@@ -18,11 +18,11 @@ def test_a_value_outside_its_range_is_refused_with_name_and_value(name, value):
         SegmentationParameters(**{name: value})
 
 
-def test_parameters_come_from_names_and_values():
+def test_parameters_are_made_from_names_and_values():
     assert SegmentationParameters.from_mapping({"max_segments": 9}) == SegmentationParameters(max_segments=9)
 
 
-def test_a_preset_is_changed_by_the_values_beside_it():
+def test_values_beside_a_preset_override_it():
     mapped = SegmentationParameters.from_mapping({"preset": "chahhou2014", "starts": 2})
     assert mapped == replace(SegmentationParameters.preset("chahhou2014"), starts=2)
     assert (mapped.graph, mapped.affinity, mapped.solver) == ("vertices", "minima_rule", "inverse_power")
@@ -47,7 +47,7 @@ def test_the_schema_has_a_description_and_the_default_of_every_parameter():
 
 
 @pytest.mark.parametrize("name", ["starts", "iterations", "max_segments", "clusters", "seed"])
-def test_what_the_schema_allows_is_what_is_taken(name):
+def test_exactly_the_values_of_the_schema_are_accepted(name):
     schema = parameters_schema()["properties"][name]
     limits = schema.get("anyOf", [schema])[0]
     for value in (limits["minimum"], limits["maximum"]):

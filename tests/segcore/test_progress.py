@@ -5,54 +5,56 @@ import pytest
 
 from segcore import shapes
 from segcore.method import segment
-from segcore.progress import Progress
+from segcore.progress import STAGES, Progress
 
-STAGES = ["clean", "affinity", "coarsen", "cut", "label"]
+
+def test_the_stages_are_those_of_the_documentation_in_order():
+    assert STAGES == ("clean", "affinity", "coarsen", "cut", "label")
 
 
 @pytest.mark.parametrize("face_count", [1, 20_000, 2_000_000, 10**9])
-def test_fractions_run_from_0_to_1_whatever_the_size(face_count):
-    told = []
-    progress = Progress(lambda _, fraction: told.append(fraction), face_count)
+def test_fractions_run_from_0_to_1_for_any_size(face_count):
+    reported = []
+    progress = Progress(lambda _, fraction: reported.append(fraction), face_count)
     for stage in STAGES:
         progress(stage)
         progress(stage, 0.5)
     progress("label", 1.0)
-    assert told[0] == 0
-    assert told[-1] == pytest.approx(1)
-    assert all(a < b for a, b in pairwise(told))
+    assert reported[0] == 0
+    assert reported[-1] == pytest.approx(1)
+    assert all(a < b for a, b in pairwise(reported))
 
 
-def test_the_cuts_are_most_of_the_work_on_a_small_mesh_and_next_to_none_on_a_huge_one():
+def test_the_cuts_are_a_large_share_of_a_small_mesh_and_a_small_one_of_a_huge_mesh():
     share = {}
     for size in (10_000, 2_000_000):
-        told = {}
-        progress = Progress(told.__setitem__, size)
+        reported = {}
+        progress = Progress(reported.__setitem__, size)
         progress("cut")
         progress("label")
-        share[size] = told["label"] - told["cut"]
+        share[size] = reported["label"] - reported["cut"]
     assert share[10_000] > 0.4
     assert share[2_000_000] < 0.1
 
 
-def test_the_first_of_many_splits_take_longest():
-    told = []
-    progress = Progress(lambda _, fraction: told.append(fraction), 10_000)
+def test_the_first_splits_take_longest():
+    reported = []
+    progress = Progress(lambda _, fraction: reported.append(fraction), 10_000)
     progress("cut")
     for segments in (2, 4, 8, 16, 32, 64):
         progress.after_splits(64, segments / 64)
     progress("label")
-    assert told[-2] == pytest.approx(told[-1])
-    np.testing.assert_allclose(np.diff(told[:-1]), (told[-1] - told[0]) / 6)
+    assert reported[-2] == pytest.approx(reported[-1])
+    np.testing.assert_allclose(np.diff(reported[:-1]), (reported[-1] - reported[0]) / 6)
 
 
 @pytest.mark.parametrize("stage", STAGES)
-def test_a_callback_that_raises_ends_the_work_and_leaves_nothing_behind(stage):
+def test_a_callback_that_raises_ends_the_work_and_changes_nothing(stage):
     class EnoughError(Exception):
         pass
 
-    def end(told, _):
-        if told == stage:
+    def end(reported, _):
+        if reported == stage:
             raise EnoughError
 
     mesh = shapes.burr(3).mesh

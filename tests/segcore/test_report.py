@@ -1,4 +1,4 @@
-"""The mesh report counts what is in a mesh, as plain Python counts it."""
+"""The counts of a mesh report agree with those of plain Python."""
 
 from collections import Counter
 
@@ -9,7 +9,7 @@ from hypothesis import strategies as st
 
 from helpers.meshes import exploded
 from segcore import shapes
-from segcore.clean.welding import WELD_TOLERANCE, weld
+from segcore.clean.welding import WELD_TOLERANCE
 from segcore.mesh import Mesh
 from segcore.report import mesh_report
 
@@ -17,7 +17,7 @@ BALL = shapes.icosphere(2)
 
 
 def on_grid() -> st.SearchStrategy[Mesh]:
-    """Meshes whose vertices often share a place and whose faces often share an edge."""
+    """Meshes with many vertices at the same place and many faces at the same edge."""
     place = st.tuples(*[st.integers(0, 2)] * 3)
     vertices = st.lists(place, min_size=1, max_size=9)
     return vertices.flatmap(
@@ -51,7 +51,7 @@ def sides(face: tuple) -> list[tuple]:
 
 
 def pieces(faces: set[frozenset]) -> list[set[frozenset]]:
-    """Sets of faces that hang together by edges."""
+    """Sets of faces that are connected by edges."""
     found: list[set[frozenset]] = []
     for face in faces:
         joined = [piece for piece in found if any(len(face & other) == 2 for other in piece)]
@@ -60,7 +60,7 @@ def pieces(faces: set[frozenset]) -> list[set[frozenset]]:
 
 
 @given(st.sets(st.integers(0, len(BALL.faces) - 1), max_size=len(BALL.faces) // 2 - 1))
-def test_flipped_faces_are_those_that_were_turned(turned: set[int]) -> None:
+def test_flipped_faces_are_counted(turned: set[int]) -> None:
     faces = BALL.faces.copy()
     for face in turned:
         faces[face] = faces[face][::-1]
@@ -69,13 +69,13 @@ def test_flipped_faces_are_those_that_were_turned(turned: set[int]) -> None:
     assert report.volume == pytest.approx(mesh_report(BALL).volume)
 
 
-def test_a_ball_that_is_inside_out_is_turned_as_a_whole() -> None:
+def test_a_ball_that_is_inside_out_is_flipped_as_a_whole() -> None:
     report = mesh_report(Mesh(BALL.vertices, BALL.faces[:, ::-1]))
     assert report.flipped_faces == report.faces
     assert 4 < report.volume < 4 * np.pi / 3
 
 
-def test_a_closed_ball_without_fault() -> None:
+def test_a_closed_ball_has_no_defects() -> None:
     report = mesh_report(Mesh(BALL.vertices * 10 + 5, BALL.faces))
     assert report.is_closed
     assert (report.components, report.border_edges, report.flipped_faces, report.sliver_faces) == (1, 0, 0, 0)
@@ -100,7 +100,7 @@ def test_polygons_of_the_file_are_counted() -> None:
     assert mesh_report(mesh).polygons == 1
 
 
-def test_a_seam_that_was_rounded_differently_on_both_sides_is_closed() -> None:
+def test_borders_that_were_rounded_differently_on_both_sides_are_joined() -> None:
     rng = np.random.default_rng(4)
     parts = exploded(BALL)
     noise = rng.uniform(-0.25, 0.25, parts.vertices.shape) * WELD_TOLERANCE
@@ -110,22 +110,9 @@ def test_a_seam_that_was_rounded_differently_on_both_sides_is_closed() -> None:
         assert report.components == 1
 
 
-def test_what_is_farther_apart_than_the_tolerance_stays_apart() -> None:
+def test_components_farther_apart_than_the_tolerance_stay_apart() -> None:
     gap = np.array([0, 0, 2 + 4 * WELD_TOLERANCE])
     two = Mesh(
         np.vstack([BALL.vertices, BALL.vertices + gap]), np.vstack([BALL.faces, BALL.faces + len(BALL.vertices)])
     )
     assert mesh_report(two).components == 2
-
-
-def test_welding_takes_no_corner_from_a_face_but_where_two_are_at_the_same_place() -> None:
-    tiny = np.array([[0, 0, 0], [1, 0, 0], [1, 1e-8, 0], [0, 1, 0], [1, 1e-8, 0], [2, 2, 2]])
-    faces = np.array([[0, 1, 2], [0, 2, 3]], dtype=np.int32)
-    assert weld(tiny, faces).tolist() == [0, 1, 2, 3, 2, 5]
-
-
-def test_a_mesh_without_borders_is_welded_exactly_only() -> None:
-    near = np.vstack([BALL.vertices, BALL.vertices * (1 + 1e-9)])
-    faces = np.vstack([BALL.faces, BALL.faces[:, ::-1] + len(BALL.vertices)])
-    assert weld(near, faces).tolist() == list(range(len(near)))
-    assert mesh_report(Mesh(near, faces)).components == 2

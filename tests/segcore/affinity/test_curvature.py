@@ -13,7 +13,7 @@ def test_both_curvatures_of_a_sphere_are_one_over_its_radius(radius):
     np.testing.assert_allclose(curvature.k2, 1 / radius, rtol=1e-3)
 
 
-def test_inside_out_turns_the_signs():
+def test_inside_out_changes_the_signs():
     sphere = shapes.icosphere(3)
     curvature = principal_curvatures(sphere.vertices, sphere.faces[:, ::-1])
     np.testing.assert_allclose(curvature.k2, -1, rtol=1e-2)
@@ -40,7 +40,7 @@ def test_a_cylinder_is_curved_one_way_only():
     np.testing.assert_allclose(curvature.k2[middle], 0, atol=0.01)
 
 
-def test_slivers_leave_finite_values():
+def test_values_at_slivers_are_finite():
     vertices = np.array([[0.0, 0, 0], [1, 0, 0], [0.5, 0, 0], [0.5, 1e-12, 0], [0, 1, 0]])
     faces = np.array([[0, 1, 2], [0, 1, 3], [0, 1, 4]], np.int32)
     curvature = principal_curvatures(vertices, faces)

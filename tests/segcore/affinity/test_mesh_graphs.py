@@ -47,11 +47,11 @@ def test_the_minima_rule_on_faces_weighs_lengths():
     np.testing.assert_allclose(made.graph.length, length)
 
 
-def test_components_that_touch_at_a_vertex_have_a_node_each_there():
+def test_components_that_touch_at_a_vertex_each_have_a_node_there():
     touching = Mesh([[0.0, 0, 0], [1, 0, 0], [0, 1, 0], [-1, 0, 0], [0, -1, 0]], [[0, 1, 2], [0, 3, 4]])
     made = graph_of(touching, graph="vertices", affinity="adjacency")
     assert made.graph.node_count == 6
-    assert connected_components(made.graph).max() == 1
+    assert connected_components(made.graph.edges, made.graph.node_count).max() == 1
 
 
 @pytest.mark.parametrize("affinity", ["minima_rule", "adjacency"])
@@ -65,7 +65,7 @@ def test_segments_are_connected_sets_of_faces_on_every_graph(graph, affinity):
 
 
 @pytest.mark.parametrize("thinning", ["none", "walk"])
-def test_the_minima_rule_parts_the_balls_of_a_dumbbell_on_the_vertex_graph(thinning):
+def test_the_minima_rule_separates_the_balls_of_a_dumbbell_on_the_vertex_graph(thinning):
     dumbbell = shapes.dumbbell()
     parameters = SegmentationParameters(
         graph="vertices", affinity="minima_rule", thinning=thinning, clusters=0, max_segments=3, solver="fiedler"

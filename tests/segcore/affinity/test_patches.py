@@ -5,11 +5,12 @@ from segcore import shapes
 from segcore.affinity.patches import COUNT, patches_of
 from segcore.clean.edge_geometry import EdgeGeometry
 from segcore.clean.surface import build_surface
-from segcore.graphs.surface_graph import SurfaceGraph, connected_components
+from segcore.graphs.surface_graph import connected_components
 from segcore.mesh import Mesh
 
 
 def patches(mesh, seed=0):
+    """The surface of a mesh, and its patches with affinity 1 everywhere."""
     surface = build_surface(mesh)
     length = EdgeGeometry.of(surface).positive_length
     return surface, patches_of(surface, np.ones(len(length)), length, np.random.default_rng(seed))
@@ -29,8 +30,8 @@ def test_patches_are_connected_alike_in_size_and_cover_the_surface(subdivisions)
     assert len(made.area) == min(COUNT, len(surface.faces))
     np.testing.assert_allclose(made.area, np.bincount(made.of_face, surface.areas))
     inside = made.of_face[surface.edge_faces[:, 0]] == made.of_face[surface.edge_faces[:, 1]]
-    within = SurfaceGraph(surface.edge_faces[inside], np.ones(inside.sum()), surface.areas)
-    assert connected_components(within).max() + 1 == len(made.area)
+    components = connected_components(surface.edge_faces[inside], len(surface.faces))
+    assert components.max() + 1 == len(made.area)
     assert made.area.max() < 2.1 * made.area.mean()
     assert made.area.min() > 0.1 * made.area.mean()
 
@@ -38,11 +39,11 @@ def test_patches_are_connected_alike_in_size_and_cover_the_surface(subdivisions)
 def test_smoothing_keeps_the_mean_and_flattens():
     _, made = patches(shapes.icosphere(5))
     values = np.random.default_rng(0).normal(size=len(made.area))
-    smooth = made.smoothed(values, 0.1)
+    smooth = made.smoothed(values, 0.1, made.area)
     np.testing.assert_allclose(np.dot(made.area, smooth), np.dot(made.area, values))
     assert smooth.std() < 0.5 * values.std()
-    np.testing.assert_allclose(made.smoothed(np.full(len(made.area), 3.0), 0.1), 3.0)
-    np.testing.assert_allclose(made.smoothed(np.stack([values, 2 * values], axis=1), 0.1)[:, 1], 2 * smooth)
+    np.testing.assert_allclose(made.smoothed(np.full(len(made.area), 3.0), 0.1, made.area), 3.0)
+    np.testing.assert_allclose(made.smoothed(np.stack([values, 2 * values], axis=1), 0.1, made.area)[:, 1], 2 * smooth)
 
 
 def test_patches_without_mass_take_the_values_around_them():

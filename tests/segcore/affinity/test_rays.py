@@ -7,7 +7,7 @@ from segcore.affinity.rays import RayCaster
 
 
 def nearest_exit(vertices, faces, origin, direction):
-    """By brute force over all faces: the distance to the nearest one, infinity where it is met from its front."""
+    """By brute force over all faces: the distance to the nearest one, infinity if the ray meets its front."""
     best, inside = np.inf, False
     for a, b, c in vertices[faces]:
         normal = np.cross(b - a, c - a)
@@ -35,7 +35,7 @@ def test_the_nearest_face_is_the_one_that_a_search_through_all_finds(seed, count
     )
 
 
-def test_rays_from_inside_a_box_end_at_its_walls_and_those_from_outside_never_were_inside():
+def test_rays_from_inside_a_box_end_at_its_walls_and_those_from_outside_have_no_inner_distance():
     box = shapes.box()
     caster = RayCaster.of(box.vertices, box.faces)
     low, high = box.vertices.min(axis=0), box.vertices.max(axis=0)

@@ -1,8 +1,11 @@
 import numpy as np
 import pytest
+from hypothesis import given
+from hypothesis import strategies as st
 
 from segcore import shapes
 from segcore.affinity.measurements import measure
+from segcore.affinity.thickness import _typical
 from segcore.clean.surface import build_surface
 from segcore.mesh import Mesh
 
@@ -12,7 +15,7 @@ def measured(mesh):
     return surface, measure(surface, 0)
 
 
-def test_a_ball_is_as_thick_everywhere_as_its_chords_say():
+def test_a_ball_is_as_thick_as_its_chords():
     surface, made = measured(shapes.icosphere(5))
     assert (made.thickness.confidence == 1).all()
     # Rays at angle a to the normal of a ball of radius r are 2 r cos(a) long.
@@ -53,3 +56,20 @@ def test_a_body_turned_inside_out_is_as_thick():
     mesh = shapes.icosphere(4)
     _, made = measured(Mesh(mesh.vertices, mesh.faces[:, ::-1]))
     assert (made.thickness.confidence == 1).all()
+
+
+@given(st.integers(0, 2**32 - 1), st.floats(0, 1))
+def test_the_typical_distance_is_the_weighted_mean_within_a_deviation_of_the_median(seed, share_of_misses):
+    rng = np.random.default_rng(seed)
+    distances, cosines = rng.lognormal(size=(6, 24)), rng.uniform(0.5, 1, (6, 24))
+    distances[rng.random(distances.shape) < share_of_misses] = np.inf
+    value, confidence = _typical(distances, cosines)
+    hits = np.isfinite(distances)
+    np.testing.assert_allclose(confidence, hits.mean(axis=1))
+    for found, row, hit, weights in zip(value, distances, hits, cosines, strict=True):
+        if not hit.any():
+            assert found == 0
+            continue
+        near = hit & (np.abs(row - np.median(row[hit])) <= row[hit].std() * (1 + 1e-9) + 1e-9)
+        expected = np.average(row[near], weights=weights[near]) if near.any() else np.median(row[hit])
+        assert found == pytest.approx(expected)

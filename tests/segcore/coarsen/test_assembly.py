@@ -21,7 +21,7 @@ def chair(gap=0.0, times=0):
 
 
 def snowman():
-    """Three balls and two arms that run into each other, and five buttons."""
+    """Three balls and two arms that intersect each other, and three buttons."""
     ball = shapes.icosphere(3)
     balls = [
         Mesh(radius * ball.vertices + [0, y, 0], ball.faces) for radius, y in ((0.5, 0), (0.35, 0.7), (0.22, 1.15))
@@ -32,7 +32,7 @@ def snowman():
 
 
 @pytest.mark.parametrize(("gap", "times"), [(0.0, 0), (0.0, 3), (0.003, 2)])
-def test_a_chair_of_boxes_gets_a_back_before_it_gets_slats(gap, times):
+def test_the_back_of_a_chair_of_boxes_is_cut_off_before_its_slats(gap, times):
     shape = chair(gap, times)
     back = (shape.parts >= 5) & (shape.parts < 11)
     labels = segment(shape.mesh).labels(4)
@@ -48,7 +48,7 @@ def test_the_parts_of_a_chair_of_boxes_are_its_boxes(times):
     assert (hierarchy.cut_value[:12] > 0).all()
 
 
-def test_shells_that_run_into_each_other_are_cut_where_they_cross_and_buttons_stay_on():
+def test_intersecting_shells_are_cut_where_they_cross_and_keep_their_buttons():
     shape = snowman()
     hierarchy = segment(shape.mesh)
     assert 4 <= hierarchy.automatic_segments <= 6
@@ -57,7 +57,7 @@ def test_shells_that_run_into_each_other_are_cut_where_they_cross_and_buttons_st
     assert set(labels[shape.parts >= 5]) <= set(labels[shape.parts < 2])
 
 
-def test_bodies_that_lie_apart_are_parted_first_and_at_no_cost():
+def test_bodies_that_lie_apart_are_separated_first_and_at_no_cost():
     pair = shapes.joined(chair().mesh, moved(chair().mesh, (3, 0, 0)))
     hierarchy = segment(pair.mesh)
     assert agreement(hierarchy.labels(2), pair.parts, areas(pair.mesh)) == pytest.approx(1)
@@ -65,7 +65,7 @@ def test_bodies_that_lie_apart_are_parted_first_and_at_no_cost():
     assert (hierarchy.cut_value[1:] > 0).all()
 
 
-def test_a_speck_far_away_follows_the_body_next_to_it():
+def test_a_speck_far_away_belongs_to_the_nearest_body():
     ball = shapes.icosphere(3)
     shape = shapes.joined(ball, moved(ball, (5, 0, 0)), box((0.01, 0.01, 0.01), (6.5, 0, 0)))
     labels = segment(shape.mesh).labels(2)
@@ -81,7 +81,7 @@ def test_an_assembly_is_cut_on_every_graph(graph):
     assert (hierarchy.cut_value > 0).all()
 
 
-def test_thousands_of_components_end_in_as_many_segments_as_asked_for():
+def test_thousands_of_components_end_in_the_requested_number_of_segments():
     rng = np.random.default_rng(0)
     dust = shapes.joined(*[box((1, 1, 1), tuple(rng.uniform(0, 40, 3))) for _ in range(2000)])
     hierarchy = segment(dust.mesh, SegmentationParameters(max_segments=20))

@@ -1,15 +1,17 @@
 import numpy as np
 import pytest
+from hypothesis import given
+from hypothesis import strategies as st
 
 from helpers.meshes import areas, moved, refined, rotation
 from segcore import shapes
 from segcore.clean.surface import build_surface
-from segcore.coarsen.contacts import REACH, find_contacts, spread_points
+from segcore.coarsen.contacts import REACH, _partners, find_contacts, spread_points
 from segcore.mesh import Mesh
 
 
 def length_of_contact(*meshes):
-    """In the unit of the meshes."""
+    """The length of all contacts in the unit of the meshes."""
     shape = shapes.joined(*meshes)
     surface = build_surface(shape.mesh)
     points = spread_points(surface, shape.parts, 32768)
@@ -47,7 +49,7 @@ def test_points_lie_in_their_faces():
 
 
 @pytest.mark.parametrize("width", [0.3, 0.4, 0.8])
-def test_the_contact_of_a_leg_under_a_seat_is_as_long_as_the_leg_is_round(width):
+def test_the_contact_of_a_leg_under_a_seat_is_as_long_as_the_perimeter_of_the_leg(width):
     layer = width**2 / (0.1 * np.sqrt(areas(shapes.joined(SEAT, leg(width=width)).mesh).sum()))
     assert length_of_contact(SEAT, leg(width=width)) == pytest.approx(4 * width + layer, rel=0.25)
 
@@ -78,8 +80,30 @@ def test_a_contact_fades_as_a_gap_opens():
     assert lengths[3] == 0
 
 
-def test_layers_that_lie_on_each_other_hold_together_by_their_area():
-    """Two balls, one inside the other, touch nowhere along a line."""
+def test_layers_that_lie_on_each_other_have_a_contact_in_proportion_to_their_area():
+    """Two balls, one inside the other, touch along no line."""
     size = np.sqrt(8 * np.pi)
     shell = length_of_contact(shapes.icosphere(4), shapes.icosphere(4, radius=1 - 0.5 * REACH * size))
     assert shell == pytest.approx(4 * np.pi / (0.1 * size), rel=0.1)
+
+
+@given(st.integers(0, 2**32 - 1), st.integers(1, 6), st.floats(0.05, 2))
+def test_partners_are_those_that_a_search_through_all_points_finds(seed, components, radius):
+    rng = np.random.default_rng(seed)
+    position, component = rng.random((60, 3)), rng.integers(0, components, 60)
+    distance = np.linalg.norm(position[:, None] - position[None], axis=2)
+    expected = {}
+    for i in range(60):
+        for other in set(component.tolist()) - {int(component[i])}:
+            j = min(np.flatnonzero(component == other).tolist(), key=lambda j: distance[i, j])
+            if distance[i, j] <= radius:
+                expected[i, j] = distance[i, j]
+    pairs, found = _partners(position, component, radius)
+    assert len(pairs) == len(expected)
+    assert dict(zip(map(tuple, pairs.tolist()), found.tolist(), strict=True)) == pytest.approx(expected)
+
+
+def test_a_point_has_at_most_eight_partners():
+    around = np.concatenate([np.zeros((1, 3)), np.random.default_rng(0).normal(size=(20, 3))])
+    pairs, _ = _partners(around, np.arange(21), 100.0)
+    np.testing.assert_array_equal(np.bincount(pairs[:, 0]), 8)

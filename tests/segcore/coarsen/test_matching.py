@@ -2,12 +2,13 @@ import numpy as np
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from segcore.coarsen.matching import coarsen
+from segcore.coarsen.matching import _Adjacency, _match, coarsen
 from segcore.graphs.surface_graph import SurfaceGraph, connected_components
 
 
 @st.composite
 def graphs(draw):
+    """Graphs with random lengths, affinities and volumes; they may have several components."""
     count = draw(st.integers(2, 40))
     chosen = draw(st.sets(st.tuples(st.integers(0, count - 1), st.integers(0, count - 1)), min_size=1, max_size=120))
     edges = np.array(sorted({(min(p), max(p)) for p in chosen if p[0] != p[1]} | {(0, 1)}), np.int32)
@@ -23,8 +24,7 @@ def test_clusters_are_connected_and_sums_are_kept(graph, target, seed):
     assert set(cluster) == set(range(coarse.node_count))
     np.testing.assert_allclose(coarse.volume, np.bincount(cluster, graph.volume))
     inside = cluster[graph.edges[:, 0]] == cluster[graph.edges[:, 1]]
-    within = SurfaceGraph(graph.edges[inside], graph.weight[inside], graph.volume)
-    assert connected_components(within).max() + 1 == coarse.node_count
+    assert connected_components(graph.edges[inside], graph.node_count).max() + 1 == coarse.node_count
     W = np.zeros((coarse.node_count, coarse.node_count))
     ends = cluster[graph.edges[~inside]]
     np.add.at(W, (ends.min(axis=1), ends.max(axis=1)), graph.weight[~inside])
@@ -35,14 +35,14 @@ def test_clusters_are_connected_and_sums_are_kept(graph, target, seed):
 
 @settings(max_examples=30)
 @given(graphs(), st.integers(0, 5))
-def test_a_graph_small_enough_is_left_alone(graph, seed):
+def test_a_graph_that_is_small_enough_does_not_change(graph, seed):
     coarse, cluster = coarsen(graph, graph.node_count, np.random.default_rng(seed))
     np.testing.assert_array_equal(cluster, np.arange(graph.node_count))
     np.testing.assert_array_equal(coarse.adjacency().toarray(), graph.adjacency().toarray())
 
 
 def test_no_cluster_crosses_a_concavity_while_others_can_still_be_merged():
-    """Two rings of 60 nodes joined by weak edges: 10 clusters can be had without crossing."""
+    """Two rings of 60 nodes with weak edges between them, which can be coarsened to 40 clusters without crossing."""
     around = [(i, (i + 1) % 60) for i in range(60)]
     edges = [tuple(sorted(e)) for e in around] + [tuple(sorted((a + 60, b + 60))) for a, b in around]
     edges += [(i, i + 60) for i in range(60)]
@@ -50,3 +50,29 @@ def test_no_cluster_crosses_a_concavity_while_others_can_still_be_merged():
     graph = SurfaceGraph(np.array(edges, np.int32), affinity, np.ones(120), np.ones(180))
     _, cluster = coarsen(graph, 40, np.random.default_rng(0))
     assert not set(cluster[:60]) & set(cluster[60:])
+
+
+@given(graphs(), st.floats(0.02, 0.6), st.floats(0.5, 4), st.integers(1, 40), st.integers(0, 5))
+def test_a_level_of_merges_is_that_of_plain_python(graph, guard, largest, most_merges, seed):
+    order = np.random.default_rng(seed).permutation(graph.node_count)
+    links = {}
+    for (a, b), w, length in zip(graph.edges.tolist(), graph.weight, graph.length, strict=True):
+        links[a, b] = links[b, a] = (w, length)
+    mate = {}
+    for i in order.tolist():
+        if i in mate or len(mate) == 2 * most_merges:
+            continue
+        scores = {
+            j: w * (w / length) ** 2 / np.sqrt(graph.volume[i] * graph.volume[j])
+            for (a, j), (w, length) in links.items()
+            if a == i and j not in mate and w >= guard * length and graph.volume[i] + graph.volume[j] <= largest
+        }
+        if scores:
+            mate[i] = max(scores, key=lambda j: (scores[j], -j))
+            mate[mate[i]] = i
+    leaders = [i for i in range(graph.node_count) if mate.get(i, i) >= i]
+    rows = graph.rows()
+    adjacency = _Adjacency(rows.start, rows.neighbour, graph.weight[rows.edge], graph.length[rows.edge])
+    merged, count = _match(order, adjacency, graph.volume, guard, largest, most_merges)
+    assert count == len(leaders)
+    assert merged.tolist() == [leaders.index(min(i, mate.get(i, i))) for i in range(graph.node_count)]

@@ -4,27 +4,28 @@ import numpy as np
 import pytest
 
 from segcore import segment, shapes
-from segcore.affinity import boundary_features as boundary_model
-from segcore.cut import features as split_model
+from segcore.affinity.boundary_features import FEATURES as BOUNDARY_FEATURES
+from segcore.cut.features import FEATURES as SPLIT_FEATURES
 from segcore.learned.logistic import LogisticModel
 from segcore.learned.models import LearnedModels, learned_models, using
 from segcore.parameters import SegmentationParameters
 
 
 def flat(names):
+    """A model with the probability 1/2 for all features."""
     return LogisticModel(names, np.zeros(len(names)), np.ones(len(names)), np.zeros(4 * len(names)), 0.0)
 
 
-def test_the_models_that_ship_are_made_for_the_features_of_the_code():
+def test_the_shipped_models_have_the_features_of_the_code():
     models = learned_models()
-    assert models.boundary.names == boundary_model.FEATURES
-    assert models.split.names == split_model.FEATURES
+    assert models.boundary.names == BOUNDARY_FEATURES
+    assert models.split.names == SPLIT_FEATURES
 
 
-def test_a_document_is_the_whole_model():
+def test_a_document_contains_the_whole_model():
     models = learned_models()
     again = LearnedModels.from_document(json.loads(json.dumps(models.document())))
-    features = np.random.default_rng(0).normal(size=(50, len(boundary_model.FEATURES)))
+    features = np.random.default_rng(0).normal(size=(50, len(BOUNDARY_FEATURES)))
     np.testing.assert_array_equal(again.boundary.probability(features), models.boundary.probability(features))
     assert again.document() == models.document()
 
@@ -37,25 +38,25 @@ def test_the_probability_is_the_logistic_function_of_the_basis():
     np.testing.assert_allclose(model.probability(x[:, None]), 1 / (1 + np.exp(-score)))
 
 
-def test_other_models_are_used_inside_and_only_there():
+def test_other_models_are_used_inside_the_context_only():
     shipped = learned_models()
-    other = LearnedModels(flat(boundary_model.FEATURES), flat(split_model.FEATURES))
+    other = LearnedModels(flat(BOUNDARY_FEATURES), flat(SPLIT_FEATURES))
     with using(other):
         assert learned_models() is other
-        # A rule that gains nothing by any split makes none of its own accord.
+        # With a gain of 0 for every split the automatic number is one.
         assert segment(shapes.burr(4).mesh).automatic_segments == 1
     assert learned_models() is shipped
     assert segment(shapes.burr(4).mesh).automatic_segments == 7
 
 
 @pytest.mark.parametrize("affinity", ["learned", "concavity"])
-def test_the_arms_of_a_burr_are_its_parts_with_and_without_learning(affinity):
+def test_the_parts_of_a_burr_are_found_with_and_without_learning(affinity):
     shape = shapes.burr(4)
     hierarchy = segment(shape.mesh, SegmentationParameters(affinity=affinity))
     assert hierarchy.automatic_segments == len(set(shape.parts.tolist()))
 
 
-def test_the_order_goes_with_the_affinity():
+def test_the_order_is_learned_only_if_the_affinity_is():
     assert SegmentationParameters().split_order == "learned"
     assert SegmentationParameters(affinity="concavity").split_order == "ncut"
     assert SegmentationParameters(order="ncc").split_order == "ncc"
