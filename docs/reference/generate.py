@@ -63,8 +63,14 @@ def commands_page() -> str:
 
 def parsers() -> dict[str, argparse.ArgumentParser]:
     """Return the parser of every subcommand, by name."""
-    (commands,) = (a for a in command_line._parser()._actions if isinstance(a, argparse._SubParsersAction))
-    return dict(commands.choices)
+    return {name: _subparser(name) for name in command_line.COMMANDS}
+
+
+def _subparser(name: str) -> argparse.ArgumentParser:
+    actions = command_line._parser([name])._actions
+    (commands,) = (action for action in actions if isinstance(action, argparse._SubParsersAction))
+    parser: argparse.ArgumentParser = commands.choices[name]
+    return parser
 
 
 def _settings_tables() -> Iterator[str]:

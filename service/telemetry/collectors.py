@@ -70,13 +70,13 @@ class CounterCollector(Collector):
     """Metrics that the workers and the janitor count in Redis, and the errors of the store in this process."""
 
     def __init__(self, connection: Redis, own_store_errors: Callable[[], int]) -> None:
-        self._tallies = JobCounters(connection)
+        self._counters = JobCounters(connection)
         self._own_store_errors = own_store_errors
 
     def collect(self) -> Iterator[Metric]:
         own = {"service": float(self._own_store_errors())}
         try:
-            counts = self._tallies.counts()
+            counts = self._counters.counts()
         except QueueError:  # a counter of 0 would look like an increase when Redis is back
             yield _store_errors(own)
             return
