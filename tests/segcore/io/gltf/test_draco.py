@@ -38,7 +38,7 @@ def test_counts_that_contradict_the_data_are_refused() -> None:
 def test_without_the_decoder_the_extension_is_named(monkeypatch: pytest.MonkeyPatch) -> None:
     asset, _ = draco_asset()
     monkeypatch.setitem(sys.modules, "DracoPy", None)
-    with pytest.raises(UnsupportedFormat, match=rf"{DRACO}.*cleave\[draco\]"):
+    with pytest.raises(UnsupportedFormat, match=rf"{DRACO}.*cleave-mesh\[draco\]"):
         read(asset.glb())
 
 

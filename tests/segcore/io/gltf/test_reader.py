@@ -126,7 +126,7 @@ def change(path: str, value: object) -> bytes:
         ("meshes.0.primitives.0.attributes", {}, r"meshes\[0\].primitives\[0\].attributes.POSITION"),
         ("accessors.1.type", "VEC3", r"accessors\[1\].*SCALAR"),
         ("meshes.0.primitives.0.mode", 0, "no faces"),
-        ("accessors.1.count", 5, "not whole triangles"),
+        ("accessors.1.count", 5, "not a multiple of 3"),
         ("accessors.1.count", 2_000_000_001, "max_faces"),
         ("accessors.0.count", 3, "index 3, but 3 vertices"),
         ("accessors.0.count", 5, r"accessors\[0\].*reaches beyond"),
