@@ -4,11 +4,8 @@ import numpy as np
 from hypothesis import strategies as st
 
 from helpers.files.polygon_soups import Soup, triangle_soups
-from segcore.appearance import Appearance
 from segcore.hierarchy import Hierarchy
 from segcore.mesh import Mesh, face_normals_and_areas
-
-AXES = np.vstack([np.eye(3), -np.eye(3)]).astype(np.float32)
 
 
 @st.composite
@@ -66,27 +63,3 @@ def two_strips(offset: float = 0.0, size: float = 1.0) -> tuple[Mesh, Hierarchy]
         automatic_segments=2,
     )
     return mesh, hierarchy
-
-
-@st.composite
-def looks(draw: st.DrawFn) -> tuple[Mesh, Hierarchy]:
-    """Two strips whose corners may each look different."""
-    mesh, hierarchy = two_strips()
-    extra = draw(st.lists(st.sampled_from(mesh.faces.ravel().tolist()), max_size=6))
-    rows = len(mesh.vertices) + len(extra)
-    corners = mesh.faces.copy()
-    for i, vertex in enumerate(extra):
-        face, corner = draw(st.sampled_from(np.argwhere(mesh.faces == vertex).tolist()))
-        corners[face, corner] = len(mesh.vertices) + i
-    pick = st.lists(st.integers(0, 5), min_size=rows, max_size=rows)
-    sixteenths = st.lists(st.tuples(st.integers(-8, 32), st.integers(-8, 32)), min_size=rows, max_size=rows)
-    look = Appearance(
-        normals=AXES[draw(pick)],
-        uvs=np.array(draw(sixteenths), dtype=np.float32).reshape(-1, 2) / 16,
-        colors=np.array(draw(st.lists(st.tuples(*[st.integers(0, 255)] * 4), min_size=rows, max_size=rows)), np.uint8),
-        extra_vertex=np.array(extra, dtype=np.int32),
-        corners=corners if extra else None,
-        face_group=np.array([0, 0, 1, 1], dtype=np.int32),
-        group_names=("left <wheel>", "rïght"),
-    )
-    return Mesh(mesh.vertices, mesh.faces, None, look), hierarchy

@@ -10,7 +10,9 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
+from helpers.files.appearances import at_corners, looks
 from helpers.files.hierarchies import segmentations, two_strips
+from helpers.files.written import written
 from segcore.errors import CleaveError, InvalidMesh, InvalidParameters
 from segcore.hierarchy import Hierarchy
 from segcore.io.result import Segmentation, read_result, write_result
@@ -161,3 +163,13 @@ def test_a_hierarchy_of_another_mesh_is_not_written() -> None:
     mesh, hierarchy = two_strips()
     with pytest.raises(InvalidParameters, match="4 faces and the mesh 1"):
         result(Mesh(mesh.vertices, mesh.faces[:1]), hierarchy)
+
+
+@given(looks())
+def test_a_result_file_keeps_everything(looking: tuple[Mesh, Hierarchy]) -> None:
+    mesh, hierarchy = looking
+    back = read_result(io.BytesIO(written("cleave", mesh, hierarchy))).mesh
+    assert at_corners(back) == at_corners(mesh)
+    assert back.appearance.extra_vertex.tolist() == mesh.appearance.extra_vertex.tolist()
+    assert back.appearance.face_group.tolist() == mesh.appearance.face_group.tolist()
+    assert back.appearance.group_names == mesh.appearance.group_names

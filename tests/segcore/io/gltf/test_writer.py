@@ -12,7 +12,8 @@ import pytest
 import trimesh
 from hypothesis import given, settings
 
-from helpers.files.hierarchies import looks, segmentations, two_strips
+from helpers.files.appearances import looks
+from helpers.files.hierarchies import segmentations, two_strips
 from helpers.files.polygon_soups import read
 from helpers.node.programs import install, run
 from segcore.errors import InvalidParameters

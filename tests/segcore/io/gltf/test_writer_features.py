@@ -10,7 +10,8 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from helpers.files.hierarchies import looks, segmentations, two_strips
+from helpers.files.appearances import looks
+from helpers.files.hierarchies import segmentations, two_strips
 from helpers.files.written import written
 from segcore.hierarchy import Hierarchy
 from segcore.io.labels import node_documents
