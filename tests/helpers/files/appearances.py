@@ -16,7 +16,7 @@ AXES = np.vstack([np.eye(3), -np.eye(3)]).astype(np.float32)
 
 @st.composite
 def looks(draw: st.DrawFn) -> tuple[Mesh, Hierarchy]:
-    """Two strips whose corners may each look different."""
+    """Two strips with an appearance whose corners may all differ."""
     mesh, hierarchy = two_strips()
     extra = draw(st.lists(st.sampled_from(mesh.faces.ravel().tolist()), max_size=6))
     rows = len(mesh.vertices) + len(extra)
@@ -63,7 +63,7 @@ def read_look(data: bytes) -> Appearance:
 
 
 def at_corners(mesh: Mesh) -> dict[str, list]:
-    """What every corner of every face looks like."""
+    """Each attribute at each corner of each face."""
     look = mesh.appearance
     assert look is not None
     rows = mesh.faces if look.corners is None else look.corners

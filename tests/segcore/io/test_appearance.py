@@ -1,4 +1,4 @@
-"""Normals, texture coordinates, colours and names of groups go from the input into the outputs, each to its corner."""
+"""Normals, texture coordinates, colours and names of groups: what holds for several formats."""
 
 import io
 
@@ -27,7 +27,7 @@ def test_the_appearance_changes_neither_vertices_nor_faces(data: bytes) -> None:
 
 
 @pytest.mark.parametrize(("name", "data"), [(name, data) for name, samples in DRESSED.items() for data in samples])
-def test_what_a_format_can_say_beside_the_shape_is_read(name: str, data: bytes) -> None:
+def test_every_attribute_that_a_format_can_have_is_read(name: str, data: bytes) -> None:
     look = read_look(data)
     vertices = {"off", "ply", "obj", "glb", "gltf"}
     groups = {"stl", "obj", "glb", "gltf", "3mf"}
@@ -66,7 +66,7 @@ def test_normals_without_direction_are_left_out() -> None:
         *(ply(name, [("vertex", XYZ, []), ("face", INDICES, [[[0, 1, 2]]])]) for name in ENCODINGS),
     ],
 )  # fmt: skip
-def test_a_file_without_vertices_is_refused_whatever_is_kept_of_it(data: bytes) -> None:
+def test_a_file_without_vertices_is_refused_with_and_without_its_appearance(data: bytes) -> None:
     for appearance in (False, True):
         with pytest.raises((InvalidMesh, UnsupportedFormat)):
             read_mesh(io.BytesIO(data), appearance=appearance)

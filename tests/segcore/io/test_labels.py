@@ -1,4 +1,4 @@
-"""Labels and the tree of cuts as text and as JSON."""
+"""Labels and the hierarchy as text and as JSON."""
 
 import io
 import json
@@ -39,7 +39,7 @@ def test_no_number_of_segments_means_the_automatic_one() -> None:
 
 @given(segmentations())
 def test_labels_at_every_level_follow_from_the_hierarchy_document(segmented: tuple[Mesh, Hierarchy, int]) -> None:
-    """A client can cut the tree itself: the nodes that exist at a level and have no child there are its segments."""
+    """A client can compute them: the segments of a level are the nodes of the level without children in it."""
     _, hierarchy, segments = segmented
     document = json.loads(json.dumps(hierarchy_document(hierarchy), allow_nan=False))
     nodes = document["nodes"]

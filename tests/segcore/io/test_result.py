@@ -1,4 +1,4 @@
-"""The .cleave file: exact, the same bytes for the same result, never half-read."""
+"""The .cleave file: exact, the same bytes for the same result, never half read."""
 
 import io
 import json
@@ -59,7 +59,7 @@ def test_the_polygons_of_the_file_are_kept(tmp_path: Path) -> None:
 
 
 def test_the_bytes_are_those_of_the_documented_form() -> None:
-    """Other programs read it with nothing but a ZIP reader and NumPy."""
+    """A ZIP reader and NumPy are enough to read it."""
     mesh, hierarchy = two_strips()
     with zipfile.ZipFile(io.BytesIO(result(mesh, hierarchy))) as archive:
         names = ["header.json", *(f"{name}.npy" for name in ("vertices", "faces", *ARRAYS))]
@@ -105,7 +105,7 @@ def test_a_missing_file_is_an_error_of_the_system(tmp_path: Path) -> None:
 
 
 def rebuilt(members: dict[str, bytes | None], compression: int = zipfile.ZIP_STORED) -> io.BytesIO:
-    """The result of the two strips with some members replaced, or left out where None."""
+    """The result of the two strips with some members replaced, or left out if None."""
     target = io.BytesIO()
     with zipfile.ZipFile(io.BytesIO(result(*two_strips()))) as old, zipfile.ZipFile(target, "w", compression) as new:
         for name in old.namelist():

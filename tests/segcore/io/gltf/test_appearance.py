@@ -53,7 +53,7 @@ def test_gltf_normals_turn_with_their_nodes_and_colours_become_srgb() -> None:
     np.testing.assert_allclose(look.normals[:4], [first / np.linalg.norm(first)] * 4, atol=1e-6)
     np.testing.assert_allclose(look.normals[4:], [mirrored] * 4, atol=1e-6)
     assert look.uvs.tolist() == [[0.25, 0.5]] * 8
-    assert look.colors.tolist() == [[255, 0, 128, 128]] * 8  # 55 / 255 of the light is half of sRGB
+    assert look.colors.tolist() == [[255, 0, 128, 128]] * 8  # linear 55 / 255 is half of sRGB
 
 
 def test_an_attribute_that_only_some_primitives_have_is_left_out() -> None:
@@ -68,7 +68,7 @@ def test_an_attribute_that_only_some_primitives_have_is_left_out() -> None:
 
 
 @pytest.mark.parametrize("accessor", [-1, -100, 10**6])
-def test_an_attribute_in_an_accessor_that_is_not_there_is_left_out(accessor: int) -> None:
+def test_an_attribute_without_its_accessor_is_left_out(accessor: int) -> None:
     asset = gltf_with_attributes()
     asset.root(mesh=0)
     asset.document["meshes"][0]["primitives"][0]["attributes"]["TEXCOORD_0"] = accessor

@@ -1,4 +1,4 @@
-"""glTF with Draco: what the decoder of another program makes of it, or a clear refusal."""
+"""glTF with Draco: the mesh is that of another decoder, or the refusal names the reason."""
 
 import sys
 
@@ -20,7 +20,7 @@ def test_the_triangles_are_those_of_the_decoder_in_its_order() -> None:
     assert mesh.faces.tolist() == decoded.faces.tolist()
 
 
-def test_the_shape_is_the_one_that_was_draco_asset() -> None:
+def test_the_shape_is_the_one_that_was_compressed() -> None:
     asset, _ = draco_asset()
     box = shapes.icosphere(2)
     ours, theirs = (np.sort(corners.mean(axis=1), axis=0) for corners in (read(asset.glb()).corners, box.corners))

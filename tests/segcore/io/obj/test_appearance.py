@@ -41,7 +41,7 @@ def test_groups_and_objects_of_obj_name_the_faces_after_them() -> None:
         b"f 1/-9 2/1 3/1\n",
     ],
 )  # fmt: skip
-def test_corners_of_obj_that_make_no_sense_are_left_out(faces: bytes) -> None:
+def test_invalid_attributes_of_corners_of_obj_are_left_out(faces: bytes) -> None:
     data = b"v 0 0 0\nv 1 0 0\nv 1 1 0\nvt 0 0\nvt 1 1\nvn 0 0 1\n" + faces
     mesh = read_mesh(io.BytesIO(data), appearance=True)
     assert mesh.faces.tolist() == [[0, 1, 2]]
@@ -52,7 +52,7 @@ corner_numbers = st.tuples(st.integers(1, 4), st.sampled_from([*range(-3, 5)]), 
 
 
 @given(st.lists(st.lists(corner_numbers, min_size=3, max_size=4), min_size=1, max_size=5))
-def test_corners_of_obj_pick_what_they_say(polygons: list[list[tuple[int, int, int]]]) -> None:
+def test_corners_of_obj_have_the_attributes_of_their_indices(polygons: list[list[tuple[int, int, int]]]) -> None:
     """Four vertices, three texture coordinates, of which the last comes before the last face, and three normals."""
     form = {(True, True): "{}/{}/{}", (True, False): "{}/{}", (False, True): "{0}//{2}", (False, False): "{}"}
     lines = ["f " + " ".join(form[bool(t), bool(n)].format(v, t, n) for v, t, n in corners) for corners in polygons]

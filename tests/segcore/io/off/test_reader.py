@@ -1,4 +1,4 @@
-"""OFF files: every face in its place, in whatever way they are written; nothing half-read."""
+"""The OFF reader: every face in its place in any layout of the file, no file half read."""
 
 import pytest
 from hypothesis import given
@@ -25,7 +25,7 @@ colors = st.sampled_from(["", " 7", " 255 0 0", " 0.5 0.25 1", " 1 0 0 0.5"])
 @st.composite
 def off_files(draw: st.DrawFn, soup: Soup) -> bytes:
     """The soup with any prefix, gaps, line ends, comments and face colours."""
-    texture, color, normal = (draw(st.sampled_from(["", letters])) for letters in ("ST", "C", "N"))
+    texture, color, normal = (draw(st.sampled_from(["", prefix])) for prefix in ("ST", "C", "N"))
     extra = (3 if normal else 0) + (4 if color else 0) + (2 if texture else 0)
     counts = f"{len(soup.vertices)} {len(soup.polygons)} 0"
     lines = [f"{texture}{color}{normal}OFF{draw(st.sampled_from([' ', chr(10)]))}{counts}"]
@@ -36,7 +36,7 @@ def off_files(draw: st.DrawFn, soup: Soup) -> bytes:
 
 @st.composite
 def streams(draw: st.DrawFn, soup: Soup) -> bytes:
-    """The soup without colours, its records broken into lines anywhere within them."""
+    """The soup without colours, with line breaks anywhere within its records."""
     words = ["OFF\n", f"{len(soup.vertices)} {len(soup.polygons)} 0\n"]
     for vertex in soup.vertices:
         words += [repr(value) + draw(st.sampled_from([" ", "\n"])) for value in vertex]

@@ -22,12 +22,12 @@ def test_capped_parts_are_closed_and_consistent(burr: tuple[Mesh, Hierarchy], se
         assert solid.is_winding_consistent
         volume += float(solid.volume)
     whole = trimesh.Trimesh(mesh.vertices, mesh.faces, process=False).volume
-    if segments <= 7:  # the arms are cut off along nearly plane loops: next to nothing is lost between two caps
+    if segments <= 7:  # the arms are cut off along nearly plane loops, so that the two caps of a cut nearly coincide
         assert volume == pytest.approx(whole, rel=1e-2)
 
 
 @given(segmentations())
-def test_the_border_of_a_capped_part_is_empty_whatever_it_was_before(segmented: Segmented) -> None:
+def test_the_border_of_a_capped_part_of_any_mesh_is_empty(segmented: Segmented) -> None:
     mesh, hierarchy, segments = segmented
     for part in closed_parts(mesh, hierarchy, segments):
         flow: dict[tuple[int, int], int] = {}

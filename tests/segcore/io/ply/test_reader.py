@@ -1,4 +1,4 @@
-"""PLY files, in text and in both byte orders: every face in its place; nothing half-read."""
+"""The PLY reader, for text and both byte orders: every face in its place, no file half read."""
 
 import pytest
 from hypothesis import given

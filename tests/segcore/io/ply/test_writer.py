@@ -37,7 +37,7 @@ def test_faces_of_one_colour_in_ply_are_one_segment() -> None:
     assert (same == (labels[:, None] == labels[None])).all()
 
 
-def test_ply_keeps_what_the_vertices_had() -> None:
+def test_ply_keeps_the_attributes_of_vertices() -> None:
     mesh, hierarchy, look = seamed()
     plain = Appearance(normals=look.normals[:-1], uvs=look.uvs[:-1], colors=look.colors[:-1])
     data = written("ply", Mesh(mesh.vertices, mesh.faces, None, plain), hierarchy)
@@ -49,7 +49,7 @@ def test_ply_keeps_what_the_vertices_had() -> None:
 
 
 @given(looks())
-def test_ply_keeps_what_vertices_have(looking: tuple[Mesh, Hierarchy]) -> None:
+def test_attributes_of_vertices_are_read_back_from_ply(looking: tuple[Mesh, Hierarchy]) -> None:
     mesh, hierarchy = looking
     back = read_mesh(io.BytesIO(written("ply", mesh, hierarchy, 1)), appearance=True)
     if len(mesh.appearance.extra_vertex):

@@ -1,4 +1,4 @@
-"""STL files, binary and in text: every face in its place; nothing half-read."""
+"""The STL reader, for text and binary: every face in its place, no file half read."""
 
 import pytest
 from hypothesis import given
