@@ -42,7 +42,7 @@ def file_stems(names: SegmentNames | None, count: int) -> list[str]:
 
 
 def comment(text: str) -> str:
-    """A text for a comment of OBJ, where a backslash at the end would continue the line."""
+    """A text for a comment of OBJ, in which a backslash at the end would continue the line."""
     return one_line(text).replace("\\", "/")
 
 

@@ -1,7 +1,7 @@
-"""Every reader gives a valid mesh or a typed error for whatever comes, the same whether it keeps the appearance or not.
+"""Every reader returns a valid mesh or a typed error for any file, with and without its appearance.
 
-Short by default. ``CLEAVE_FUZZ_SECONDS=600 pytest tests/fuzz`` takes that long for each reader, with new examples in
-every run; ``CLEAVE_FUZZ_SEED`` repeats one.
+Short by default. ``CLEAVE_FUZZ_SECONDS=600 pytest tests/fuzz`` takes 600 seconds for each reader, with new examples in
+every run; ``CLEAVE_FUZZ_SEED`` repeats a run.
 """
 
 import os

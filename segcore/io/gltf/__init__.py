@@ -1,1 +1,1 @@
-"""glTF 2.0 files, as JSON and as GLB."""
+"""glTF 2.0 files, JSON and GLB."""

@@ -12,20 +12,20 @@ from segcore.io.limits import ReadLimits
 
 _COMPONENTS = {5120: "<i1", 5121: "<u1", 5122: "<i2", 5123: "<u2", 5125: "<u4", 5126: "<f4"}
 _WIDTHS = {"SCALAR": 1, "VEC2": 2, "VEC3": 3, "VEC4": 4}
-_SMALL = 65536  # elements that an accessor without data may have in any case
+_SMALL = 65536  # elements of an accessor without data that are allowed in a file of any size; set by hand
 
 
 class Accessors:
-    """Reads accessors."""
+    """Reads accessors; compressed buffer views are decoded once."""
 
     def __init__(self, document: Document, limits: ReadLimits) -> None:
         self._document = document
         self._limits = limits
-        self._views: dict[int, memoryview] = {}  # the compressed ones, decoded once
+        self._views: dict[int, memoryview] = {}  # decoded ones
         self._supplied: dict[int, NDArray[Any]] = {}
 
     def supply(self, index: int, values: NDArray[Any], where: str) -> None:
-        """Give an accessor whose data is compressed elsewhere, at ``where``, its (count, width) values."""
+        """Set the (count, width) values of an accessor that were decoded from the member ``where`` of the document."""
         count = self.count(index)
         if len(values) != count:
             raise InvalidMesh(
@@ -37,11 +37,11 @@ class Accessors:
         self._supplied[index] = values
 
     def count(self, index: int) -> int:
-        """The number of elements of an accessor."""
+        """Return the number of elements of an accessor."""
         return integer(self._document.item("accessors", index), "count", f"accessors[{index}]")
 
     def read(self, index: int, kind: str) -> NDArray[Any]:
-        """(count, width) numbers as they are stored, normalized ones as float64 in -1..1.
+        """Return the (count, width) numbers of an accessor as they are stored, normalized ones as float64 in -1..1.
 
         Parameters
         ----------
@@ -50,7 +50,7 @@ class Accessors:
         Raises
         ------
         InvalidMesh
-            Where the accessor is of another kind or reaches beyond its data; the message names it.
+            If the accessor has another kind or reaches beyond its data; the message names it.
         """
         entry, where = self._document.item("accessors", index), f"accessors[{index}]"
         if entry.get("type") != kind:
@@ -71,7 +71,7 @@ class Accessors:
         return _normalized(values) if entry.get("normalized") is True and values.dtype.kind in "iu" else values
 
     def _view(self, item: Item, where: str, dtype: np.dtype[Any], count: int, width: int) -> NDArray[Any]:
-        """(count, width) elements of the buffer view that ``item`` names; nothing is copied."""
+        """(count, width) elements of the buffer view of ``item``, without a copy."""
         view = integer(item, "bufferView", where)
         entry, name = self._document.item("bufferViews", view), f"bufferViews[{view}]"
         data = self._view_bytes(view, entry, name)
@@ -109,10 +109,10 @@ class Accessors:
 def _component(item: Item, where: str) -> np.dtype[Any]:
     code = integer(item, "componentType", where)
     if code not in _COMPONENTS:
-        raise InvalidMesh(f"{where}.componentType of the glTF file is {code}, which glTF does not have.")
+        raise InvalidMesh(f"{where}.componentType of the glTF file is {code}, which is not a type of glTF.")
     return np.dtype(_COMPONENTS[code])
 
 
 def _normalized(values: NDArray[Any]) -> NDArray[Any]:
-    """glTF 2.0, section 3.11: the largest integer stands for 1, and so does its negative for -1."""
+    """Integers divided by the largest one of their type, at least -1 (glTF 2.0, section 3.11)."""
     return np.maximum(values / float(np.iinfo(values.dtype).max), -1.0)

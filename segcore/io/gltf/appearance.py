@@ -1,4 +1,4 @@
-"""Normals, texture coordinates, colours and names of a glTF scene; what is not understood is left out."""
+"""The appearance of a glTF scene; anything that cannot be read is left out."""
 
 from typing import Any
 
@@ -16,8 +16,7 @@ from segcore.appearance import (
 from segcore.arrays import FloatArray
 from segcore.errors import CleaveError
 from segcore.io.gltf.accessors import Accessors
-from segcore.io.gltf.primitive import Primitive
-from segcore.io.gltf.scene import Instance
+from segcore.io.gltf.scene import Instance, Primitive
 from segcore.io.palette import srgb
 
 _NORMAL, _UV, _COLOR = "NORMAL", "TEXCOORD_0", "COLOR_0"
@@ -25,7 +24,7 @@ _KINDS = {_NORMAL: ("VEC3",), _UV: ("VEC2",), _COLOR: ("VEC4", "VEC3")}
 
 
 def gltf_appearance(parts: list[tuple[Instance, Primitive]], accessors: Accessors) -> Appearance | None:
-    """The appearance of the vertices and faces of all primitives, in the order in which the reader puts them."""
+    """Return the appearance of the vertices and faces of all primitives in the order of the reader, or None."""
     blocks: dict[tuple[int, bytes], tuple[Instance, list[Primitive]]] = {}
     for instance, primitive in parts:
         key = (primitive.positions, instance.transform.tobytes())
@@ -46,7 +45,7 @@ def gltf_appearance(parts: list[tuple[Instance, Primitive]], accessors: Accessor
 
 
 def _rows(blocks: list[tuple[Instance, list[Primitive]]], accessors: Accessors, name: str) -> FloatArray | None:
-    """(V, *) an attribute of all vertices; None where a primitive lacks it, or two do not agree on it."""
+    """(V, *) an attribute of all vertices; None if a primitive lacks it, or two primitives contradict each other."""
     rows = [_block(instance, primitives, accessors, name) for instance, primitives in blocks]
     if any(values is None for values in rows) or len({values.shape[1] for values in rows if values is not None}) != 1:
         return None
@@ -67,7 +66,7 @@ def _block(instance: Instance, primitives: list[Primitive], accessors: Accessors
 
 
 def _transformed(normals: FloatArray, matrix: FloatArray) -> FloatArray | None:
-    """Normals after a transform: by the transposed inverse, which as a product with rows is the inverse itself."""
+    """(V, 3) normals N after the transform M: rows of N inverse(M); None if M is singular."""
     try:
         moved: FloatArray = normals @ np.linalg.inv(matrix)
     except np.linalg.LinAlgError:
@@ -85,7 +84,7 @@ def _values(accessors: Accessors, source: int, name: str) -> FloatArray | None:
 
 
 def _color_bytes(linear: NDArray[Any]) -> NDArray[np.uint8] | None:
-    """glTF colours are linear light, 0 to 1, also where integers stand for them."""
+    """(V, 4) sRGB bytes of linear colours in 0..1, or None if one is not finite."""
     encoded = np.clip(linear, 0, 1)
     encoded[:, :3] = srgb(encoded[:, :3])
     return color_bytes(encoded) if np.isfinite(encoded).all() else None

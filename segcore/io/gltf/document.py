@@ -1,4 +1,4 @@
-"""The JSON and the buffers of a glTF 2.0 asset, each value checked as it is taken out."""
+"""The JSON and the buffers of a glTF 2.0 asset; each value is checked when it is read."""
 
 import base64
 import binascii
@@ -12,8 +12,8 @@ from segcore.errors import InvalidMesh, UnsupportedFormat
 
 _MAGIC, _HEADER, _CHUNK_HEADER = b"glTF", 12, 8
 _JSON_CHUNK, _BINARY_CHUNK = b"JSON", b"BIN\0"
-_LARGEST = 2**53
-# Extensions that change what is drawn on the faces, or describe them, but not where they are.
+_LARGEST = 2**53  # integers up to here are exact in JSON readers that use float64
+# Extensions for the look or the meaning of faces, not for their positions.
 _HARMLESS = (
     "EXT_instance_features", "EXT_lights_", "EXT_mesh_features", "EXT_structural_metadata", "EXT_texture_",
     "KHR_animation_pointer", "KHR_lights_", "KHR_materials_", "KHR_texture_", "KHR_xmp", "MSFT_texture_dds",
@@ -27,15 +27,15 @@ Item = dict[str, Any]
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Document:
-    """A parsed asset; ``name`` in its methods is a member of the top level such as ``accessors``."""
+    """A parsed asset; ``name`` in its methods is a member of the top level, such as ``accessors``."""
 
     root: Item
     binary: memoryview | None  # the BIN chunk of a GLB file
-    size: int  # of the whole file in bytes
+    size: int  # bytes of the whole file
     _buffers: dict[int, memoryview] = field(default_factory=dict)  # decoded once
 
     def item(self, name: str, index: int) -> Item:
-        """Entry ``index`` of an array of the top level."""
+        """Return entry ``index`` of an array of the top level."""
         entries = self.root.get(name, [])
         if not isinstance(entries, list) or not 0 <= index < len(entries) or not isinstance(entries[index], dict):
             raise InvalidMesh(f"The glTF file refers to {name}[{index}], which it does not have.")
@@ -47,14 +47,14 @@ class Document:
         return len(entries) if isinstance(entries, list) else 0
 
     def buffer(self, index: int) -> memoryview:
-        """The bytes of a buffer, which must be inside the file.
+        """Return the bytes of a buffer, which must be inside the file.
 
         Raises
         ------
         UnsupportedFormat
-            Where the buffer is another file.
+            If the buffer is another file.
         InvalidMesh
-            Where it is damaged or shorter than it should be.
+            If it is damaged or too short.
         """
         if index not in self._buffers:
             self._buffers[index] = self._read_buffer(index)
@@ -83,9 +83,9 @@ def read_document(data: bytes) -> Document:
     Raises
     ------
     InvalidMesh
-        Where it is damaged or cut short.
+        If it is damaged or cut short.
     UnsupportedFormat
-        Where it is of another version, or requires an extension that changes its geometry; the message names it.
+        If it has another version, or requires an unknown extension that changes its geometry; the message names it.
     """
     text, binary = _split_container(data) if data.startswith(_MAGIC) else (data, None)
     root = _parse(text)
@@ -94,13 +94,13 @@ def read_document(data: bytes) -> Document:
     if not isinstance(version, str):
         raise InvalidMesh("The file is JSON, but not glTF: it has no asset.version.")
     if not version.startswith("2."):
-        raise UnsupportedFormat(f"glTF version {version[:20]!r} is not read: save it as glTF 2.0.")
+        raise UnsupportedFormat(f"glTF version {version[:20]!r} cannot be read: save it as glTF 2.0.")
     _check_extensions(root.get("extensionsRequired", []))
     return Document(root, binary, len(data))
 
 
 def view_bytes(document: Document, index: int) -> memoryview:
-    """The bytes of a buffer view."""
+    """Return the bytes of a buffer view."""
     entry, where = document.item("bufferViews", index), f"bufferViews[{index}]"
     begin, length = integer(entry, "byteOffset", where, 0), integer(entry, "byteLength", where)
     buffer = document.buffer(integer(entry, "buffer", where))
@@ -110,7 +110,7 @@ def view_bytes(document: Document, index: int) -> memoryview:
 
 
 def integer(item: Item, key: str, where: str, default: int | None = None) -> int:
-    """A whole number from 0 to 2**53, as far as other readers are exact."""
+    """Return the member ``key``: a whole number from 0 to 2**53."""
     value = item.get(key, default)
     if type(value) is not int or not 0 <= value <= _LARGEST:
         _refuse(where, key, f"a whole number from 0 to {_LARGEST}")
@@ -118,7 +118,7 @@ def integer(item: Item, key: str, where: str, default: int | None = None) -> int
 
 
 def numbers(item: Item, key: str, where: str, default: list[float]) -> list[float]:
-    """As many finite numbers as ``default`` has."""
+    """Return the member ``key``: as many finite numbers as ``default`` has."""
     values = item.get(key, default)
     if not isinstance(values, list) or len(values) != len(default) or not all(_is_finite(value) for value in values):
         _refuse(where, key, f"{len(default)} finite numbers")
@@ -126,7 +126,7 @@ def numbers(item: Item, key: str, where: str, default: list[float]) -> list[floa
 
 
 def indices(item: Item, key: str, where: str) -> list[int]:
-    """A list of whole numbers from 0 to 2**53, empty where there is none."""
+    """Return the member ``key``: a list of whole numbers from 0 to 2**53, empty if it is missing."""
     values = item.get(key, [])
     if not isinstance(values, list) or not all(type(value) is int and 0 <= value <= _LARGEST for value in values):
         _refuse(where, key, f"a list of whole numbers from 0 to {_LARGEST}")
@@ -134,7 +134,7 @@ def indices(item: Item, key: str, where: str) -> list[int]:
 
 
 def member(item: Item, key: str, where: str) -> Item:
-    """An object."""
+    """Return the member ``key``: an object."""
     value = item.get(key)
     if not isinstance(value, dict):
         _refuse(where, key, "an object")
@@ -154,7 +154,7 @@ def _split_container(data: bytes) -> tuple[bytes, memoryview | None]:
         raise InvalidMesh("The GLB file ends within its header: it is cut short.")
     _, version, length = struct.unpack_from("<4sII", data)
     if version != 2:
-        raise UnsupportedFormat(f"GLB version {version} is not read: save it as glTF 2.0.")
+        raise UnsupportedFormat(f"GLB version {version} cannot be read: save it as glTF 2.0.")
     if length > len(data):
         raise InvalidMesh(f"The GLB file should have {length} bytes and has {len(data)}: it is cut short.")
     chunks = _chunks(memoryview(data)[:length])
@@ -168,7 +168,7 @@ def _chunks(data: memoryview) -> list[tuple[bytes, memoryview]]:
     chunks, at = [], _HEADER
     while at < len(data):
         if at + _CHUNK_HEADER > len(data):
-            raise InvalidMesh(f"Byte {at}: the GLB file ends within the head of a chunk: it is damaged.")
+            raise InvalidMesh(f"Byte {at}: the GLB file ends within the header of a chunk: it is damaged.")
         length, kind = struct.unpack_from("<I4s", data, at)
         begin = at + _CHUNK_HEADER
         at = begin + length
@@ -207,4 +207,4 @@ def _data_uri(uri: str, where: str) -> bytes:
     try:
         return base64.b64decode(body, validate=True)
     except (binascii.Error, ValueError) as error:
-        raise InvalidMesh(f"{where} of the glTF file is no valid base64: it is damaged or cut short.") from error
+        raise InvalidMesh(f"{where} of the glTF file is not valid base64: it is damaged or cut short.") from error

@@ -8,8 +8,7 @@ from segcore.io.gltf.accessors import Accessors
 from segcore.io.gltf.appearance import gltf_appearance
 from segcore.io.gltf.compression.draco import DRACO, decode_draco
 from segcore.io.gltf.document import Document, Item, integer, member, read_document
-from segcore.io.gltf.primitive import FAN, STRIP, TRIANGLES, Primitive
-from segcore.io.gltf.scene import Instance, mesh_instances
+from segcore.io.gltf.scene import FAN, STRIP, TRIANGLES, Instance, Primitive, mesh_instances
 from segcore.io.limits import ReadLimits
 from segcore.io.polygons import strip_faces
 from segcore.mesh import Mesh
@@ -19,9 +18,9 @@ def read_gltf(data: bytes, limits: ReadLimits, with_appearance: bool = False) ->
     """Read all triangles of the default scene, in the coordinates of the scene.
 
     Face order: the nodes of the scene depth first, the primitives of each mesh, the triangles of each primitive. A mesh
-    that stands at several places is there several times. Points and lines are passed over. Where a transform mirrors a
-    mesh, its faces are turned, as glTF wants it, so that their outside stays outside. The appearance is NORMAL,
-    TEXCOORD_0 and COLOR_0, each where all primitives have it, and the names of the nodes or else of their meshes.
+    that several nodes use is repeated. Points and lines are ignored. If a transform mirrors a mesh, the orientation of
+    its faces is reversed, as glTF requires, so that their outside stays outside. The appearance is NORMAL, TEXCOORD_0
+    and COLOR_0, each if all primitives have it, and the names of the nodes or else of their meshes.
 
     Raises
     ------
@@ -47,7 +46,7 @@ def _primitives(document: Document, accessors: Accessors, mesh: int) -> list[Pri
 
 
 def _decompress(document: Document, accessors: Accessors, entry: Item, where: str) -> None:
-    """Give the accessors of a primitive that Draco compressed their values."""
+    """Decode a primitive that is compressed with Draco into its accessors."""
     extensions = entry.get("extensions")
     if not isinstance(extensions, dict) or DRACO not in extensions:
         return
@@ -65,14 +64,14 @@ def _primitive(entry: Item, accessors: Accessors, where: str) -> Primitive:
     indices = integer(entry, "indices", where) if "indices" in entry else None
     corners = accessors.count(positions if indices is None else indices)
     if mode == TRIANGLES and corners % 3:
-        raise InvalidMesh(f"{where} of the glTF file has {corners} corners, which are not whole triangles.")
+        raise InvalidMesh(f"{where} of the glTF file has {corners} corners, which is not a multiple of 3.")
     return Primitive(where, mode, positions, indices, corners, member(entry, "attributes", where))
 
 
 def _assemble(
     parts: list[tuple[Instance, Primitive]], accessors: Accessors, limits: ReadLimits, with_appearance: bool
 ) -> Mesh:
-    """The mesh; an accessor that several primitives share at one place gives its vertices once."""
+    """The mesh; primitives with the same positions and the same transform share their vertices."""
     blocks: dict[tuple[int, bytes], int] = {}
     vertex_count = 0
     for instance, primitive in parts:
@@ -94,14 +93,14 @@ def _assemble(
 
 
 def _place(accessors: Accessors, positions: int, transform: FloatArray) -> FloatArray:
-    """(V, 3) positions in the scene."""
+    """(V, 3) transformed positions."""
     values = accessors.read(positions, "VEC3").astype(np.float64)
     matrix = transform.reshape(4, 4)
     return values if (matrix == np.eye(4)).all() else values @ matrix[:3, :3].T + matrix[:3, 3]
 
 
 def _faces(primitive: Primitive, accessors: Accessors, instance: Instance) -> IntArray:
-    """(F, 3) indices into the positions of the primitive, as an array of its own."""
+    """(F, 3) indices into the positions of the primitive, a new array."""
     corners = _corners(primitive, accessors)
     if primitive.mode == TRIANGLES:
         faces = corners.reshape(-1, 3)

@@ -1,4 +1,4 @@
-"""Where the meshes of a glTF scene stand: its nodes, one after the other, with their transforms."""
+"""The meshes of a glTF scene: their transforms, and the primitives that they consist of."""
 
 from dataclasses import dataclass
 
@@ -8,28 +8,46 @@ from segcore.arrays import FloatArray
 from segcore.errors import InvalidMesh
 from segcore.io.gltf.document import Document, Item, indices, integer, numbers
 
+TRIANGLES, STRIP, FAN = 4, 5, 6  # modes of primitives
+
 _IDENTITY = np.eye(4)
 
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Instance:
-    """A mesh at a place of the scene."""
+    """A mesh in the scene."""
 
     mesh: int
     transform: FloatArray  # (4, 4) from the mesh to the scene, for column vectors
     name: str  # of the node, else of the mesh, else empty
 
 
-def mesh_instances(document: Document) -> list[Instance]:
-    """All meshes of the default scene, depth first, children in their order.
+@dataclass(frozen=True, slots=True, eq=False)
+class Primitive:
+    """Triangles of a mesh."""
 
-    The default scene is the one that the file names, else its first, else all nodes that are no children. The transform
-    of a node with a skin does not count, as glTF wants it; the skin itself is left in its rest pose.
+    where: str  # the member of the document, for messages
+    mode: int
+    positions: int  # accessor
+    indices: int | None  # accessor
+    corners: int  # the number of indices, or of positions if there are no indices
+    attributes: Item  # all accessors of vertices, by semantic
+
+    @property
+    def face_count(self) -> int:
+        return self.corners // 3 if self.mode == TRIANGLES else max(self.corners - 2, 0)
+
+
+def mesh_instances(document: Document) -> list[Instance]:
+    """Return all meshes of the default scene, depth first, children in their order.
+
+    The default scene is the one that the file names, else its first one, else all nodes that are not children. The
+    transform of a node with a skin is ignored, as glTF requires, and the skin is in its rest pose.
 
     Raises
     ------
     InvalidMesh
-        Where a node is reached twice: its nodes do not form a forest.
+        If a node is reached twice: the nodes do not form a forest.
     """
     instances = []
     reached: set[int] = set()
@@ -76,10 +94,10 @@ def _local_transform(node: Item, where: str) -> FloatArray:
 
 
 def _rotation(quaternion: list[float], where: str) -> FloatArray:
-    """(3, 3) of a quaternion (x, y, z, w), made a unit one first."""
+    """(3, 3) rotation of a quaternion (x, y, z, w), which is normalized first."""
     norm = float(np.linalg.norm(quaternion))
     if not 0 < norm < np.inf:
-        raise InvalidMesh(f"{where}.rotation of the glTF file is no rotation.")
+        raise InvalidMesh(f"{where}.rotation of the glTF file is not a rotation.")
     x, y, z, w = np.array(quaternion) / norm
     return np.array(
         [

@@ -1,11 +1,7 @@
-"""What the input said beside the shape, in a GLB file: attributes of vertices, and names of groups."""
-
-from typing import Any
-
-from numpy.typing import NDArray
+"""The appearance of the input in a GLB file: attributes of vertices, and names of groups."""
 
 from segcore.appearance import Appearance
-from segcore.io.gltf.writer_views import append_view
+from segcore.io.gltf.glb_file import GlbFile
 from segcore.io.slices import Slices
 
 _UNSIGNED_BYTE, _FLOAT = 5121, 5126
@@ -17,20 +13,21 @@ _ATTRIBUTES = {
 }
 
 
-def add_attributes(document: dict[str, Any], blobs: list[NDArray[Any]], look: Appearance) -> None:
-    """Give every primitive of a document the attributes of the vertices, and append their data to its blobs."""
+def add_attributes(glb: GlbFile, look: Appearance) -> None:
+    """Add the attributes of the vertices to the file and to each primitive."""
+    document = glb.document
     for kind, values in look.row_arrays.items():
         name, dtype, form = _ATTRIBUTES[kind]
-        view = append_view(document, blobs, values.astype(dtype), target=_ARRAY_BUFFER)
+        view = glb.append_view(values.astype(dtype), target=_ARRAY_BUFFER)
         document["accessors"].append({"bufferView": view, "count": len(values), **form})
         for mesh in document["meshes"]:
             mesh["primitives"][0]["attributes"][name] = len(document["accessors"]) - 1
 
 
-def name_groups(document: dict[str, Any], look: Appearance, slices: Slices) -> None:
-    """Tell every node with faces which groups of the input reach into it."""
+def name_groups(glb: GlbFile, look: Appearance, slices: Slices) -> None:
+    """List in each node with faces the groups of the input that its faces are in."""
     if look.face_group is None:
         return
-    for node in document["nodes"]:
+    for node in glb.document["nodes"]:
         if "mesh" in node:
             node["extras"]["groups"] = look.groups_of(slices[node["mesh"]])

@@ -1,4 +1,4 @@
-"""The hierarchy as features of a GLB file: EXT_mesh_features over a property table of EXT_structural_metadata.
+"""The hierarchy in a GLB file: EXT_mesh_features with a property table of EXT_structural_metadata.
 
 References
 ----------
@@ -12,13 +12,13 @@ from numpy.typing import NDArray
 
 from segcore.arrays import IntArray
 from segcore.hierarchy import Hierarchy
-from segcore.io.gltf.writer_views import append_view
+from segcore.io.gltf.glb_file import GlbFile
 from segcore.io.labels import node_documents
 from segcore.io.slices import Slices
 
 _FEATURES, _METADATA = "EXT_mesh_features", "EXT_structural_metadata"
 _FLOAT, _ARRAY_BUFFER = 5126, 34962
-_NONE = -1  # in place of the parent of the root, and of the cut of a node that nothing cuts
+_NONE = -1  # the parent of the root, and the cut value of a node that nothing cuts
 _NUMBERS: dict[str, tuple[str, str, str]] = {
     "parent": ("INT32", "<i4", "Row of the node that this one was cut from."),
     "level": ("UINT32", "<u4", "Smallest number of segments at which the node is a segment."),
@@ -30,29 +30,23 @@ _NUMBERS: dict[str, tuple[str, str, str]] = {
 _OPTIONAL = ("parent", "cut_value")
 
 
-def add_features(
-    document: dict[str, Any],
-    blobs: list[NDArray[Any]],
-    hierarchy: Hierarchy,
-    nodes: IntArray,
-    slices: Slices,
-    corners: IntArray,
-) -> None:
-    """Give every primitive the feature ids of its node, and the document the table of all nodes.
+def add_features(glb: GlbFile, hierarchy: Hierarchy, nodes: IntArray, slices: Slices, corners: IntArray) -> None:
+    """Add the feature ids of its node to each primitive, and the table of all nodes to the document.
 
-    Row i of property table 0 is node i of the hierarchy: its name, parent, level, label, faces, area and cut value.
-    Where a cut value is infinite it is left out, as those of leaves are.
+    Row i of property table 0 is node i of the hierarchy: its name, parent, level, label, faces, area and cut value. An
+    infinite cut value is left out, as those of leaves are.
 
     Parameters
     ----------
-    nodes : (K,) the node of every primitive.
-    slices : the faces of every primitive.
-    corners : (F, 3) the entries of the attributes that the input faces use.
+    nodes : (K,) the node of each primitive.
+    slices : the faces of each primitive.
+    corners : (F, 3) the rows of the attributes of each input face.
     """
+    document = glb.document
     document.setdefault("extensionsUsed", []).extend([_FEATURES, _METADATA])
     rows = document["accessors"][0]["count"]
     layer_of, layers = _layers(nodes, slices, corners, rows, hierarchy.node_count)
-    accessors = [_accessor(document, blobs, layer) for layer in layers]
+    accessors = [_accessor(glb, layer) for layer in layers]
     counts = np.bincount(layer_of).tolist()
     for mesh, layer in zip(document["meshes"], layer_of, strict=True):
         primitive = mesh["primitives"][0]
@@ -61,17 +55,17 @@ def add_features(
         primitive.setdefault("extensions", {})[_FEATURES] = {"featureIds": [ids]}
     document.setdefault("extensions", {})[_METADATA] = {
         "schema": {"id": "cleave_hierarchy", "classes": {"node": _class()}},
-        "propertyTables": [_table(document, blobs, hierarchy)],
+        "propertyTables": [_table(glb, hierarchy)],
     }
 
 
 def _layers(
     nodes: IntArray, slices: Slices, corners: IntArray, rows: int, nothing: int
 ) -> tuple[list[int], list[NDArray[np.float32]]]:
-    """The layer of ids that every part uses, and the layers, (rows,) each.
+    """The layer of each part, and the ids of each layer, (rows,) each.
 
-    Parts that meet share vertices, and an attribute holds one id for each: such parts have their ids in different
-    layers, each in the first one in which all its vertices are free.
+    Adjacent parts share vertices, and a vertex has one id in an attribute. Therefore such parts use different layers:
+    each part uses the first layer in which none of its vertices has an id.
     """
     layers: list[NDArray[np.float32]] = []
     layer_of = []
@@ -80,7 +74,7 @@ def _layers(
         free = (k for k, ids in enumerate(layers) if (ids[used] == nothing).all())
         layer = next(free, len(layers))
         if layer == len(layers):
-            layers.append(np.full(rows, nothing, dtype="<f4"))  # the only type of attributes that holds more than 2**16
+            layers.append(np.full(rows, nothing, dtype="<f4"))  # the only type of attributes for more than 2**16
         layers[layer][used] = node
         layer_of.append(layer)
     return layer_of, layers
@@ -90,11 +84,11 @@ def _feature_ids(count: int, nothing: int) -> dict[str, Any]:
     return {"label": "node", "attribute": 0, "featureCount": count, "nullFeatureId": nothing, "propertyTable": 0}
 
 
-def _accessor(document: dict[str, Any], blobs: list[NDArray[Any]], ids: NDArray[np.float32]) -> int:
-    view = append_view(document, blobs, ids, target=_ARRAY_BUFFER)
-    accessor = {"bufferView": view, "componentType": _FLOAT, "type": "SCALAR", "count": len(ids)}
-    document["accessors"].append(accessor)
-    return len(document["accessors"]) - 1
+def _accessor(glb: GlbFile, ids: NDArray[np.float32]) -> int:
+    view = glb.append_view(ids, target=_ARRAY_BUFFER)
+    accessors = glb.document["accessors"]
+    accessors.append({"bufferView": view, "componentType": _FLOAT, "type": "SCALAR", "count": len(ids)})
+    return len(accessors) - 1
 
 
 def _class() -> dict[str, Any]:
@@ -107,22 +101,22 @@ def _class() -> dict[str, Any]:
     return {"name": "Node of the hierarchy of segments", "properties": {"name": names, **properties}}
 
 
-def _table(document: dict[str, Any], blobs: list[NDArray[Any]], hierarchy: Hierarchy) -> dict[str, Any]:
+def _table(glb: GlbFile, hierarchy: Hierarchy) -> dict[str, Any]:
     entries = node_documents(hierarchy)
-    properties: dict[str, dict[str, Any]] = {"name": _names(document, blobs, entries)}
+    properties: dict[str, dict[str, Any]] = {"name": _names(glb, entries)}
     for name, (_, dtype, _) in _NUMBERS.items():
         values = [_NONE if entry[name] is None else entry[name] for entry in entries]
-        properties[name] = {"values": append_view(document, blobs, np.array(values, dtype))}
+        properties[name] = {"values": glb.append_view(np.array(values, dtype))}
     return {"name": "hierarchy", "class": "node", "count": len(entries), "properties": properties}
 
 
-def _names(document: dict[str, Any], blobs: list[NDArray[Any]], entries: list[dict[str, Any]]) -> dict[str, int]:
-    """Those of the nodes of the document; nodes below the segments that are shown have none there."""
-    shown = [node["name"] for node in document["nodes"]]
+def _names(glb: GlbFile, entries: list[dict[str, Any]]) -> dict[str, int]:
+    """The names of the nodes of the document, and ``node i`` for the nodes below its segments."""
+    shown = [node["name"] for node in glb.document["nodes"]]
     names = [*shown, *(f"node {entry['id']}" for entry in entries[len(shown) :])]
     encoded = [name.encode() for name in names]
     offsets = np.cumsum([0, *map(len, encoded)]).astype("<u4")
     return {
-        "values": append_view(document, blobs, np.frombuffer(b"".join(encoded), np.uint8)),
-        "stringOffsets": append_view(document, blobs, offsets),
+        "values": glb.append_view(np.frombuffer(b"".join(encoded), np.uint8)),
+        "stringOffsets": glb.append_view(offsets),
     }

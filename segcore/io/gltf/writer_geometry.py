@@ -1,4 +1,4 @@
-"""The positions of a GLB file, as float32 can hold them."""
+"""The positions of a GLB file in float32."""
 
 from dataclasses import dataclass
 
@@ -7,21 +7,23 @@ from numpy.typing import NDArray
 
 from segcore.mesh import Mesh
 
-_FAR_OUT = 16.0  # distance from the origin, in extents of the mesh, at which float32 coordinates lose four bits
-_PLAIN_EXTENT = (1e-15, 1e15)  # extents whose squares and cubes float32 still holds
+_FAR_OUT = 16.0  # distance from the origin, in extents of the mesh, at which float32 coordinates lose 4 of 24 bits
+# Viewers square lengths in float32, whose normal numbers are 1e-38 to 3e38: here also those of edges that are 10,000
+# times shorter than the extent.
+_PLAIN_EXTENT = (1e-15, 1e15)
 
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Placement:
-    """vertices[i] = translation + scale * positions[i] for every vertex that a face uses."""
+    """Positions with vertices[i] = translation + scale * positions[i] for each vertex i that a face uses."""
 
-    positions: NDArray[np.float32]  # (A, 3) of the vertices, then of the further rows of the appearance
+    positions: NDArray[np.float32]  # (A, 3) those of the vertices, then of the further rows of the appearance
     translation: list[float]
     scale: float
 
 
 def place(mesh: Mesh) -> Placement:
-    """Positions that lose nothing visible: moved to the centre and scaled only where float32 needs it."""
+    """Return the positions, moved to the centre and scaled only if they would be rounded visibly otherwise."""
     used = np.zeros(len(mesh.vertices), dtype=bool)
     used[mesh.faces] = True
     low, high = mesh.vertices[used].min(axis=0), mesh.vertices[used].max(axis=0)

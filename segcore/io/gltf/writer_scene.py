@@ -1,4 +1,4 @@
-"""The JSON of a GLB file: nodes that are the tree of cuts, and the materials of its segments."""
+"""The JSON of a GLB file: the hierarchy as nodes, and a material for each segment."""
 
 from dataclasses import dataclass, replace
 from typing import Any
@@ -16,21 +16,22 @@ from segcore.io.slices import Slices
 _UNSIGNED_INT, _FLOAT = 5125, 5126
 _ARRAY_BUFFER, _ELEMENT_ARRAY_BUFFER = 34962, 34963
 _VARIANTS = "KHR_materials_variants"
+_FACE_BYTES = 12  # three uint32
 
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Drawing:
-    """Which nodes of a hierarchy carry geometry, and with which materials."""
+    """The nodes of a hierarchy that have geometry, and their materials."""
 
     segments: int  # the level that is shown
-    nodes: IntArray  # (D,) the nodes that carry geometry, node k having label k
-    of_face: IntArray  # (F,) the entry of ``nodes`` that every face belongs to
-    material: IntArray  # (D,) of the level that is shown
-    variants: IntArray  # (L, D) the material at every level, or (0, D) where there is one level only
+    nodes: IntArray  # (D,) the nodes that have geometry; nodes[k] has label k
+    of_face: IntArray  # (F,) the entry of ``nodes`` of each face
+    material: IntArray  # (D,) at the level that is shown
+    variants: IntArray  # (L, D) the material at each level; (0, D) for a drawing of one level
 
 
 def level_drawing(hierarchy: Hierarchy, segments: int | None) -> Drawing:
-    """The segments of one level."""
+    """Return the drawing of the segments of one level."""
     nodes = hierarchy.segment_nodes(segments)
     count = len(nodes)
     one_level = np.zeros((0, count), dtype=np.int32)
@@ -38,23 +39,27 @@ def level_drawing(hierarchy: Hierarchy, segments: int | None) -> Drawing:
 
 
 def all_levels_drawing(hierarchy: Hierarchy, segments: int | None) -> Drawing:
-    """The leaves, coloured as the segments of a level, and of every other level as variants."""
+    """Return the drawing of the leaves with the colours of a level, and those of all levels as variants."""
     count = len(hierarchy.segment_nodes(segments))
     leaves = hierarchy.segment_nodes(hierarchy.max_segments)
-    of_leaves = replace(hierarchy, face_leaf=leaves)  # a face for each leaf: its labels are those of the leaves
+    of_leaves = replace(
+        hierarchy, face_leaf=leaves
+    )  # one face for each leaf, so that labels of faces are labels of leaves
     variants = np.stack([of_leaves.labels(k + 1) for k in range(hierarchy.max_segments)])
     return Drawing(count, leaves, hierarchy.labels(hierarchy.max_segments), variants[count - 1], variants)
 
 
 def scene_document(
-    hierarchy: Hierarchy, drawing: Drawing, placement: Placement, slices: Slices, sizes: list[int], names: list[str]
+    hierarchy: Hierarchy, drawing: Drawing, placement: Placement, slices: Slices, names: list[str]
 ) -> dict[str, Any]:
-    """The glTF document over three blobs of ``sizes`` bytes: positions, corners in slices, input faces.
+    """Return the glTF document for a buffer of positions, uint32 corners in slices, and uint32 input faces.
 
     Parameters
     ----------
-    names : (D,) what the parts that carry geometry are called.
+    names : (D,) names of the parts that have geometry.
     """
+    faces = len(slices.faces)
+    sizes = [placement.positions.nbytes, _FACE_BYTES * faces, 4 * faces]
     offsets = [0, sizes[0], sizes[0] + sizes[1]]
     parts = range(len(drawing.nodes))
     colors = linear_rgb(segment_colors(len(drawing.nodes)))
@@ -117,7 +122,7 @@ def _mesh(drawing: Drawing, k: int, name: str) -> dict[str, Any]:
 
 
 def _mappings(materials: IntArray) -> list[dict[str, Any]]:
-    """Each material with the variants, one for each entry, in which it is used."""
+    """The materials of a part, each with the variants that use it; entry k of ``materials`` is that of variant k."""
     return [
         {"material": material, "variants": np.flatnonzero(materials == material).tolist()}
         for material in np.unique(materials).tolist()
@@ -127,11 +132,11 @@ def _mappings(materials: IntArray) -> list[dict[str, Any]]:
 def _material(name: str, color: FloatArray) -> dict[str, Any]:
     return {
         "name": name,
-        "doubleSided": True,  # the input may be open or turned inside out
+        "doubleSided": True,  # the input may be open or inside out
         "pbrMetallicRoughness": {
             "baseColorFactor": [*(round(channel, 6) for channel in color.tolist()), 1.0],
             "metallicFactor": 0.0,
-            "roughnessFactor": 0.8,
+            "roughnessFactor": 0.8,  # set by hand: matt, with a faint highlight
         },
     }
 
@@ -151,7 +156,7 @@ def _index_accessor(slices: Slices, k: int) -> dict[str, Any]:
     first, end = int(slices.start[k]), int(slices.start[k + 1])
     return {
         "bufferView": 1,
-        "byteOffset": 12 * first,
+        "byteOffset": _FACE_BYTES * first,
         "componentType": _UNSIGNED_INT,
         "type": "SCALAR",
         "count": 3 * (end - first),

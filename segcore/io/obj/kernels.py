@@ -15,7 +15,7 @@ class FaceLines(NamedTuple):
     """The lines that are faces."""
 
     lines: LongArray  # (N,)
-    vertices_before: IntArray  # (N,) the number of vertices before each line, where negative indices count from
+    vertices_before: IntArray  # (N,) the number of vertices before each line, from which negative indices count back
     vertex_count: int  # of the file
 
 

@@ -61,7 +61,7 @@ def write_obj(
 def _vertex_lines(mesh: Mesh, appearance: Appearance) -> Iterator[bytes]:
     if appearance.colors is None:
         yield from format_rows("v %r %r %r\n", mesh.vertices)
-    else:  # after the coordinates, the usual place where programs write colours of vertices
+    else:  # after the coordinates, as most programs write colours of vertices
         colors = np.round(appearance.colors[: len(mesh.vertices), :3] / 255, 4)
         yield from format_rows("v %r %r %r %r %r %r\n", mesh.vertices, colors)
     if appearance.uvs is not None:

@@ -19,13 +19,13 @@ _KEYWORD = re.compile(rb"\s*+(ST)?(C)?(N)?(4)?(n)?OFF(\s+BINARY)?")
 
 
 def read_off(data: bytes, limits: ReadLimits, with_appearance: bool = False) -> Mesh:
-    """Read an OFF file, also with the prefixes ST, C and N, whose texture, colours and normals are the appearance.
+    """Read an OFF file, also with the prefixes ST, C and N: texture coordinates, colours and normals, the appearance.
 
-    A vertex has as many numbers as the prefixes say, in whatever lines; where the file makes no sense so, each vertex
-    is a line, and what follows its coordinates there is passed over. A face ends with its line: what follows its
-    indices there is its colour.
+    The prefixes give the number of words of a vertex, over any lines. If the file cannot be read so, each line is a
+    vertex, and the words after its coordinates are ignored. A face ends with its line; the words after its indices are
+    its colour, which is ignored.
 
-    The last number of a file that lacks the newline at its end cannot be told from one that is cut short within it.
+    If a file does not end with a newline, it cannot be detected that its last number is cut short.
 
     Raises
     ------
@@ -38,7 +38,7 @@ def read_off(data: bytes, limits: ReadLimits, with_appearance: bool = False) -> 
     texture, color, normal, *unread = keyword.groups()
     if any(unread):
         raise UnsupportedFormat(
-            "OFF files in binary or with four or more dimensions are not read: save it as plain OFF."
+            "OFF files in binary or with four or more dimensions cannot be read: save it as plain OFF."
         )
     words = find_words(text, keyword.end())
     vertex_count, face_count = _counts(words, limits)
@@ -75,13 +75,13 @@ def _counts(words: Words, limits: ReadLimits) -> tuple[int, int]:
 
 
 def _vertex_words(words: Words, count: int, width: int) -> LongArray | None:
-    """The first word of every vertex and the one after the last, or None where there are too few."""
+    """(V + 1,) the first word of each vertex, then the word after the last one; None if there are too few words."""
     first = 3 + width * np.arange(count + 1, dtype=np.int64)
     return first if first[-1] <= words.count else None
 
 
 def _vertex_lines(words: Words, count: int) -> LongArray | None:
-    """The same where every vertex is a line, or None where it is not."""
+    """The same if each vertex is a line, else None."""
     body = int(np.searchsorted(words.line_start, 3))
     first = words.line_start[body : body + count + 1]
     if len(first) <= count or first[0] != 3 or (np.diff(first) < 3).any():
@@ -95,7 +95,7 @@ def _vertices(words: Words, first: LongArray) -> FloatArray:
 
 
 def _appearance(words: Words, first: LongArray, normal: bool, color: bool, texture: bool) -> Appearance | None:
-    """What follows the coordinates where it is the same for every vertex: normal, colour, texture coordinates."""
+    """Normals, colours and texture coordinates, if each vertex has the same number of words."""
     widths = np.diff(first)
     if len(widths) == 0 or (widths != widths[0]).any():
         return None
@@ -112,7 +112,7 @@ def _appearance(words: Words, first: LongArray, normal: bool, color: bool, textu
 
 
 def _polygons(words: Words, first: int, count: int) -> Polygons:
-    """The polygons that begin at word ``first``, one on each line or over more lines than one."""
+    """The polygons from word ``first`` on, one on each line or each over several lines."""
     numbers = words.numbers(first, words.count)
     starts = words.line_start[np.searchsorted(words.line_start, first) :] - first
     heads, room = starts[:-1], np.diff(starts) - 1
@@ -126,7 +126,7 @@ def _polygons(words: Words, first: int, count: int) -> Polygons:
 
 
 def _walk(words: Words, numbers: NDArray[Any], first: int, count: int) -> LongArray:
-    """The word, counted from ``first``, at which each of ``count`` polygons begins, where they are not lines."""
+    """(count,) the first word of each polygon, counted from ``first``, if the polygons are not one line each."""
     next_line = np.repeat(words.line_start[1:], np.diff(words.line_start))[first:] - first
     values, after = numbers.tolist(), next_line.tolist()
     heads = np.zeros(count, dtype=np.int64)
@@ -142,6 +142,6 @@ def _walk(words: Words, numbers: NDArray[Any], first: int, count: int) -> LongAr
     if at < len(values):
         raise InvalidMesh(
             f"Line {words.line_number(first + at)}: the OFF file goes on after the {count} faces that it announces: "
-            "correct the numbers at its head."
+            "correct the numbers on its first lines."
         )
     return heads

@@ -1,1 +1,1 @@
-"""The segments of a mesh as meshes and files of their own."""
+"""The segments of a mesh as separate meshes and files."""

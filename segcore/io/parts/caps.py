@@ -7,22 +7,26 @@ from numba import njit
 
 from segcore.arrays import BoolArray, FloatArray, IntArray, LongArray
 
+# The number of ears, each with a shorter base than the one before, that end the search. Set by hand: one is enough for
+# a valid cap, more avoid long thin triangles.
+_IMPROVEMENTS = 8
+
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Capped:
     """Faces without a border."""
 
-    vertices: FloatArray  # (V', 3) those that were given, and perhaps centres of caps
-    faces: IntArray  # (F', 3) those that were given, then the caps
+    vertices: FloatArray  # (V', 3) the given vertices, then the centres of caps
+    faces: IntArray  # (F', 3) the given faces, then the caps
 
 
 def close_borders(vertices: FloatArray, faces: IntArray) -> Capped:
-    """Close every border loop of some faces with a cap.
+    """Close each border loop of a set of faces with a cap.
 
-    The border is taken as a chain: edges that faces run through in both directions cancel, whatever their number. What
-    is left goes into and out of every vertex equally often, so it is closed loops. Each is filled in the plane that
-    fits it best by cutting off ears; where that would need an edge that is there already, the cap is a fan around the
-    centre of the loop instead, so that no edge gets more than two faces that had fewer.
+    The border is that of the faces as a chain: uses of an edge in opposite directions cancel. What remains enters and
+    leaves each vertex equally often, so it consists of closed loops. A loop is triangulated by ear clipping in the
+    plane that fits it best. If that would add an edge that exists already, the cap is a fan around the centre of the
+    loop instead, so that no edge with fewer faces gets more than two.
 
     References
     ----------
@@ -47,7 +51,7 @@ def close_borders(vertices: FloatArray, faces: IntArray) -> Capped:
 
 
 def _edges_between(faces: IntArray, loops: list[IntArray]) -> set[tuple[int, int]]:
-    """The edges of faces, lower vertex first, of which both ends are on loops."""
+    """The edges of faces that have both ends on loops, lower vertex first."""
     on_loop = np.zeros(int(faces.max()) + 1, dtype=bool)
     for loop in loops:
         on_loop[loop] = True
@@ -56,14 +60,14 @@ def _edges_between(faces: IntArray, loops: list[IntArray]) -> set[tuple[int, int
 
 
 def _inner_edges(cap: IntArray, loop: IntArray) -> set[tuple[int, int]]:
-    """The edges of a cap, lower vertex first, that its loop does not have."""
+    """The edges of a cap that are not edges of its loop, lower vertex first."""
     ends = np.sort(cap[:, [[0, 1], [1, 2], [2, 0]]].reshape(-1, 2), axis=1)
     rim = np.sort(np.stack([loop, np.roll(loop, -1)], axis=1), axis=1)
     return set(map(tuple, ends.tolist())) - set(map(tuple, rim.tolist()))
 
 
 def border_loops(faces: IntArray) -> list[IntArray]:
-    """The closed loops of the border, each vertex once, in the direction opposite to that of the faces."""
+    """The closed loops of the border, without repeated vertices, in the direction opposite to that of the faces."""
     edges = _border_edges(faces)
     order = np.argsort(edges[:, 0], kind="stable")
     edges = edges[order]
@@ -77,7 +81,7 @@ def border_loops(faces: IntArray) -> list[IntArray]:
 
 
 def _border_edges(faces: IntArray) -> IntArray:
-    """(B, 2): the directed edges that cancel the border, each as often as it is left over."""
+    """(B, 2) the directed edges that cancel the border, each repeated as often as it remains."""
     ends = faces[:, [[1, 0], [2, 1], [0, 2]]].reshape(-1, 2)
     ends = ends[ends[:, 0] != ends[:, 1]]
     low_first = ends[:, 0] < ends[:, 1]
@@ -89,7 +93,7 @@ def _border_edges(faces: IntArray) -> IntArray:
 
 
 def _walk(edges: IntArray, next_edge: dict[int, int], used: BoolArray, first: int) -> list[int]:
-    """The vertices of a closed walk from edge ``first`` over unused edges, which become used."""
+    """The vertices of a closed walk from edge ``first`` over unused edges, which are marked as used."""
     walk, at = [], first
     while at < len(edges) and not used[at]:
         used[at] = True
@@ -98,12 +102,12 @@ def _walk(edges: IntArray, next_edge: dict[int, int], used: BoolArray, first: in
         next_edge[start] = at + 1
         at = next_edge[end]
         if at == len(edges) or edges[at, 0] != end:
-            break  # back where the walk began, and no way out is left
+            break  # the walk is back at its start, and no unused edge leaves it
     return walk
 
 
 def _simple_loops(walk: list[int]) -> list[IntArray]:
-    """A closed walk cut where it meets itself; there and back along one edge leaves nothing to fill."""
+    """Split a closed walk at repeated vertices; loops of two vertices, back along the same edge, are dropped."""
     loops: list[list[int]] = []
     path: list[int] = []
     position: dict[int, int] = {}
@@ -120,7 +124,7 @@ def _simple_loops(walk: list[int]) -> list[IntArray]:
 
 
 def _projected(points: FloatArray) -> FloatArray:
-    """(N, 2): the points of a loop in their best plane, seen so that the loop goes round counter-clockwise."""
+    """(N, 2) the points of a loop in the plane with Newell's normal, counter-clockwise."""
     relative = points - points.mean(axis=0)
     normal = np.cross(relative, np.roll(relative, -1, axis=0)).sum(axis=0)
     size = float(np.linalg.norm(normal))
@@ -132,10 +136,11 @@ def _projected(points: FloatArray) -> FloatArray:
 
 @njit(cache=True)
 def cut_ears(points: FloatArray) -> LongArray:
-    """(N - 2, 3): the triangles of a polygon (N, 2) that goes round counter-clockwise.
+    """(N - 2, 3) triangles of a counter-clockwise polygon (N, 2), by ear clipping.
 
-    Of the ears, corners whose triangle has no other corner in it, the one with the shortest base is cut off first from
-    where the last one was. A polygon that crosses itself may have none; then the corner with the shortest base goes.
+    An ear is a corner whose triangle contains no other corner. Each step cuts off the ear with the shortest base that
+    is found in one round from the last ear on, which ends early after 8 improvements. A polygon that crosses itself may
+    have no ear; then the corner with the shortest base is cut off.
     """
     count = len(points)
     after = np.roll(np.arange(count), -1)
@@ -154,7 +159,7 @@ def cut_ears(points: FloatArray) -> LongArray:
             if base < best_base and _is_ear(points, after, a, corner, c):
                 best, best_base = corner, base
                 tried += 1
-                if tried == 8:
+                if tried == _IMPROVEMENTS:
                     break
             corner = c
         corner = best if best >= 0 else fallback

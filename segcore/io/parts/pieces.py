@@ -1,4 +1,4 @@
-"""The segments of a mesh as meshes of their own, as they are or closed for printing."""
+"""The segments of a mesh as separate meshes, as they are or closed for printing."""
 
 from collections.abc import Iterator
 from dataclasses import dataclass
@@ -15,34 +15,34 @@ from segcore.mesh import Mesh
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Part:
-    """One segment."""
+    """A segment as a mesh."""
 
     label: int
-    vertices: FloatArray  # (V, 3) those that its faces use, in input order
+    vertices: FloatArray  # (V, 3) the vertices that its faces use, in input order
     faces: IntArray  # (F, 3)
 
 
 def segment_parts(mesh: Mesh, hierarchy: Hierarchy, segments: int | None = None) -> Iterator[Part]:
-    """Every segment with its input faces in input order, degenerate ones too.
+    """Yield each segment with its input faces in input order, degenerate ones too.
 
     Raises
     ------
     InvalidParameters
-        Where ``segments`` is not in 1..max_segments.
+        If ``segments`` is not in 1..max_segments.
     """
     yield from _parts(mesh.vertices, mesh.faces, segment_slices(hierarchy, segments))
 
 
 def closed_parts(mesh: Mesh, hierarchy: Hierarchy, segments: int | None = None) -> Iterator[Part]:
-    """Every segment closed: where it was cut off, and where the input has holes, a cap is put in.
+    """Yield each segment closed by caps, at its cuts and at the holes of the input.
 
-    Vertices at the same place are welded, faces turned so that neighbours agree, degenerate and repeated faces left
-    out. The border of the result is empty. A segment of which no proper face is left is left out.
+    Vertices at the same position are welded, faces are oriented consistently, and degenerate and repeated faces are
+    removed. The border of the result is empty. A segment without remaining faces is left out.
 
     Raises
     ------
     InvalidParameters
-        Where ``segments`` is not in 1..max_segments.
+        If ``segments`` is not in 1..max_segments.
     """
     labels = hierarchy.labels(segments)
     count = len(hierarchy.segment_nodes(segments))
@@ -50,7 +50,7 @@ def closed_parts(mesh: Mesh, hierarchy: Hierarchy, segments: int | None = None) 
     low, high = mesh.vertices.min(axis=0), mesh.vertices.max(axis=0)
     vertices = surface.vertices * surface.unit + (0.5 * low + 0.5 * high)  # the surface is centred on the box
     label_of_face = np.zeros(len(surface.faces), dtype=np.int32)
-    label_of_face[surface.face_of_input[::-1]] = labels[::-1]  # where they differ, the first input face decides
+    label_of_face[surface.face_of_input[::-1]] = labels[::-1]  # if they differ, that of the first input face
     for part in _parts(vertices, surface.faces, group(label_of_face, count)):
         closed = close_borders(part.vertices, part.faces)
         yield Part(part.label, closed.vertices, closed.faces)

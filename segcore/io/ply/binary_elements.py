@@ -1,4 +1,4 @@
-"""The elements of a PLY file in binary."""
+"""Elements of binary PLY files."""
 
 from typing import Any, Literal
 
@@ -11,7 +11,7 @@ _BYTE_ORDERS: dict[str, Literal["little", "big"]] = {"<": "little", ">": "big"}
 
 
 class BinaryBody:
-    """Reads one element after the other."""
+    """Reads the elements of a binary file in their order."""
 
     def __init__(self, data: bytes, offset: int, byte_order: str) -> None:
         self._data = data
@@ -19,12 +19,12 @@ class BinaryBody:
         self._order = byte_order
 
     def read(self, element: Element) -> Rows:
-        """All rows of the next element.
+        """Read all rows of the next element.
 
         Raises
         ------
         InvalidMesh
-            Where the file ends before they do; the message has the element and the row.
+            If the file ends before they do; the message has the element and the row.
         """
         if element.count == 0 or not element.properties:
             return empty_rows(element)
@@ -35,10 +35,10 @@ class BinaryBody:
         return self._equal_rows(element) or self._any_rows(element)
 
     def finish(self) -> None:
-        """Bytes after the last element are passed over, as other programs do."""
+        """Ignore bytes after the last element, as other programs do."""
 
     def _equal_rows(self, element: Element) -> Rows | None:
-        """The rows at once, where the lists of all are as long as those of the first, else None."""
+        """All rows at once if their lists are as long as those of the first row, else None."""
         lengths = self._lengths_of_next_row(element)
         if lengths is None:
             return None
@@ -65,7 +65,7 @@ class BinaryBody:
         return [("length", self._order + entry.count_type), ("values", self._order + entry.type, (length,))]
 
     def _lengths_of_next_row(self, element: Element) -> list[int] | None:
-        """The length of each list, 1 for each number, of the row that comes next; None where the file ends in it."""
+        """The length of each list of the next row, and 1 for each number; None if the file ends within the row."""
         lengths, at = [], self._at
         for entry in element.properties:
             length, at = self._length(entry, at)
@@ -74,7 +74,7 @@ class BinaryBody:
         return lengths if at <= len(self._data) and min(lengths) >= 0 else None
 
     def _length(self, entry: Property, at: int) -> tuple[int, int]:
-        """How many numbers follow, and where."""
+        """The number of values of a property, and the offset of the first one."""
         if entry.count_type is None:
             return 1, at
         values = at + np.dtype(entry.count_type).itemsize
@@ -82,7 +82,7 @@ class BinaryBody:
         return int.from_bytes(self._data[at:values], _BYTE_ORDERS[self._order], signed=signed), values
 
     def _any_rows(self, element: Element) -> Rows:
-        """The rows one by one."""
+        """All rows, one at a time."""
         sizes: list[list[int]] = [[] for _ in element.properties]
         parts: list[list[bytes]] = [[] for _ in element.properties]
         columns = list(zip(element.properties, sizes, parts, strict=True))
@@ -109,7 +109,7 @@ class BinaryBody:
 
 
 def _joined(rows: NDArray[Any]) -> NDArray[Any]:
-    """(N * K,) the numbers of rows (N, K) that stand apart; copied row by row, which is much faster than one by one."""
+    """(N * K,) a copy of rows (N, K) that are not contiguous; each row is copied as one item, which is much faster."""
     if rows.size == 0:
         return rows.reshape(-1)
     whole_rows = rows.view(f"V{rows.dtype.itemsize * rows.shape[1]}")

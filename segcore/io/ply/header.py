@@ -19,7 +19,7 @@ _ENCODINGS: dict[str, Literal["", "<", ">"]] = {"ascii": "", "binary_little_endi
 
 @dataclass(frozen=True, slots=True)
 class Property:
-    """A number of an element or, with ``count_type``, a list of numbers after their count."""
+    """A number of an element or, if it has a ``count_type``, a list of numbers preceded by their count."""
 
     name: str
     type: str  # a NumPy type without byte order
@@ -28,7 +28,7 @@ class Property:
 
 @dataclass(frozen=True, slots=True)
 class Element:
-    """``count`` rows of the same properties."""
+    """An element: ``count`` rows with the same properties."""
 
     name: str
     count: int
@@ -37,15 +37,15 @@ class Element:
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Lists:
-    """One list of numbers for each row of an element."""
+    """A list property: one list of numbers for each row of an element."""
 
-    values: NDArray[Any]  # (sum of sizes,) of all rows, one after the other
+    values: NDArray[Any]  # (sum of sizes,) those of all rows, concatenated
     sizes: LongArray  # (count,)
 
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Rows:
-    """What the rows of an element hold, by the names of its properties."""
+    """The values of an element by the names of its properties."""
 
     numbers: dict[str, NDArray[Any]]  # (count,) each
     lists: dict[str, Lists]
@@ -68,7 +68,7 @@ def empty_rows(element: Element) -> Rows:
 
 
 def cut_short(element: Element, row: int) -> InvalidMesh:
-    """The error for a file that ends in a row, or seems to because a list in it has a wrong length."""
+    """Return the error for a file that ends within a row, or seems to because a list has a wrong length."""
     return InvalidMesh(
         f"The PLY file ends within row {row} of the {element.count} rows of its element {element.name[:40]!r}, or a "
         "list there has a wrong length: it is cut short or damaged."
@@ -81,7 +81,7 @@ def read_header(data: bytes) -> Header:
     Raises
     ------
     InvalidMesh, UnsupportedFormat
-        With the line.
+        The message has the line.
     """
     lines, size = _split(data)
     byte_order: Literal["", "<", ">"] | None = None
@@ -98,14 +98,14 @@ def read_header(data: bytes) -> Header:
                 last = elements[-1]
                 elements[-1] = Element(last.name, last.count, (*last.properties, _property(words, number)))
             case _:
-                raise InvalidMesh(f"Line {number}: {line[:80]!r} is no statement of a PLY header.")
+                raise InvalidMesh(f"Line {number}: {line[:80]!r} is not a statement of a PLY header.")
     if byte_order is None:
-        raise InvalidMesh("The PLY header has no 'format' line: it must say ascii or binary.")
+        raise InvalidMesh("The PLY header has no 'format' line: it must specify ascii or binary.")
     return Header(byte_order, tuple(elements), size)
 
 
 def _split(data: bytes) -> tuple[list[str], int]:
-    """The lines before ``end_header``, and where the one after it begins."""
+    """The lines before ``end_header``, and the offset of the first byte after its line."""
     if not data.startswith((b"ply\n", b"ply\r")):
         raise InvalidMesh("The file does not begin with the word 'ply': send a PLY file, or name its real format.")
     newline = b"\r\n" if data.startswith(b"ply\r\n") else data[3:4]
@@ -118,13 +118,15 @@ def _split(data: bytes) -> tuple[list[str], int]:
 
 def _encoding(word: str, number: int) -> Literal["", "<", ">"]:
     if word not in _ENCODINGS:
-        raise UnsupportedFormat(f"Line {number}: PLY files in {word[:40]!r} are not read: save it as ascii or binary.")
+        raise UnsupportedFormat(
+            f"Line {number}: PLY files in {word[:40]!r} cannot be read: save it as ascii or binary."
+        )
     return _ENCODINGS[word]
 
 
 def _count(word: str, number: int) -> int:
     if not word.isascii() or not word.isdigit() or len(word) > 18:
-        raise InvalidMesh(f"Line {number}: {word[:40]!r} is no number of elements.")
+        raise InvalidMesh(f"Line {number}: {word[:40]!r} is not a number of elements.")
     return int(word)
 
 
@@ -132,9 +134,9 @@ def _property(words: list[str], number: int) -> Property:
     match words:
         case ["list", count_type, kind, name] if count_type in _TYPES and kind in _TYPES:
             if _TYPES[count_type].startswith("f"):
-                raise InvalidMesh(f"Line {number}: the length of a list must be of a type of whole numbers.")
+                raise InvalidMesh(f"Line {number}: the length of a list must have an integer type.")
             return Property(name, _TYPES[kind], _TYPES[count_type])
         case [kind, name] if kind in _TYPES:
             return Property(name, _TYPES[kind])
         case _:
-            raise InvalidMesh(f"Line {number}: {' '.join(words)[:80]!r} is a property of no known type.")
+            raise InvalidMesh(f"Line {number}: {' '.join(words)[:80]!r} is a property of an unknown type.")

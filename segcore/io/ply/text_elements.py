@@ -1,4 +1,4 @@
-"""The elements of a PLY file in text."""
+"""Elements of PLY files in text."""
 
 from typing import Any
 
@@ -14,20 +14,20 @@ _BLANK = bytes(byte if byte in b"\r\n" else ord(" ") for byte in range(256))
 
 
 class TextBody:
-    """Reads one element after the other; only the words count, not the lines."""
+    """Reads the elements of a text file in their order; line ends are only white space."""
 
     def __init__(self, data: bytes, offset: int) -> None:
-        # The header stays as empty lines, so that the line numbers of errors are those of the file.
+        # Empty lines replace the header, so that the line numbers of errors are those of the file.
         self._words = find_words(plain_text(data[:offset].translate(_BLANK) + data[offset:]))
         self._at = 0
 
     def read(self, element: Element) -> Rows:
-        """All rows of the next element.
+        """Read all rows of the next element.
 
         Raises
         ------
         InvalidMesh
-            Where the file ends before they do, or where a word is no number; the message has the row or the line.
+            If the file ends before they do or a word is not a number; the message has the row or the line.
         """
         if element.count == 0 or not element.properties:
             return empty_rows(element)
@@ -37,7 +37,7 @@ class TextBody:
         return self._equal_rows(element) or self._any_rows(element)
 
     def finish(self) -> None:
-        """Refuse words after the last element."""
+        """Raise InvalidMesh if there are words after the last element."""
         if self._at < self._words.count:
             raise InvalidMesh(
                 f"Line {self._words.line_number(self._at)}: the PLY file goes on after the elements that it announces: "
@@ -45,7 +45,7 @@ class TextBody:
             )
 
     def _equal_rows(self, element: Element) -> Rows | None:
-        """The rows at once, where the lists of all are as long as those of the first, else None."""
+        """All rows at once if their lists are as long as those of the first row, else None."""
         at, columns = self._at, []
         for entry in element.properties:
             length = 1
@@ -73,7 +73,7 @@ class TextBody:
         return Rows(numbers, lists)
 
     def _any_rows(self, element: Element) -> Rows:
-        """The rows one by one."""
+        """All rows, one at a time."""
         table = self._words.numbers(self._at, self._words.count)
         heads, sizes = self._walk(element, table)
         numbers, lists = {}, {}
@@ -86,7 +86,7 @@ class TextBody:
         return Rows(numbers, lists)
 
     def _walk(self, element: Element, table: NDArray[Any]) -> tuple[NDArray[np.int64], NDArray[np.int64]]:
-        """(count, P) each: where the values of every property of every row begin in the table, and how many."""
+        """(count, P) the first value of each property of each row in the table, and (count, P) the number of values."""
         values, at = table.tolist(), 0
         heads, sizes = [], []
         is_list = [entry.count_type is not None for entry in element.properties]

@@ -12,7 +12,7 @@ from segcore.io.polygons import Polygons, mesh_of_polygons
 from segcore.io.text.words import Words, find_words, plain_text
 from segcore.mesh import Mesh
 
-# The lines of a face as nearly every program writes them: how each begins, and how many words it has.
+# The lines of a face as most programs write them: the first words of each line, and its number of words.
 _VERTEX = (b"vertex",)
 _LINES = ((b"facet", b"normal"), (b"outer", b"loop"), _VERTEX, _VERTEX, _VERTEX, (b"endloop",), (b"endfacet",))
 _WORDS = (5, 2, 4, 4, 4, 1, 1)
@@ -26,7 +26,7 @@ _FACE = re.compile(
 
 
 def read_ascii_stl(data: bytes, limits: ReadLimits, with_appearance: bool = False) -> Mesh:
-    """Read an STL file in text: one or more solids; loops of more than three vertices are cut into fans.
+    """Read an STL file in text: one or more solids; loops of more than three vertices are triangulated as fans.
 
     Raises
     ------
@@ -38,7 +38,7 @@ def read_ascii_stl(data: bytes, limits: ReadLimits, with_appearance: bool = Fals
     if not _END.match(last_line):
         raise InvalidMesh("The STL file does not end with 'endsolid': it is cut short.")
     words = find_words(text)
-    is_solid = words.lines_with(b"solid") | words.lines_with(b"endsolid")  # any name may follow
+    is_solid = words.lines_with(b"solid") | words.lines_with(b"endsolid")  # the rest of the line is a name
     vertices = _regular_vertices(words, np.flatnonzero(~is_solid))
     if vertices is None:
         return _read_any_layout(_SOLID.sub(lambda line: b" " * len(line[0]), text), limits)
@@ -48,7 +48,7 @@ def read_ascii_stl(data: bytes, limits: ReadLimits, with_appearance: bool = Fals
 
 
 def _regular_vertices(words: Words, lines: LongArray) -> FloatArray | None:
-    """(3 F, 3) where ``lines``, those of the faces, are the usual seven for each, else None."""
+    """(3 F, 3) vertices if each face is the usual seven of ``lines``, else None."""
     if len(lines) == 0 or len(lines) % len(_LINES):
         return None
     lines = lines.reshape(-1, len(_LINES))
@@ -65,7 +65,7 @@ def _regular_vertices(words: Words, lines: LongArray) -> FloatArray | None:
 
 
 def _solids(text: bytes, words: Words, is_solid: BoolArray) -> Appearance | None:
-    """The names of the solids, as groups of faces; ``text`` has them in upper and lower case."""
+    """The solids as groups of faces; ``text`` has their names in the original case."""
     solids = np.flatnonzero(words.lines_with(b"solid"))
     faces_before = np.append(np.cumsum(~is_solid)[solids], np.count_nonzero(~is_solid)) // len(_LINES)
     if faces_before[0] > 0:
@@ -75,25 +75,27 @@ def _solids(text: bytes, words: Words, is_solid: BoolArray) -> Appearance | None
 
 
 def _name(text: bytes, solid: int) -> str:
-    """What stands between the word ``solid`` at a byte and the end of its line."""
+    """The rest of the line after the word ``solid`` at byte ``solid``."""
     end = text.find(b"\n", solid)
     return text[solid + len(b"solid") : end if end >= 0 else None].strip().decode("utf-8", "replace")
 
 
 def _read_any_layout(text: bytes, limits: ReadLimits) -> Mesh:
-    """The same for faces that are broken into lines in any way, with loops of any length."""
+    """Read faces that are broken into lines in any way, with loops of any length."""
     sizes: list[int] = []
     at, end = 0, len(text.rstrip())
     while at < end:
         face = _FACE.match(text, at)
         if face is None:
-            raise InvalidMesh(f"Line {_line_number(text, at)}: this is no whole STL face from 'facet' to 'endfacet'.")
+            raise InvalidMesh(
+                f"Line {_line_number(text, at)}: this is not a whole STL face from 'facet' to 'endfacet'."
+            )
         sizes.append(face[1].count(b"vertex"))
         at = face.end()
     words = find_words(text)
     vertices = np.flatnonzero(words.equal(np.arange(words.count), b"vertex"))
     if len(vertices) != sum(sizes) or vertices.max(initial=-4) + 3 >= words.count:
-        raise InvalidMesh("The STL file has the word 'vertex' where a number should stand: it is damaged.")
+        raise InvalidMesh("The STL file has the word 'vertex' in place of a number: it is damaged.")
     coordinates = words.floats_at(vertices[:, None] + np.arange(1, 4))
     return mesh_of_polygons(coordinates, Polygons(np.arange(len(vertices)), np.array(sizes, dtype=np.int64)), limits)
 

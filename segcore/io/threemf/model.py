@@ -1,4 +1,4 @@
-"""The XML of a 3MF model: its objects and what it builds of them."""
+"""Parser for the XML of a 3MF model: its objects and the items of its build."""
 
 from array import array
 from collections.abc import Iterable
@@ -12,12 +12,12 @@ from segcore.arrays import FloatArray
 from segcore.errors import InvalidMesh, UnsupportedFormat
 from segcore.io.limits import ReadLimits
 
-ObjectKey: TypeAlias = tuple[str, str]  # the part, empty for the root model, and the id in it
+ObjectKey: TypeAlias = tuple[str, str]  # the model part, empty for the root model, and the id in it
 Attributes: TypeAlias = dict[str, str]
 
 _CORE = "http://schemas.microsoft.com/3dmanufacturing/core/2015/02"
 _PRODUCTION = "http://schemas.microsoft.com/3dmanufacturing/production/2015/06"
-# Required extensions that change neither the faces nor their places, or that are followed here.
+# Required extensions that change neither the faces nor their positions, or that are implemented here.
 _UNDERSTOOD = (
     _PRODUCTION,
     "http://schemas.microsoft.com/3dmanufacturing/material/2015/02",
@@ -32,7 +32,7 @@ _IDENTITY = np.eye(4)
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Placed:
-    """An object at a place: a component of another one, or an item of the build."""
+    """An object with a transform: a component of another object, or an item of the build."""
 
     object: ObjectKey
     transform: FloatArray  # (4, 4) for column vectors
@@ -40,17 +40,17 @@ class Placed:
 
 @dataclass(slots=True, eq=False)
 class ModelObject:
-    """A mesh, or a list of components, or nothing."""
+    """An object: a mesh, a list of components, or neither."""
 
     name: str
-    vertices: "array[float]" = field(default_factory=lambda: array("d"))  # x, y, z of each
-    triangles: "array[int]" = field(default_factory=lambda: array("i"))  # three vertices of each
+    vertices: "array[float]" = field(default_factory=lambda: array("d"))  # x, y and z of each vertex
+    triangles: "array[int]" = field(default_factory=lambda: array("i"))  # the three vertices of each triangle
     components: list[Placed] = field(default_factory=list)
 
 
 @dataclass(slots=True, eq=False)
 class Model:
-    """One model part."""
+    """The contents of a model part."""
 
     unit: float = 1.0  # millimetres
     objects: dict[str, ModelObject] = field(default_factory=dict)
@@ -58,7 +58,7 @@ class Model:
 
 
 def parse_model(chunks: Iterable[bytes], part: str, limits: ReadLimits) -> Model:
-    """Parse a model part; no entity is expanded, and nothing outside of it is looked at.
+    """Parse a model part; entities are not expanded, and no other part or file is read.
 
     Parameters
     ----------
@@ -67,7 +67,7 @@ def parse_model(chunks: Iterable[bytes], part: str, limits: ReadLimits) -> Model
     Raises
     ------
     InvalidMesh, UnsupportedFormat, LimitExceeded
-        With the line.
+        The message of InvalidMesh has the line.
     """
     return _ModelParser(part, limits).parse(chunks)
 
@@ -119,7 +119,7 @@ class _ModelParser:
     def _vertex(self, attributes: Attributes) -> None:
         x, y, z = attributes["x"], attributes["y"], attributes["z"]
         if "_" in x or "_" in y or "_" in z:
-            raise ValueError("Python's own form of numbers")
+            raise ValueError("a number with an underscore, which Python would accept")
         self._object.vertices.extend((float(x), float(y), float(z)))
         if len(self._object.vertices) > 3 * self._limits.max_vertices:
             self._limits.check_vertices(len(self._object.vertices) // 3)
@@ -127,7 +127,7 @@ class _ModelParser:
     def _triangle(self, attributes: Attributes) -> None:
         a, b, c = attributes["v1"], attributes["v2"], attributes["v3"]
         if "_" in a or "_" in b or "_" in c:
-            raise ValueError("Python's own form of numbers")
+            raise ValueError("a number with an underscore, which Python would accept")
         self._object.triangles.extend((int(a), int(b), int(c)))
         if len(self._object.triangles) > 3 * self._limits.max_faces:
             self._limits.check_faces(len(self._object.triangles) // 3)
@@ -135,7 +135,7 @@ class _ModelParser:
     def _begin_model(self, attributes: Attributes) -> None:
         unit = attributes.get("unit", "millimeter")
         if unit not in _MILLIMETRES:
-            raise InvalidMesh(f"The 3MF model is in {unit[:40]!r}, which is no unit of 3MF: correct it.")
+            raise InvalidMesh(f"The 3MF model is in {unit[:40]!r}, which is not a unit of 3MF: correct it.")
         self._model.unit = _MILLIMETRES[unit]
         self._has_model = True
         for prefix in attributes.get("requiredextensions", "").split():
@@ -166,11 +166,11 @@ class _ModelParser:
         self._namespaces[prefix or ""] = uri
 
     def _refuse_doctype(self, *_: object) -> None:
-        raise InvalidMesh("The 3MF model has a document type declaration, which 3MF does not allow: save it anew.")
+        raise InvalidMesh("The 3MF model has a document type declaration, which 3MF does not allow: save it again.")
 
 
 def _matrix(text: str) -> FloatArray:
-    """(4, 4) for column vectors, of the 4 rows of 3 numbers that the file has for row vectors."""
+    """(4, 4) for column vectors, from the 4 rows of 3 numbers that the file has for row vectors."""
     values = [float(word) for word in text.split()]
     if len(values) != 12 or "_" in text or not np.isfinite(values).all():
         raise ValueError("a transform has 12 finite numbers")

@@ -1,4 +1,4 @@
-"""The parts of a 3MF package, a ZIP archive, each within the limits before it is unpacked."""
+"""Package: the parts of a 3MF file, a ZIP archive, with limits that are checked before a part is unpacked."""
 
 import io
 import posixpath
@@ -12,25 +12,25 @@ from typing import IO
 from segcore.errors import InvalidMesh, UnsupportedFormat
 from segcore.io.limits import ReadLimits
 
-_MOST_PARTS = 10_000
+_MOST_PARTS = 10_000  # set by hand; a package has one part for each model, texture and thumbnail
 _CENTRAL_RECORD = b"PK\x01\x02"
 _ROOT_RELATIONSHIPS = "_rels/.rels"
-_LARGEST_RELATIONSHIPS = 2**20  # bytes
+_LARGEST_RELATIONSHIPS = 2**20  # bytes, set by hand; the usual file has less than 1 kB
 _MODEL_TYPE = b"http://schemas.microsoft.com/3dmanufacturing/2013/01/3dmodel"
 _RELATIONSHIP = re.compile(rb"<(?:\w+:)?Relationship\b[^>]*>")
 _TARGET = re.compile(rb"""\bTarget\s*=\s*(?:"([^"]*)"|'([^']*)')""")
 _USUAL_MODEL = "3D/3dmodel.model"
-_CHUNK = 2**18
+_CHUNK = 2**18  # bytes that the XML parser gets at a time
 _READ_HERE = (zipfile.ZIP_STORED, zipfile.ZIP_DEFLATED)
 _ENCRYPTED = 0x1
 
 
 class Package:
-    """A package in memory; what all parts unpack to together stays below ``limits.max_uncompressed_bytes``."""
+    """A package in memory; the unpacked parts together have at most ``limits.max_uncompressed_bytes``."""
 
     def __init__(self, data: bytes, limits: ReadLimits) -> None:
         if data.count(_CENTRAL_RECORD) > _MOST_PARTS:
-            raise InvalidMesh(f"The 3MF file has more than {_MOST_PARTS} parts: it is damaged or no model.")
+            raise InvalidMesh(f"The 3MF file has more than {_MOST_PARTS} parts: it is damaged or not a model.")
         try:
             self._archive = zipfile.ZipFile(io.BytesIO(data))
         except (zipfile.BadZipFile, NotImplementedError, UnicodeDecodeError, ValueError, OverflowError) as error:
@@ -40,7 +40,7 @@ class Package:
         self._unpacked = 0
 
     def root_model(self) -> str:
-        """The name of the part that holds the model, as the relationships of the package say, else the usual one."""
+        """Return the name of the model part according to the relationships of the package, else the usual one."""
         if _key(_ROOT_RELATIONSHIPS) in self._parts:
             with self._open(_ROOT_RELATIONSHIPS) as part:
                 text = part.read(_LARGEST_RELATIONSHIPS)
@@ -49,18 +49,20 @@ class Package:
                 if _MODEL_TYPE in relationship and target:
                     return (target[1] or target[2]).decode("utf-8", "replace")
         if _key(_USUAL_MODEL) not in self._parts:
-            raise UnsupportedFormat("The ZIP archive has no 3D model in it: it is no 3MF file; send the mesh itself.")
+            raise UnsupportedFormat(
+                "The ZIP archive contains no 3D model, so it is not a 3MF file: send the mesh itself."
+            )
         return _USUAL_MODEL
 
     def chunks(self, name: str) -> Iterator[bytes]:
-        """The bytes of a part, piece by piece.
+        """Yield the bytes of a part in pieces.
 
         Raises
         ------
         InvalidMesh
-            Where the part is missing, damaged or cut short.
+            If the part is missing, damaged or cut short.
         UnsupportedFormat
-            Where it is encrypted or compressed in another way than deflate.
+            If it is encrypted or compressed in another way than deflate.
         LimitExceeded
         """
         with self._open(name) as part:
@@ -87,5 +89,5 @@ class Package:
 
 
 def _key(name: str) -> str:
-    """Names of parts are absolute or relative to the package, and equal without regard to case."""
+    """The name of a part in a normal form: names may be absolute, and their case does not matter."""
     return posixpath.normpath(name.replace("\\", "/")).strip("/").lower()

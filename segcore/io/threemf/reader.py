@@ -10,16 +10,16 @@ from segcore.io.threemf.model import Model, ModelObject, ObjectKey, Placed, pars
 from segcore.io.threemf.package import Package
 from segcore.mesh import Mesh
 
-_MOST_PLACES = 100_000  # objects, those without a mesh too, after components are followed
+_MOST_PLACES = 100_000  # placed objects, also those without a mesh, after components are expanded; set by hand
 
 
 def read_3mf(data: bytes, limits: ReadLimits, with_appearance: bool = False) -> Mesh:
     """Read everything that a 3MF file builds, in millimetres.
 
-    Face order: the items of the build, the components of each in their order, the triangles of each. An object that
-    stands at several places is there several times. Where a transform mirrors an object, its faces are turned, so that
-    their outside stays outside. Materials, textures and thumbnails are passed over; of the appearance only the names
-    of the objects are kept.
+    Face order: the items of the build, the components of each in their order, the triangles of each. An object that is
+    placed several times is repeated. If a transform mirrors an object, the orientation of its faces is reversed, so
+    that their outside stays outside. Materials, textures and thumbnails are ignored; the appearance is the names of the
+    objects.
 
     Raises
     ------
@@ -40,7 +40,7 @@ def read_3mf(data: bytes, limits: ReadLimits, with_appearance: bool = False) -> 
 
 
 class _Objects:
-    """The objects of all model parts that are referred to, each part parsed once."""
+    """The objects of all model parts that are referenced; each part is parsed once."""
 
     def __init__(self, package: Package, limits: ReadLimits) -> None:
         self._package = package
@@ -61,7 +61,7 @@ class _Objects:
 
 
 class _Counts:
-    """How many faces, vertices and placed objects every object comes to, before any of them is put together."""
+    """The number of faces, vertices and placed objects of each object with its components."""
 
     def __init__(self, objects: _Objects) -> None:
         self._objects = objects
@@ -70,7 +70,7 @@ class _Counts:
         self.places: dict[ObjectKey, int] = {}
 
     def add(self, root: ObjectKey) -> None:
-        """Count an object and all it is made of; refuses one that is inside itself."""
+        """Count an object and its components; raises InvalidMesh if it contains itself."""
         waiting, open_objects = [root], set()
         while waiting:
             key = waiting[-1]
@@ -96,7 +96,7 @@ class _Counts:
 
 
 def _meshes(objects: _Objects, counts: _Counts) -> list[Placed]:
-    """All objects with triangles in the order of the build, each where it stands."""
+    """All objects with triangles in the order of the build, with their transforms."""
     found = []
     waiting = list(reversed(objects.root.items))
     while waiting:
@@ -128,7 +128,7 @@ def _assemble(placed: list[Placed], objects: _Objects, with_appearance: bool) ->
 
 
 def _place(source: ModelObject, transform: FloatArray, vertices: FloatArray) -> None:
-    """Fill ``vertices`` (V, 3) with those of an object after a transform."""
+    """Fill ``vertices`` (V, 3) with the transformed vertices of an object."""
     own = np.frombuffer(source.vertices, dtype=np.float64).reshape(-1, 3)
     np.matmul(own, transform[:3, :3].T, out=vertices)
     vertices += transform[:3, 3]

@@ -1,4 +1,4 @@
-"""The 3MF writer: an object for every segment."""
+"""The 3MF writer: an object for each segment."""
 
 import zipfile
 from collections.abc import Iterator
@@ -43,22 +43,22 @@ def write_3mf(
     capped: bool = False,
     names: SegmentNames | None = None,
 ) -> None:
-    """Write a 3MF file: one object of objects, ``segment k`` each with its colour, in place.
+    """Write a 3MF file: an assembly of the objects ``segment k``, each with its colour, in place.
 
-    An object holds the faces of its segment in input order; faces that name a vertex twice are left out, as the format
-    does not allow them; its description says which groups of the input reach into it. The unit is the millimetre,
-    whatever the input meant, as most formats do not say.
+    An object has the faces of its segment in input order. Faces that repeat a vertex are left out, because the format
+    does not allow them. The description of an object lists the groups of the input that its faces are in. The unit is
+    always the millimetre, because most input formats have no unit.
 
     Parameters
     ----------
     target : a binary file; needs ``write`` only.
     capped : close each object with caps, for printing; see :func:`segcore.io.parts.pieces.closed_parts`.
-    names : what segments are called in place of ``segment k``.
+    names : names of segments by label, in place of ``segment k``.
 
     Raises
     ------
     InvalidParameters
-        Where ``segments`` is not in 1..max_segments.
+        If ``segments`` is not in 1..max_segments.
     """
     count = len(hierarchy.segment_nodes(segments))
     parts = (closed_parts if capped else segment_parts)(mesh, hierarchy, segments)
@@ -72,7 +72,7 @@ def write_3mf(
 
 
 def _descriptions(look: Appearance, slices: Slices) -> list[str]:
-    """The XML of what is known about every segment beside its shape."""
+    """The XML of the description of each segment; empty if no group of the input is in it."""
     result = []
     for label in range(len(slices)):
         groups = ", ".join(map(one_line, look.groups_of(slices[label])))

@@ -1,1 +1,1 @@
-"""Mesh files for the tests: small, odd, damaged and hostile ones, and plain readers to compare with."""
+"""Mesh files for the tests: small, unusual, damaged and hostile ones, and plain readers as oracles."""

@@ -1,6 +1,6 @@
-"""Writes to the file named on the command line what Blender finds in the files listed on standard input, as JSON.
+"""Write the parts that Blender reads from the files listed on standard input as JSON to the file in the first argument.
 
-{path: [{"name": str, "corners": [x, y, z, ...]}, ...]}, a part for every object, each corner where it is in the file.
+{path: [{"name": str, "corners": [x, y, z, ...]}, ...]}, a part for each object, in the coordinates of the file.
 """
 
 import json
@@ -32,7 +32,7 @@ def parts(path: str) -> list[dict]:
 
 
 def corners(entry: bpy.types.Object, is_gltf: bool) -> np.ndarray:
-    """(C, 3); glTF has y upwards and Blender z."""
+    """(C, 3) corners; y is up in glTF and z in Blender."""
     points = np.array([entry.matrix_world @ vertex.co for vertex in entry.data.vertices])
     points = np.stack([points[:, 0], points[:, 2], -points[:, 1]], axis=1) if is_gltf else points
     return points[[vertex for polygon in entry.data.polygons for vertex in polygon.vertices]]

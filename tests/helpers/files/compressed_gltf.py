@@ -1,4 +1,4 @@
-"""glTF assets that other programs compressed: with the reference encoders of meshoptimizer and of Draco."""
+"""glTF assets that the reference encoders of meshoptimizer and Draco compressed."""
 
 import base64
 import json
@@ -13,13 +13,13 @@ DRACO = "KHR_draco_mesh_compression"
 SAMPLES = json.loads((Path(__file__).parents[1] / "node" / "meshopt" / "samples.json").read_text())
 ENCODED = {name: base64.b64decode(data) for name, data in SAMPLES["encoded"].items()}
 DECODED = {name: base64.b64decode(data) for name, data in SAMPLES["decoded"].items()}
-"""What is in them, by the reference decoder."""
+"""The contents according to the reference decoder."""
 POSITIONS = np.array(SAMPLES["positions"]).reshape(-1, 3)
 FACES = np.array(SAMPLES["indices"]).reshape(-1, 3)
 
 
 def compressed_view(asset: Asset, data: bytes, count: int, stride: int, extension: str, **more: str) -> int:
-    """A buffer view whose bytes are in another one, compressed."""
+    """A buffer view that is stored compressed in another one."""
     source = asset.document["bufferViews"][asset.view([(byte,) for byte in data], 5121)]
     entry = {"buffer": 0, "byteOffset": source["byteOffset"], "byteLength": len(data), "byteStride": stride}
     return asset.add(
@@ -49,7 +49,7 @@ def meshopt_asset(
 
 
 def draco_asset(data: bytes | None = None) -> tuple[Asset, bytes]:
-    """An asset of which the one primitive is compressed, and the Draco data in it."""
+    """An asset with one compressed primitive, and its Draco data."""
     import DracoPy
 
     mesh = shapes.icosphere(2)

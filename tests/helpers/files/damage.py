@@ -1,4 +1,4 @@
-"""Files as they arrive after accidents: cut short, with bytes changed, lost or repeated."""
+"""Damaged files: cut short, with bytes changed, lost or repeated."""
 
 from collections.abc import Callable
 
@@ -9,7 +9,7 @@ from helpers.files.polygon_soups import Soup, read_or_none, source_polygons
 
 @st.composite
 def damaged(draw: st.DrawFn, files: list[bytes], alphabet: bytes) -> bytes:
-    """One of the files after one to three accidents; changed bytes come from ``alphabet``."""
+    """One of the files after one to three damages; new bytes are from ``alphabet``."""
     data = draw(st.sampled_from(files))
     for _ in range(draw(st.integers(1, 3))):
         at = draw(st.integers(0, len(data)))
@@ -27,7 +27,7 @@ def damaged(draw: st.DrawFn, files: list[bytes], alphabet: bytes) -> bytes:
 
 
 def assert_never_half_read(data: bytes, whole: Soup, format: str) -> None:  # noqa: A002
-    """Cut after any byte, a file is refused or, where only blank ends are lost, read as a whole."""
+    """Cut after any byte, a file is refused, or read completely if only white space at its end is lost."""
     for length in range(len(data)):
         mesh = read_or_none(data[:length], format)
         if mesh is not None:
@@ -37,7 +37,7 @@ def assert_never_half_read(data: bytes, whole: Soup, format: str) -> None:  # no
 
 
 def assert_agrees(data: bytes, format: str, slow_reader: Callable[[bytes], tuple[list, list]]) -> None:  # noqa: A002
-    """What is read is what the slow reader reads; a file that the slow reader refuses is never read as something."""
+    """A file is read as the slow reader reads it; a file that the slow reader refuses is refused."""
     mesh = read_or_none(data, format)
     if mesh is not None:
         vertices, faces = slow_reader(data)

@@ -1,4 +1,4 @@
-"""glTF assets put together by hand or by Hypothesis."""
+"""glTF assets composed by hand or by Hypothesis."""
 
 import base64
 import json
@@ -15,7 +15,7 @@ LARGEST = {5120: 127, 5121: 255, 5122: 32767, 5123: 65535}
 
 @dataclass
 class Asset:
-    """A glTF document that grows, and its one buffer."""
+    """A glTF document that is being composed, and its one buffer."""
 
     document: dict[str, Any] = field(
         default_factory=lambda: {
@@ -34,7 +34,7 @@ class Asset:
         return len(self.document[name]) - 1
 
     def view(self, rows: list[tuple[float, ...]], component: int, gap: int = 0) -> int:
-        """A buffer view of the rows with ``gap`` unused bytes between them."""
+        """Add a buffer view of the rows with ``gap`` unused bytes between them."""
         self.binary += b"\xee" * (-len(self.binary) % 4)
         data = (b"\xee" * gap).join(struct.pack(f"<{len(row)}{SIZES[component]}", *row) for row in rows)
         entry = {"buffer": 0, "byteOffset": len(self.binary), "byteLength": len(data)}
@@ -82,7 +82,7 @@ points = st.lists(st.tuples(small, small, small), min_size=1, max_size=8)
 
 @st.composite
 def positions(draw: st.DrawFn, asset: Asset) -> tuple[int, int]:
-    """An accessor of positions in any of the forms that glTF has, and how many there are."""
+    """An accessor of positions of any type of glTF, and the number of positions."""
     rows = draw(points)
     gap = draw(st.sampled_from([0, 0, 4]))
     if draw(st.booleans()):
@@ -138,7 +138,7 @@ def transforms(draw: st.DrawFn) -> dict[str, Any]:
 
 @st.composite
 def assets(draw: st.DrawFn) -> Asset:
-    """Meshes of several primitives, standing at several nodes of a forest."""
+    """Meshes of several primitives at several nodes of a forest."""
     asset = Asset()
     for _ in range(draw(st.integers(1, 2))):
         asset.add("meshes", {"primitives": [draw(primitives(asset)) for _ in range(draw(st.integers(1, 3)))]})

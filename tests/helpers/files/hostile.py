@@ -1,4 +1,4 @@
-"""Files that somebody might send to hurt a service, each with the codes that its job may end with."""
+"""Files of an attacker, each with the error codes that its job may end with."""
 
 import gzip
 import io
@@ -24,12 +24,12 @@ _ANYTHING = _REFUSED | {None}  # harmless if read
 
 
 def hostile_files(target_url: str, secret: str) -> Iterator[tuple[str, bytes, set[str | None]]]:
-    """Names, contents and the codes that the jobs may end with, None for a success.
+    """Yield names, contents and the codes that the jobs may end with, None for success.
 
     Parameters
     ----------
-    target_url : what files refer to that want a connection from here.
-    secret : the path of a file that they want read.
+    target_url : the URL in files that try to make the server connect to it.
+    secret : the path in files that try to read another file.
     """
     yield from _bombs()
     yield from _liars()
@@ -39,7 +39,7 @@ def hostile_files(target_url: str, secret: str) -> Iterator[tuple[str, bytes, se
 
 
 def _bombs() -> Iterator[tuple[str, bytes, set[str | None]]]:
-    """Much out of little."""
+    """Small files that unpack to much data."""
     yield "bomb.off.gz", _deflated(_BOMB_BYTES), _REFUSED
     yield "bomb.3mf", _package(_spaces()), _ANYTHING
     laughs = "".join(f'<!ENTITY l{n} "{f"&l{n - 1};" * 10}">' for n in range(1, 12))
@@ -48,7 +48,7 @@ def _bombs() -> Iterator[tuple[str, bytes, set[str | None]]]:
 
 
 def _liars() -> Iterator[tuple[str, bytes, set[str | None]]]:
-    """Heads that announce four thousand million of everything."""
+    """Headers that announce four thousand million of everything."""
     many = 4_000_000_000
     yield "huge.off", f"OFF\n{many} {many} 0\n0 0 0\n".encode(), _REFUSED
     for form in ("ascii", "binary_little_endian"):
@@ -65,7 +65,7 @@ def _liars() -> Iterator[tuple[str, bytes, set[str | None]]]:
 
 
 def _crowds() -> Iterator[tuple[str, bytes, set[str | None]]]:
-    """One small mesh, very many times."""
+    """One small mesh with very many instances."""
     doublings = "".join(
         f'<object id="{n}" type="model"><components>{f"""<component objectid="{n - 1}"/>""" * 2}</components></object>'
         for n in range(2, 34)
@@ -83,7 +83,7 @@ def _crowds() -> Iterator[tuple[str, bytes, set[str | None]]]:
 
 
 def _readers(target_url: str, secret: str) -> Iterator[tuple[str, bytes, set[str | None]]]:
-    """Files that want others read, or asked for."""
+    """Files that refer to other files and URLs."""
     entity = f'<!DOCTYPE model [<!ENTITY x SYSTEM "file://{secret}"><!ENTITY y SYSTEM "{target_url}/entity">]>'
     yield "entity.3mf", _package(_model(_TETRAHEDRON, '<item objectid="1"/>', "&x;&y;", entity)), _REFUSED
     yield (
@@ -100,7 +100,7 @@ def _readers(target_url: str, secret: str) -> Iterator[tuple[str, bytes, set[str
 
 
 def _chameleons() -> Iterator[tuple[str, bytes, set[str | None]]]:
-    """Files that are also something else, or nothing, and names that are paths."""
+    """Files that are something else too, or nothing, and names that are paths."""
     page = b"<html><script>alert(1)</script></html>"
     yield "page.stl", page.ljust(80) + struct.pack("<I", 1) + bytes(50), _ANYTHING
     yield "page.obj", b"# " + page + b"\nv 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n", _ANYTHING
@@ -112,7 +112,7 @@ def _chameleons() -> Iterator[tuple[str, bytes, set[str | None]]]:
 
 
 def _deflated(size: int) -> bytes:
-    """A gzip file of so many spaces, made in pieces."""
+    """A gzip file of ``size`` spaces, composed in pieces."""
     target = io.BytesIO()
     with gzip.GzipFile(fileobj=target, mode="wb", compresslevel=1, mtime=0) as file:
         for _ in range(size >> 20):

@@ -1,4 +1,4 @@
-"""Files that are nearly right: seeds of every format after changes that hit what readers rely on."""
+"""Nearly valid files: samples of every format after changes of what readers rely on."""
 
 import re
 import struct

@@ -1,6 +1,6 @@
-"""Readers in plain Python, word by word, that the fast ones are compared with.
+"""Readers in plain Python, word by word: the oracles of the fast readers.
 
-Each returns the vertices and the triangles of a file, or raises anything at all where it is not a whole valid file.
+Each returns the vertices and the triangles of a file, or raises any exception if the file is not complete and valid.
 """
 
 import base64
@@ -260,7 +260,7 @@ _GLTF = {5120: "b", 5121: "B", 5122: "h", 5123: "H", 5125: "I", 5126: "f"}
 
 
 def slow_gltf(data: bytes) -> list[tuple[Point, Point, Point]]:
-    """The corners of every triangle in the scene: which vertices are shared is the reader's own affair."""
+    """The corners of each triangle of the scene; glTF does not specify which vertices are shared."""
     chunks = []
     if data.startswith(b"glTF"):
         _, version, length = struct.unpack_from("<4sII", data)
@@ -378,7 +378,7 @@ _UNITS = {"micron": 0.001, "millimeter": 1, "centimeter": 10, "inch": 25.4, "foo
 
 
 def slow_3mf(data: bytes) -> list[tuple[Point, Point, Point]]:
-    """The corners of every triangle that is built."""
+    """The corners of each triangle of the build."""
     with zipfile.ZipFile(io.BytesIO(data)) as archive:
         model = ElementTree.fromstring(archive.read("3D/3dmodel.model"))
     objects = {entry.get("id"): entry for entry in model.iter(f"{_CORE}object")}

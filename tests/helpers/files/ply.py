@@ -1,4 +1,4 @@
-"""PLY files put together from rows of values."""
+"""PLY files composed from rows of values."""
 
 import struct
 

@@ -118,4 +118,4 @@ DRESSED = {
     "gltf": [_dressed_gltf().gltf()],
     "3mf": [named_square()],
 }
-"""The same with normals, texture coordinates, colours and names of groups, as far as the format has them."""
+"""The same with the normals, texture coordinates, colours and names of groups that the format can have."""

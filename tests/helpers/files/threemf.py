@@ -1,4 +1,4 @@
-"""3MF packages put together by hand or by Hypothesis."""
+"""3MF packages composed by hand or by Hypothesis."""
 
 import io
 import zipfile
@@ -22,7 +22,7 @@ TYPES = '<?xml version="1.0"?><Types xmlns="http://schemas.openxmlformats.org/pa
 
 @dataclass
 class Model3MF:
-    """A model that grows."""
+    """A model that is being composed."""
 
     unit: str | None = None
     attributes: str = ""
@@ -78,7 +78,7 @@ offsets = st.integers(-8, 8).map(float)
 
 @st.composite
 def transforms(draw: st.DrawFn) -> list[float] | None:
-    """12 numbers that lose nothing where they are multiplied."""
+    """None or 12 numbers, whose products are exact."""
     if draw(st.booleans()):
         return None
     order = draw(st.permutations([0, 1, 2]))

@@ -1,4 +1,4 @@
-"""What the writers write, as bytes."""
+"""The output of the writers as bytes."""
 
 import io
 import json
@@ -12,7 +12,7 @@ from segcore.mesh import Mesh
 
 
 class Pipe:
-    """A target that can neither seek nor say where it is, such as the body of an HTTP response."""
+    """A target without ``seek`` and ``tell``, such as the body of an HTTP response."""
 
     def __init__(self) -> None:
         self.pieces: list[bytes] = []
@@ -33,14 +33,14 @@ def mesh_bytes(mesh: Mesh, format: str) -> bytes:  # noqa: A002
 
 
 def written(kind: str, mesh: Mesh, hierarchy: Hierarchy, segments: int | None = None, **options: object) -> bytes:
-    """The file of a kind of WRITERS."""
+    """The output of a format of WRITERS."""
     target = Pipe()
     WRITERS[kind].write(target, mesh, hierarchy, segments, **options)
     return b"".join(target.pieces)
 
 
 def members(data: bytes) -> dict[str, bytes]:
-    """What is in a ZIP archive."""
+    """The members of a ZIP archive."""
     with zipfile.ZipFile(io.BytesIO(data)) as archive:
         assert archive.testzip() is None
         return {name: archive.read(name) for name in archive.namelist()}

@@ -11,10 +11,7 @@ _HERE = Path(__file__).parent
 
 
 def install(name: str, folder: Path) -> Path:
-    """A copy of the program ``name`` in ``folder``, with its packages; skips the test where that cannot be done.
-
-    It never skips where CI is set.
-    """
+    """Copy the program ``name`` to ``folder`` and install its packages; skip the test if that fails, except in CI."""
     npm = shutil.which("npm")
     if (npm is None or shutil.which("node") is None) and "CI" not in os.environ:
         pytest.skip(f"{name} needs node and npm")
@@ -30,7 +27,7 @@ def install(name: str, folder: Path) -> Path:
 
 
 def run(script: Path, arguments: list[str], text: str = "") -> str:
-    """What a script prints."""
+    """Run a script and return its output."""
     command = ["node", str(script), *arguments]
     done = subprocess.run(command, input=text, capture_output=True, text=True, timeout=240, check=False)
     assert done.returncode == 0, done.stderr[-2000:]

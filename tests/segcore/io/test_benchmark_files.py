@@ -1,4 +1,4 @@
-"""The Princeton benchmark's own files, read here and by another program."""
+"""The files of the Princeton benchmark are read as other readers read them."""
 
 import os
 from pathlib import Path
@@ -18,7 +18,7 @@ SAMPLE = 12  # files, spread over the categories
 def paths() -> list[Path]:
     found = sorted(Path(FOLDER, "off").glob("*.off"), key=lambda path: int(path.stem)) if FOLDER else []
     if not found:
-        pytest.skip("CLEAVE_PSB_DIR does not name a folder of the benchmark with off/N.off in it")
+        pytest.skip("CLEAVE_PSB_DIR is not a folder of the benchmark, with off/N.off in it")
     return found[:: max(1, len(found) // SAMPLE)]
 
 

@@ -1,4 +1,4 @@
-"""Every cell of the table of formats in the README is what the readers and writers do."""
+"""Every cell of the table of formats in the README is true."""
 
 import io
 import json
@@ -25,7 +25,7 @@ from segcore.mesh import Mesh
 README = Path(__file__).parents[3] / "README.md"
 SEGMENTS = 3
 COLUMNS = ("read", "written", "look", "groups", "names", "segments are")
-KEYS = {form.title: name for name, form in FORMATS.items()}  # of FORMATS, by what the table calls them
+KEYS = {form.title: name for name, form in FORMATS.items()}  # of FORMATS, by the name in the table
 
 
 def table() -> dict[str, list[str]]:
@@ -40,7 +40,7 @@ def kind_of(name: str) -> str:
 
 
 def dressed() -> tuple[Mesh, object]:
-    """Two strips with everything that a mesh can have beside its shape."""
+    """Two strips with every kind of attribute that an appearance can have."""
     mesh, hierarchy = two_strips()
     count = len(mesh.vertices)
     look = Appearance(
@@ -224,5 +224,5 @@ def test_the_table_has_a_row_for_every_format() -> None:
 
 @pytest.mark.parametrize("column", COLUMNS)
 @pytest.mark.parametrize("name", table())
-def test_a_cell_says_what_happens(name: str, column: str) -> None:
+def test_a_cell_is_true(name: str, column: str) -> None:
     assert table()[name][COLUMNS.index(column)] == PROOFS[column](kind_of(name))

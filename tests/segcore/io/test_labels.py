@@ -1,4 +1,4 @@
-"""Labels and the tree of cuts as text and as JSON."""
+"""Labels and the hierarchy as text and as JSON."""
 
 import io
 import json
@@ -8,6 +8,7 @@ import pytest
 from hypothesis import given
 
 from helpers.files.hierarchies import segmentations, two_strips
+from helpers.files.written import json_of, labels_of_runs, written
 from segcore.errors import InvalidParameters
 from segcore.hierarchy import Hierarchy
 from segcore.io.labels import hierarchy_document, labels_document, write_seg
@@ -38,7 +39,7 @@ def test_no_number_of_segments_means_the_automatic_one() -> None:
 
 @given(segmentations())
 def test_labels_at_every_level_follow_from_the_hierarchy_document(segmented: tuple[Mesh, Hierarchy, int]) -> None:
-    """A client can cut the tree itself: the nodes that exist at a level and have no child there are its segments."""
+    """A client can compute them: the segments of a level are the nodes of the level without children in it."""
     _, hierarchy, segments = segmented
     document = json.loads(json.dumps(hierarchy_document(hierarchy), allow_nan=False))
     nodes = document["nodes"]
@@ -97,3 +98,18 @@ def test_the_hierarchy_document_of_a_small_tree() -> None:
             {"id": 4, "parent": 2, "children": [], "level": 3, "label": 2, "area": 0.5, "faces": 1, "cut_value": None},
         ],
     }
+
+
+@given(segmentations())
+def test_seg_npy_and_json_hold_the_labels(segmented: tuple[Mesh, Hierarchy, int]) -> None:
+    _, hierarchy, segments = segmented
+    labels = hierarchy.labels(segments).tolist()
+    assert [int(line) for line in written("seg", *segmented).split()] == labels
+    array = np.load(io.BytesIO(written("npy", *segmented)), allow_pickle=False)
+    assert (array.dtype, array.tolist()) == (np.int32, labels)
+    document = json_of(written("json", *segmented))
+    assert labels_of_runs(document) == labels
+    assert document["segments"] == segments
+    assert 0 not in document["lengths"]
+    assert all(a != b for a, b in zip(document["values"], document["values"][1:], strict=False))
+    assert document["hierarchy"] == hierarchy_document(hierarchy)

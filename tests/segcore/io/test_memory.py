@@ -1,4 +1,4 @@
-"""Reading a file takes at most six times its size, whatever is kept of it."""
+"""Reading a file takes at most six times its size in memory, with and without its appearance."""
 
 import tracemalloc
 from pathlib import Path
@@ -18,7 +18,7 @@ KINDS = (*PLAIN, "ply, text", "obj, dressed", "3mf")
 
 
 def ball() -> trimesh.Trimesh:
-    """81,920 faces, so that what every reading takes is small beside the file."""
+    """81,920 faces, so that the constant costs of reading are small in comparison."""
     return trimesh.creation.icosphere(6)
 
 

@@ -9,7 +9,8 @@ import pytest
 import trimesh
 from hypothesis import given
 
-from helpers.files.hierarchies import looks, mesh_of
+from helpers.files.appearances import looks
+from helpers.files.hierarchies import mesh_of
 from helpers.files.polygon_soups import Soup, read, triangle_soups
 from helpers.files.written import mesh_bytes
 from segcore import InvalidParameters, UnsupportedFormat, shapes

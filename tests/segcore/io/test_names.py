@@ -1,4 +1,4 @@
-"""Names that people gave to segments, in every format that can hold them."""
+"""Names of segments in every format that can have them."""
 
 import io
 import re
@@ -59,7 +59,7 @@ def test_every_writer_takes_any_names_and_moves_no_label(given_names: dict[int, 
         assert list(files) == [f"{stem}.{part_format}" for stem in file_stems(given_names, 3)]
 
 
-def test_names_stand_where_other_programs_look_for_them() -> None:
+def test_other_programs_find_the_names() -> None:
     mesh, hierarchy = two_strips()
     called = {0: "left & <right>", 2: "rad größe"}
     scene = trimesh.load(io.BytesIO(written("3mf", mesh, hierarchy, 3, names=called)), file_type="3mf")

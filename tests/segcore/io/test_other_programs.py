@@ -76,7 +76,7 @@ def test_mixed_polygons_of_meshio(binary: bool, tmp_path: Path) -> None:
 
 
 def test_a_file_object_of_any_kind_is_enough(knot: trimesh.Trimesh) -> None:
-    """Uploads come as raw streams, which may give less than they were asked for."""
+    """Uploads are raw streams, whose ``read`` may return fewer bytes than requested."""
 
     class Trickle(io.RawIOBase):
         def __init__(self, data: bytes) -> None:

@@ -4,7 +4,7 @@ import numpy as np
 
 from segcore.io.palette import linear_rgb, segment_colors
 
-# How a deuteranope sees sRGB values: Vienot, Brettel and Mollon 1999, another model than the one that made the palette.
+# Simulated colour vision deficiencies: Vienot, Brettel and Mollon 1999, another model than that of the palette.
 _TO_LMS = np.array([[17.8824, 43.5161, 4.11935], [3.45565, 27.1554, 3.86714], [0.0299566, 0.184309, 1.46709]])
 _DEUTERANOPE = np.array([[1, 0, 0], [0.494207, 0, 1.24827], [0, 0, 1]])
 _PROTANOPE = np.array([[0, 2.02344, -2.52581], [0, 1, 0], [0, 0, 1]])

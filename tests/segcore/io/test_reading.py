@@ -1,4 +1,4 @@
-"""What holds for every format: the content decides, limits hold, and nothing but a mesh or a typed error comes back."""
+"""read_mesh for every format: the content decides, limits hold, and the result is a mesh or a typed error."""
 
 import gzip
 import io
@@ -27,7 +27,7 @@ ALL = [(name, data) for name, samples in SAMPLES.items() for data in samples]
 
 
 @pytest.mark.parametrize(("name", "data"), ALL)
-def test_the_content_alone_tells_the_format(name: str, data: bytes) -> None:
+def test_the_format_is_detected_by_the_content_alone(name: str, data: bytes) -> None:
     assert len(read(data).faces) == 2
     assert len(read(data, name).faces) == 2
 
@@ -49,7 +49,7 @@ def test_a_declared_format_that_contradicts_the_content_is_refused_with_both_nam
         assert FORMATS[declared].title in str(refusal.value)
 
 
-def test_an_argument_wins_over_a_name_and_an_unknown_name_says_nothing(tmp_path: Path) -> None:
+def test_an_argument_has_priority_over_an_extension_and_an_unknown_extension_is_ignored(tmp_path: Path) -> None:
     for name, form in (("mesh.stl", "off"), ("mesh.dat", None), ("mesh", None)):
         path = tmp_path / name
         path.write_bytes(OFF)
@@ -90,7 +90,7 @@ def test_an_unknown_declaration_is_refused_with_the_formats_that_are_read() -> N
         (bytes(1000), "no known mesh format"),
     ],
 )
-def test_other_content_is_refused_with_its_name_where_it_has_one(data: bytes, message: str) -> None:
+def test_other_content_is_refused_with_its_name_if_it_is_known(data: bytes, message: str) -> None:
     with pytest.raises(UnsupportedFormat, match=message):
         read(data)
 
@@ -169,7 +169,7 @@ def test_any_bytes_give_a_mesh_or_a_typed_error(beginning: bytes, rest: bytes, f
 
 
 def hostile_files() -> list[bytes]:
-    """Small files that announce, or refer to, far more than they are or may have."""
+    """Small files that announce or refer to far more data than they have."""
     vertices = "property float x\nproperty float y\nproperty float z\n"
     faces = "property list int int vertex_indices\nend_header\n"
     files = [
@@ -198,7 +198,7 @@ def hostile_files() -> list[bytes]:
 
 
 def test_a_small_file_never_makes_the_process_take_much_memory(tmp_path: Path) -> None:
-    """Each is read with room for 200 MB of addresses on top of what the process has already."""
+    """Each file is read with an address space of 200 MB beyond that of the imported program."""
     paths = [tmp_path / f"{i}.bin" for i in range(len(hostile_files()))]
     for path, data in zip(paths, hostile_files(), strict=True):
         assert len(data) < 700
@@ -226,7 +226,7 @@ for path in sys.argv[1:]:
 
 
 def outward_files() -> dict[str, bytes]:
-    """Files that name other files and addresses, in each way that a careless reader follows."""
+    """Files with references to other files and addresses, in each way that a careless reader would follow."""
     files = {"a.obj": b"mtllib /etc/passwd\nmtllib ../secret.mtl\nmap_Kd http://localhost/a.png\ncall x.obj\n" + OBJ}
     for i, uri in enumerate(("/etc/passwd", "../secret.bin", "file:///etc/passwd", "http://localhost:9/a.bin")):
         text = gltf_square().gltf().decode()
@@ -239,7 +239,7 @@ def outward_files() -> dict[str, bytes]:
     files["a.3mf"] = threemf_that_looks_outside()
     entity = '<!DOCTYPE model [<!ENTITY a SYSTEM "file:///etc/passwd">]><model'
     files["b.3mf"] = package({"3D/3dmodel.model": Model3MF().xml().replace("<model", entity, 1)})
-    for name, (data, *_) in DRESSED.items():  # with names and attributes, which only some readers look at
+    for name, (data, *_) in DRESSED.items():  # with names and attributes, which not all readers use
         files[f"dressed.{name}"] = data
     files["meshopt.glb"] = meshopt_asset().glb()
     if find_spec("DracoPy"):
@@ -299,8 +299,8 @@ sys.stdout.write(repr(events))
     assert (run.stdout, run.stderr) == ("[]", "")
 
 
-def test_errors_are_one_short_sentence_whatever_the_file_holds() -> None:
-    """They go to clients as they are."""
+def test_errors_are_one_short_sentence_for_any_content() -> None:
+    """The messages are sent to clients unchanged."""
     long = b"x" * 10**6
     hostile = [
         OFF.replace(b"1 1 0", b"1 " + long + b" 0"),

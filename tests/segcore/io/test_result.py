@@ -1,4 +1,4 @@
-"""The .cleave file: exact, the same bytes for the same result, never half-read."""
+"""The .cleave file: exact, the same bytes for the same result, never half read."""
 
 import io
 import json
@@ -10,7 +10,9 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
+from helpers.files.appearances import at_corners, looks
 from helpers.files.hierarchies import segmentations, two_strips
+from helpers.files.written import written
 from segcore.errors import CleaveError, InvalidMesh, InvalidParameters
 from segcore.hierarchy import Hierarchy
 from segcore.io.result import Segmentation, read_result, write_result
@@ -57,7 +59,7 @@ def test_the_polygons_of_the_file_are_kept(tmp_path: Path) -> None:
 
 
 def test_the_bytes_are_those_of_the_documented_form() -> None:
-    """Other programs read it with nothing but a ZIP reader and NumPy."""
+    """A ZIP reader and NumPy are enough to read it."""
     mesh, hierarchy = two_strips()
     with zipfile.ZipFile(io.BytesIO(result(mesh, hierarchy))) as archive:
         names = ["header.json", *(f"{name}.npy" for name in ("vertices", "faces", *ARRAYS))]
@@ -103,7 +105,7 @@ def test_a_missing_file_is_an_error_of_the_system(tmp_path: Path) -> None:
 
 
 def rebuilt(members: dict[str, bytes | None], compression: int = zipfile.ZIP_STORED) -> io.BytesIO:
-    """The result of the two strips with some members replaced, or left out where None."""
+    """The result of the two strips with some members replaced, or left out if None."""
     target = io.BytesIO()
     with zipfile.ZipFile(io.BytesIO(result(*two_strips()))) as old, zipfile.ZipFile(target, "w", compression) as new:
         for name in old.namelist():
@@ -161,3 +163,13 @@ def test_a_hierarchy_of_another_mesh_is_not_written() -> None:
     mesh, hierarchy = two_strips()
     with pytest.raises(InvalidParameters, match="4 faces and the mesh 1"):
         result(Mesh(mesh.vertices, mesh.faces[:1]), hierarchy)
+
+
+@given(looks())
+def test_a_result_file_keeps_everything(looking: tuple[Mesh, Hierarchy]) -> None:
+    mesh, hierarchy = looking
+    back = read_result(io.BytesIO(written("cleave", mesh, hierarchy))).mesh
+    assert at_corners(back) == at_corners(mesh)
+    assert back.appearance.extra_vertex.tolist() == mesh.appearance.extra_vertex.tolist()
+    assert back.appearance.face_group.tolist() == mesh.appearance.face_group.tolist()
+    assert back.appearance.group_names == mesh.appearance.group_names

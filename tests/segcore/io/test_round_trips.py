@@ -1,4 +1,4 @@
-"""From every format that is read to every format that is written: other programs find each label on its face."""
+"""From every input format to every output format: other programs read each label on its face."""
 
 import importlib.util
 import io
@@ -35,16 +35,16 @@ OUTPUTS = {
     "obj.zip": ("zip", {"part_format": "obj"}),
 }
 BLENDER = Path(__file__).parents[2] / "helpers" / "files" / "blender.py"
-Parts = dict[int, np.ndarray]  # (F, 3, 3) the corners of the faces of every label
+Parts = dict[int, np.ndarray]  # (F, 3, 3) the corners of the faces of each label
 
 
 @dataclass(frozen=True)
 class Written:
     """A file of another program, read, labelled and written again."""
 
-    source: str  # the format it came in
+    source: str  # the input format
     kind: str  # of OUTPUTS
-    paths: dict[Path, int]  # the files, and the label of each where it holds one
+    paths: dict[Path, int]  # the files, and the label of each file of a part
     expected: Parts
 
 
@@ -67,7 +67,7 @@ def file_of(kind: str, vertices: np.ndarray, faces: np.ndarray) -> bytes:
 
 
 def hierarchy_of(mesh: Mesh) -> Hierarchy:
-    """Labels 0..4 all over the mesh: each cut takes one of them off what is left."""
+    """Random labels 0..4: each cut splits one label from the rest."""
     label = np.random.default_rng(1).integers(0, SEGMENTS, len(mesh.faces))
     leaves = np.minimum(2 * np.arange(SEGMENTS) + 1, 2 * SEGMENTS - 2)
     splits = np.concatenate([[0], 2 * np.arange(SEGMENTS - 2) + 2])
@@ -109,7 +109,7 @@ def round_trips(source: str, folder: Path) -> Iterator[Written]:
 
 
 def assert_same(found: Parts, trip: Written, reader: str) -> None:
-    """Every face where it was, in the order of the input within its label, begun at any of its corners."""
+    """Every face has its position and is in input order within its label."""
     assert sorted(found) == sorted(trip.expected), (reader, trip.source, trip.kind)
     for label, corners in trip.expected.items():
         faces = np.asarray(found[label], dtype=np.float64).reshape(-1, 3, 3)
@@ -122,7 +122,7 @@ def label_of(name: str) -> int:
 
 
 def by_color(corners: np.ndarray, colors: np.ndarray) -> Parts:
-    """Faces by the label that has their colour, (F, 3) bytes; three.js keeps colours as bytes of linear light."""
+    """Faces by the label of their colour, (F, 3) bytes; three.js stores colours as bytes of linear light."""
     distance = np.abs(color_bytes(SEGMENTS)[None].astype(int) - colors[:, None]).max(axis=2)
     assert (distance.min(axis=1) <= 3).all()
     return {label: corners[distance.argmin(axis=1) == label] for label in range(SEGMENTS)}
@@ -146,7 +146,7 @@ def with_trimesh(trip: Written) -> Parts:
 
 
 def with_meshio(trip: Written) -> Parts | None:
-    """Where meshio has a reader that takes the file; it knows neither groups of OBJ nor properties of faces of PLY."""
+    """None if meshio cannot read the labels: it ignores groups of OBJ and properties of faces of PLY."""
     if not trip.kind.endswith(".zip"):
         return None
     found = {label: meshio.read(path) for path, label in trip.paths.items()}
@@ -226,10 +226,10 @@ def with_three(trip: Written, parts: dict[str, list[dict[str, Any]]]) -> Parts:
 
 @pytest.mark.timeout(300)
 def test_blender_finds_every_label_on_its_face(outputs: list[Written], tmp_path: Path) -> None:
-    """Where the wheel ``bpy`` is installed, which is no part of the test's own packages."""
+    """Skipped unless the wheel ``bpy`` is installed, which is not a dependency of the tests."""
     if importlib.util.find_spec("bpy") is None:
         pytest.skip("bpy is not installed")
-    trips = [trip for trip in outputs if trip.kind not in ("3mf", "ply")]  # it reads no 3MF, and of PLY no labels
+    trips = [trip for trip in outputs if trip.kind not in ("3mf", "ply")]  # it does not read 3MF, nor the labels of PLY
     request = json.dumps([str(path) for trip in trips for path in trip.paths])
     command = [sys.executable, str(BLENDER), str(tmp_path / "answer.json")]
     subprocess.run(command, input=request, text=True, capture_output=True, timeout=240, check=True)

@@ -1,1 +1,1 @@
-"""The compressions of glTF: meshopt and Draco."""
+"""Decoders for compressed glTF: meshopt and Draco."""

@@ -1,4 +1,4 @@
-"""Primitives of glTF that are compressed with Draco (KHR_draco_mesh_compression)."""
+"""Decoder for primitives of glTF that are compressed with Draco (KHR_draco_mesh_compression)."""
 
 from dataclasses import dataclass
 from typing import Any
@@ -14,21 +14,21 @@ DRACO = "KHR_draco_mesh_compression"
 
 @dataclass(frozen=True, slots=True, eq=False)
 class DracoPrimitive:
-    """What the compressed data of a primitive holds."""
+    """The decoded data of a primitive."""
 
     attributes: dict[str, NDArray[Any]]  # (V, *) by semantic, such as POSITION
     corners: NDArray[np.uint32]  # (3 F, 1)
 
 
 def decode_draco(document: Document, extension: Item, where: str) -> DracoPrimitive:
-    """Decode the data that the extension of a primitive names; its triangles are in the order of the decoder.
+    """Decode the data of the extension of a primitive; its triangles are in the order of the decoder.
 
     Raises
     ------
     UnsupportedFormat
-        Where the optional package DracoPy is not installed.
+        If the optional package DracoPy is not installed.
     InvalidMesh
-        Where the data is damaged.
+        If the data is damaged.
     """
     try:
         import DracoPy

@@ -1,4 +1,4 @@
-"""Buffer views of glTF that are compressed with meshoptimizer's codecs."""
+"""Decoder for buffer views of glTF that are compressed with meshoptimizer's codecs."""
 
 from typing import Any
 
@@ -12,19 +12,19 @@ from segcore.io.gltf.document import Document, Item, integer
 from segcore.io.limits import ReadLimits
 
 MESHOPT = ("EXT_meshopt_compression", "KHR_meshopt_compression")
-_MOST_PER_BYTE = 1024  # decoded bytes that one byte of data can stand for
-_LARGEST_STRIDE = 256
+_MOST_PER_BYTE = 1024  # decoded bytes of a byte of data: a control byte codes 4 bytes of up to 256 equal rows
+_LARGEST_STRIDE = 256  # bytes, of the extension
 
 
 def decode_view(document: Document, extension: Item, where: str, limits: ReadLimits) -> memoryview:
-    """The bytes that a compressed buffer view stands for.
+    """Return the decoded bytes of a compressed buffer view.
 
     Raises
     ------
     InvalidMesh
-        Where the data is damaged.
+        If the data is damaged.
     UnsupportedFormat
-        Where it went through a filter that positions, indices and normals have no use for.
+        If it has a filter that is not for positions, indices or normals.
     LimitExceeded
     """
     begin, length = integer(extension, "byteOffset", where, 0), integer(extension, "byteLength", where)
@@ -36,16 +36,17 @@ def decode_view(document: Document, extension: Item, where: str, limits: ReadLim
     source = np.frombuffer(buffer, np.uint8, length, begin)
     match extension.get("mode"), extension.get("filter", "NONE"):
         case "ATTRIBUTES", str(name):
-            return _filtered(_attributes(source, count, stride, where), name, stride, where).reshape(-1).data.cast("B")
+            return _filtered(_attributes(source, count, stride, where), name, where).reshape(-1).data.cast("B")
         case ("TRIANGLES" | "INDICES") as mode, "NONE":
             return _indices(source, count, stride, mode, where).data.cast("B")
         case _:
-            raise InvalidMesh(f"{where} of the glTF file has no mode or filter of its extension: it is damaged.")
+            raise InvalidMesh(f"{where} of the glTF file has an unknown mode or filter: it is damaged.")
 
 
 def _attributes(source: NDArray[np.uint8], count: int, stride: int, where: str) -> NDArray[np.uint8]:
-    target = np.empty(count * stride, np.uint8)
-    if stride % 4 or not 0 < stride <= _LARGEST_STRIDE or not decode_attributes(source, target, count, stride):
+    """(count, stride) bytes."""
+    target = np.empty((count, stride), np.uint8)
+    if stride % 4 or not 0 < stride <= _LARGEST_STRIDE or not decode_attributes(source, target):
         raise _damaged(where)
     return target
 
@@ -60,8 +61,9 @@ def _indices(source: NDArray[np.uint8], count: int, stride: int, mode: str, wher
     return target.astype(f"<u{stride}")
 
 
-def _filtered(data: NDArray[np.uint8], name: str, stride: int, where: str) -> NDArray[Any]:
-    """Bytes after the filter called ``name`` (appendix B of the extension)."""
+def _filtered(data: NDArray[np.uint8], name: str, where: str) -> NDArray[Any]:
+    """Decode the filter called ``name`` (appendix B of the extension)."""
+    stride = data.shape[1]
     if name == "NONE":
         return data
     if name == "EXPONENTIAL":
@@ -69,7 +71,9 @@ def _filtered(data: NDArray[np.uint8], name: str, stride: int, where: str) -> ND
         return np.ldexp((words << 8 >> 8).astype(np.float32), words >> 24).astype("<f4")
     if name == "OCTAHEDRAL" and stride in (4, 8):
         return _octahedral(data.view(f"<i{stride // 4}").reshape(-1, 4))
-    raise UnsupportedFormat(f"{where} of the glTF file has the filter {name[:40]!r}: save it without compression.")
+    raise UnsupportedFormat(
+        f"{where} of the glTF file has the filter {name[:40]!r}, which cannot be decoded: save it without compression."
+    )
 
 
 def _octahedral(rows: NDArray[Any]) -> NDArray[Any]:

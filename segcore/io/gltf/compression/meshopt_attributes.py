@@ -1,46 +1,54 @@
-"""Compiled decoder of meshoptimizer's codec for the attributes of vertices. Arrays in, arrays out.
+"""Compiled decoder of meshoptimizer's codec for the attributes of vertices.
 
 References
 ----------
 The glTF extensions EXT_meshopt_compression and KHR_meshopt_compression, appendix A (bitstreams).
 """
 
+from typing import TypeAlias
+
 import numpy as np
 from numba import njit
 from numpy.typing import NDArray
 
-Bytes = NDArray[np.uint8]
+Bytes: TypeAlias = NDArray[np.uint8]
 
+# All numbers are those of the bitstream.
+_HEADER = 10  # the upper half of the first byte; the lower half is the version
 _GROUP = 16  # elements that are packed together
+_BLOCK_BYTES, _BLOCK_ELEMENTS = 8192, 256  # the largest block
 _SHORTEST_TAILS = (32, 24)  # bytes, of version 0 and 1
 
 
 @njit(cache=True)
-def decode_attributes(source: Bytes, target: Bytes, count: int, stride: int) -> bool:
-    """Fill ``target`` (count * stride,) with the rows that ``source`` holds; False where the data is damaged."""
+def decode_attributes(source: Bytes, target: Bytes) -> bool:
+    """Fill ``target`` (count, stride) with the rows of ``source``; return False if the data is damaged."""
+    count, stride = target.shape
     version = source[0] & 15 if len(source) else 2
-    if version > 1 or source[0] >> 4 != 10:
+    if version > 1 or source[0] >> 4 != _HEADER:
         return False
     tail = stride + version * (stride // 4)
     end = len(source) - max(tail, _SHORTEST_TAILS[version])
     if end < 1:
         return False
     last = source[len(source) - tail : len(source) - tail + stride].copy()
-    channels = source[len(source) - tail + stride :]
-    largest_block = min((8192 // stride) // _GROUP * _GROUP, 256)
+    channels = np.zeros(stride // 4, np.uint8)
+    if version == 1:
+        channels[:] = source[len(source) - stride // 4 :]
+    largest_block = min((_BLOCK_BYTES // stride) // _GROUP * _GROUP, _BLOCK_ELEMENTS)
     deltas = np.empty((stride, largest_block), np.uint8)
     at = 1
     for first in range(0, count, largest_block):
-        size = min(largest_block, count - first)
-        at = _unpack_block(source, at, end, version, deltas, size)
-        if at < 0 or not _add_deltas(deltas, last, channels, version, target, first, size):
+        rows = target[first : first + largest_block]
+        at = _unpack_block(source, at, end, version, deltas, len(rows))
+        if at < 0 or not _add_deltas(deltas, last, channels, rows):
             return False
     return at == end
 
 
 @njit(cache=True)
 def _unpack_block(source: Bytes, at: int, end: int, version: int, deltas: Bytes, size: int) -> int:
-    """Where the data of the block ends, or -1."""
+    """Fill ``deltas`` (stride, size or more); return the end of the data of the block, or -1."""
     stride = len(deltas)
     groups = (size + _GROUP - 1) // _GROUP
     controls = at
@@ -70,7 +78,7 @@ def _unpack_block(source: Bytes, at: int, end: int, version: int, deltas: Bytes,
 
 @njit(cache=True)
 def _bits(version: int, control: int, mode: int) -> int:
-    """The width of the numbers of a group: 0, 1, 2, 4 or 8."""
+    """The number of bits of each number of a group: 0, 1, 2, 4 or 8."""
     if version == 1 and control == 1:
         return 1 << mode
     if version == 1:
@@ -80,7 +88,10 @@ def _bits(version: int, control: int, mode: int) -> int:
 
 @njit(cache=True)
 def _unpack_group(source: Bytes, at: int, bits: int, deltas: Bytes, first: int) -> int:
-    """Where the data of the group ends; numbers with all bits set stand for a byte that follows."""
+    """Fill 16 deltas from ``first`` on; return the end of the data of the group.
+
+    A number with all bits set stands for one of the bytes that follow the numbers.
+    """
     if bits == 8:
         for i in range(_GROUP):
             deltas[first + i] = source[at + i]
@@ -101,17 +112,21 @@ def _unpack_group(source: Bytes, at: int, bits: int, deltas: Bytes, first: int) 
 
 
 @njit(cache=True)
-def _add_deltas(
-    deltas: Bytes, last: Bytes, channels: Bytes, version: int, target: Bytes, first: int, size: int
-) -> bool:
-    stride = len(deltas)
+def _add_deltas(deltas: Bytes, last: Bytes, channels: Bytes, rows: Bytes) -> bool:
+    """Fill ``rows`` (size, stride) with the sums of the deltas; return False for an unknown channel.
+
+    Parameters
+    ----------
+    deltas : (stride, size or more).
+    last : (stride,) the row before the first one, replaced by the last one.
+    channels : (stride // 4,) the kind of deltas of each four bytes: 0 bytes, 1 words of two bytes, 2 exclusive or.
+    """
+    size, stride = rows.shape
     for k in range(0, stride, 4):
-        channel = channels[k // 4] if version else 0
-        kind, turn = channel & 3, channel >> 4
+        kind, turn = channels[k // 4] & 3, channels[k // 4] >> 4
         if kind == 3:
             return False
         for i in range(size):
-            out = (first + i) * stride + k
             if kind == 0:
                 for byte in range(k, k + 4):
                     delta = deltas[byte, i]
@@ -128,6 +143,6 @@ def _add_deltas(
                 word = (word >> np.uint64(turn) | word << np.uint64(32 - turn)) & np.uint64(0xFFFFFFFF)
                 for byte in range(4):
                     last[k + byte] ^= np.uint8((word >> np.uint64(8 * byte)) & np.uint64(255))
-            for byte in range(4):
-                target[out + byte] = last[k + byte]
+            for byte in range(k, k + 4):
+                rows[i, byte] = last[byte]
     return True

@@ -1,4 +1,4 @@
-"""glTF with Draco: what the decoder of another program makes of it, or a clear refusal."""
+"""glTF with Draco: the mesh is that of another decoder, or the refusal names the reason."""
 
 import sys
 
@@ -20,7 +20,7 @@ def test_the_triangles_are_those_of_the_decoder_in_its_order() -> None:
     assert mesh.faces.tolist() == decoded.faces.tolist()
 
 
-def test_the_shape_is_the_one_that_was_draco_asset() -> None:
+def test_the_shape_is_the_one_that_was_compressed() -> None:
     asset, _ = draco_asset()
     box = shapes.icosphere(2)
     ours, theirs = (np.sort(corners.mean(axis=1), axis=0) for corners in (read(asset.glb()).corners, box.corners))
@@ -38,7 +38,7 @@ def test_counts_that_contradict_the_data_are_refused() -> None:
 def test_without_the_decoder_the_extension_is_named(monkeypatch: pytest.MonkeyPatch) -> None:
     asset, _ = draco_asset()
     monkeypatch.setitem(sys.modules, "DracoPy", None)
-    with pytest.raises(UnsupportedFormat, match=rf"{DRACO}.*cleave\[draco\]"):
+    with pytest.raises(UnsupportedFormat, match=rf"{DRACO}.*cleave-mesh\[draco\]"):
         read(asset.glb())
 
 

@@ -1,4 +1,4 @@
-"""glTF with meshoptimizer's codecs: exactly what its reference encoder was given."""
+"""glTF with meshoptimizer's codecs: the mesh is exactly what the reference encoder was given."""
 
 import numpy as np
 import pytest
@@ -19,7 +19,7 @@ def test_vertices_and_faces_are_those_that_were_compressed(positions: str, corne
     assert mesh.vertices.tolist() == POSITIONS.tolist()
     if corners == "indices":
         assert mesh.faces.tolist() == FACES.tolist()
-    else:  # the codec for triangles keeps their order and their sense, but may turn one round to begin elsewhere
+    else:  # the codec keeps the order and orientation of the triangles, but not their first corners
         turned = [np.roll(FACES, k, axis=1) for k in range(3)]
         assert np.any([(mesh.faces == faces).all(axis=1) for faces in turned], axis=0).all()
 
@@ -64,7 +64,7 @@ def test_quantized_positions_are_decoded(shorts: str) -> None:
     assert read(asset.glb()).vertices.tolist() == np.reshape(SAMPLES["shorts"], (-1, 4))[:, :3].tolist()
 
 
-def test_a_filter_without_use_for_positions_is_refused_by_name() -> None:
+def test_a_filter_that_is_not_for_positions_is_refused_by_name() -> None:
     with pytest.raises(UnsupportedFormat, match="'QUATERNION'"):
         read(meshopt_asset(filter="QUATERNION").glb())
 

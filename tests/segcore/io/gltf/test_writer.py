@@ -1,4 +1,4 @@
-"""The GLB writer: no face lost, the tree of cuts as it is, valid and the same for every other program."""
+"""The GLB writer: no face is lost, the nodes are the hierarchy, and other programs read the same."""
 
 import io
 import json
@@ -12,7 +12,8 @@ import pytest
 import trimesh
 from hypothesis import given, settings
 
-from helpers.files.hierarchies import looks, segmentations, two_strips
+from helpers.files.appearances import looks
+from helpers.files.hierarchies import segmentations, two_strips
 from helpers.files.polygon_soups import read
 from helpers.node.programs import install, run
 from segcore.errors import InvalidParameters
@@ -35,7 +36,7 @@ def document(data: bytes) -> dict[str, Any]:
 
 
 def input_faces(data: bytes) -> list[int]:
-    """What the extras of the scene say about where the faces came from."""
+    """The input faces in the order of the file, from the extras of the scene."""
     parsed = document(data)
     where = parsed["scenes"][0]["extras"]["input_faces"]
     view = parsed["bufferViews"][where["bufferView"]]

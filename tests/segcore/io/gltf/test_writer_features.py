@@ -1,4 +1,4 @@
-"""The GLB writer with feature ids: every face leads to the row of its node, and the table is the hierarchy."""
+"""Feature ids of GLB files: those of a face are the row of its node, and the table is the hierarchy."""
 
 import itertools
 import json
@@ -10,7 +10,8 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from helpers.files.hierarchies import looks, segmentations, two_strips
+from helpers.files.appearances import looks
+from helpers.files.hierarchies import segmentations, two_strips
 from helpers.files.written import written
 from segcore.hierarchy import Hierarchy
 from segcore.io.labels import node_documents
@@ -21,7 +22,7 @@ COMPONENTS = {"INT32": "<i4", "UINT32": "<u4", "FLOAT64": "<f8"}
 
 
 class Glb:
-    """What is in a GLB file, by the rules of the specifications alone."""
+    """A GLB file, parsed according to the specifications."""
 
     def __init__(self, data: bytes) -> None:
         (length,) = struct.unpack_from("<I", data, 12)
@@ -39,7 +40,7 @@ class Glb:
         return self.view(entry["bufferView"], "<u4")[entry["byteOffset"] // 4 :][: entry["count"]]
 
     def feature_ids(self, primitive: dict[str, Any], feature: dict[str, Any]) -> np.ndarray:
-        """Of every corner of a primitive."""
+        """(C,) feature ids of the corners of a primitive."""
         entry = self.document["accessors"][primitive["attributes"][f"_FEATURE_ID_{feature['attribute']}"]]
         assert (entry["componentType"], entry["type"]) == (5126, "SCALAR")
         assert entry["count"] == self.document["accessors"][primitive["attributes"]["POSITION"]]["count"]
@@ -115,7 +116,7 @@ def test_feature_ids_follow_the_rows_of_the_appearance(looking: tuple[Mesh, Hier
 
 @pytest.mark.parametrize("segments", [1, 3])
 def test_parts_that_do_not_meet_share_an_attribute(segments: int) -> None:
-    """Two strips lie apart, and the halves of one of them share an edge: two layers are enough for three parts."""
+    """The strips share no vertex, but the halves of one of them do: three parts need two layers."""
     glb = Glb(written("glb", *two_strips(), segments, features=True))
     layers = {mesh["primitives"][0]["attributes"]["_FEATURE_ID_0"] for mesh in glb.document["meshes"]}
     assert len(layers) == min(segments, 2)

@@ -1,4 +1,4 @@
-"""OBJ files: every face in its place, in whatever way they are written; nothing half-read."""
+"""The OBJ reader: every face in its place in any layout of the file, no file half read."""
 
 import pytest
 from hypothesis import given
@@ -25,11 +25,11 @@ corner_tails = st.sampled_from(["", "/1", "//2", "/1/2", "/-1/-1", "/"])
 
 @st.composite
 def obj_files(draw: st.DrawFn, soup: Soup) -> bytes:
-    """The soup with statements in any order that its indices allow, and other statements between them."""
+    """The soup with its statements in any valid order, and other statements between them."""
     lines = [f"v{draw(gaps)}{' '.join(map(repr, vertex))}{draw(vertex_tails)}" for vertex in soup.vertices]
     for polygon in soup.polygons:
         line = "f"
-        position = draw(st.integers(0, len(lines)))  # of the first line that may follow
+        position = draw(st.integers(0, len(lines)))  # the first line at which the face may be inserted
         position = max(position, 1 + max((i for i, text in enumerate(lines) if text[0] == "f"), default=-1))
         before = sum(text[0] == "v" for text in lines[:position])
         for corner in polygon:
@@ -52,7 +52,7 @@ def test_a_damaged_file_is_read_as_it_stands_or_refused(data: bytes) -> None:
 
 
 def test_a_file_cut_within_its_faces_is_never_read_with_a_broken_face() -> None:
-    """Between two lines a cut cannot be seen: an OBJ file does not say how long it is."""
+    """An OBJ file does not specify its length, so that a cut between two lines cannot be detected."""
     for length in range(len(SQUARE)):
         if not SQUARE[:length].endswith((b"f 1 2 3", b"f 1 2 3\n", b"f 1 3 4")):
             with pytest.raises(InvalidMesh):

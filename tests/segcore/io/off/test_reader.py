@@ -1,9 +1,10 @@
-"""OFF files: every face in its place, in whatever way they are written; nothing half-read."""
+"""The OFF reader: every face in its place in any layout of the file, no file half read."""
 
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
+from helpers.files.appearances import read_look
 from helpers.files.damage import assert_agrees, assert_never_half_read, damaged
 from helpers.files.plain_readers import slow_off
 from helpers.files.polygon_soups import Soup, assert_is_soup, read, soups
@@ -24,7 +25,7 @@ colors = st.sampled_from(["", " 7", " 255 0 0", " 0.5 0.25 1", " 1 0 0 0.5"])
 @st.composite
 def off_files(draw: st.DrawFn, soup: Soup) -> bytes:
     """The soup with any prefix, gaps, line ends, comments and face colours."""
-    texture, color, normal = (draw(st.sampled_from(["", letters])) for letters in ("ST", "C", "N"))
+    texture, color, normal = (draw(st.sampled_from(["", prefix])) for prefix in ("ST", "C", "N"))
     extra = (3 if normal else 0) + (4 if color else 0) + (2 if texture else 0)
     counts = f"{len(soup.vertices)} {len(soup.polygons)} 0"
     lines = [f"{texture}{color}{normal}OFF{draw(st.sampled_from([' ', chr(10)]))}{counts}"]
@@ -35,7 +36,7 @@ def off_files(draw: st.DrawFn, soup: Soup) -> bytes:
 
 @st.composite
 def streams(draw: st.DrawFn, soup: Soup) -> bytes:
-    """The soup without colours, its records broken into lines anywhere within them."""
+    """The soup without colours, with line breaks anywhere within its records."""
     words = ["OFF\n", f"{len(soup.vertices)} {len(soup.polygons)} 0\n"]
     for vertex in soup.vertices:
         words += [repr(value) + draw(st.sampled_from([" ", "\n"])) for value in vertex]
@@ -149,3 +150,17 @@ def test_counts_beyond_the_limits_are_refused_by_name() -> None:
 def test_other_kinds_of_off_are_refused_as_such(keyword: bytes) -> None:
     with pytest.raises(UnsupportedFormat, match="plain OFF"):
         read(SQUARE.replace(b"OFF", keyword))
+
+
+def test_off_with_all_prefixes() -> None:
+    rows = ["0 0 0  0 0 2  255 0 0 128  0 1", "1 0 0  0 3 0  0 255 0 255  .5 .25", "0 1 0  1 0 0  1 2 3 4  1 1"]
+    look = read_look(("STCNOFF 3 1 0\n" + "\n".join(rows) + "\n3 0 1 2\n").encode())
+    assert look.normals.tolist() == [[0, 0, 1], [0, 1, 0], [1, 0, 0]]
+    assert look.colors.tolist() == [[255, 0, 0, 128], [0, 255, 0, 255], [1, 2, 3, 4]]
+    assert look.uvs.tolist() == [[0, 1], [0.5, 0.25], [1, 1]]
+
+
+@pytest.mark.parametrize(("colors", "expected"), [("1 0 .2", [255, 0, 51, 255]), ("51 0 255", [51, 0, 255, 255])])
+def test_off_with_colours_of_three_numbers(colors: str, expected: list[int]) -> None:
+    data = f"COFF\n3 1 0\n0 0 0 {colors}\n1 0 0 {colors}\n0 1 0 {colors}\n3 0 1 2\n".encode()
+    assert read_look(data).colors.tolist() == [expected] * 3

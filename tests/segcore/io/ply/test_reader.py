@@ -1,17 +1,18 @@
-"""PLY files, in text and in both byte orders: every face in its place; nothing half-read."""
+"""The PLY reader, for text and both byte orders: every face in its place, no file half read."""
 
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
+from helpers.files.appearances import read_look
 from helpers.files.damage import assert_agrees, assert_never_half_read, damaged
 from helpers.files.plain_readers import slow_ply
 from helpers.files.ply import ENCODINGS, TYPES, Properties, Rows, ply
 from helpers.files.polygon_soups import Soup, assert_is_soup, assert_same_mesh, read, soups
+from helpers.files.samples import INDICES, XYZ
 from helpers.files.samples import PLY as SQUARES
 from helpers.files.samples import PLY_CORNERS as CORNERS
 from helpers.files.samples import SQUARE as SOUP
-from helpers.files.samples import XYZ
 from segcore.errors import InvalidMesh, LimitExceeded, UnsupportedFormat
 from segcore.io import ReadLimits
 
@@ -150,3 +151,12 @@ def test_counts_beyond_the_limits_are_refused_by_name(data: bytes) -> None:
     for limits, name in ((ReadLimits(max_faces=1), "max_faces = 1"), (ReadLimits(max_vertices=3), "max_vertices = 3")):
         with pytest.raises(LimitExceeded, match=name):
             read(data, limits=limits)
+
+
+@pytest.mark.parametrize(("kind", "value", "expected"), [("uint8", 51, 51), ("uint16", 13107, 51), ("float", 0.2, 51)])
+def test_ply_colours_of_any_type(kind: str, value: float, expected: int) -> None:
+    columns = [*XYZ, (kind, "red"), (kind, "green"), (kind, "blue")]
+    top = {"uint8": 255, "uint16": 65535, "float": 1.0}[kind]
+    rows = [[*vertex, value, 0, top] for vertex in SOUP.vertices]
+    data = ply("binary_big_endian", [("vertex", columns, rows), ("face", INDICES, [[[0, 1, 2]]])])
+    assert read_look(data).colors.tolist() == [[expected, 0, 255, 255]] * 4

@@ -1,4 +1,4 @@
-"""STL files, binary and in text: every face in its place; nothing half-read."""
+"""The STL reader, for text and binary: every face in its place, no file half read."""
 
 import pytest
 from hypothesis import given
@@ -84,11 +84,11 @@ def test_bytes_after_the_faces_of_a_binary_are_passed_over(header: bytes) -> Non
     [
         (ASCII.replace(b"vertex 1 0 0", b"vertex 1 x 0"), "Line 5: 'x' is not a number"),
         (ASCII.replace(b"vertex 1 0 0", b"vertex 1 vertex 0"), "Line 5: 'vertex' is not a number"),
-        (ASCII.replace(b"vertex 0 1 .5\n", b"vertex 0 1 vertex "), "'vertex' where a number should stand"),
-        (ASCII.replace(b"vertex 0 1 .5\n", b"vertex 0 1 1vertex "), "'vertex' where a number should stand"),
+        (ASCII.replace(b"vertex 0 1 .5\n", b"vertex 0 1 vertex "), "'vertex' in place of a number"),
+        (ASCII.replace(b"vertex 0 1 .5\n", b"vertex 0 1 1vertex "), "'vertex' in place of a number"),
         (ASCII.replace(b"vertex 1 0 0", b"vertex 1 nan 0"), "Vertex 1"),
-        (ASCII.replace(b"vertex 1 0 0\n", b""), "Line 2: this is no whole STL face"),
-        (ASCII.replace(b"0 1 .5\nendloop", b"0 1 .5"), "Line 9: this is no whole STL face"),
+        (ASCII.replace(b"vertex 1 0 0\n", b""), "Line 2: this is not a whole STL face"),
+        (ASCII.replace(b"0 1 .5\nendloop", b"0 1 .5"), "Line 9: this is not a whole STL face"),
         (ASCII.replace(b"endsolid a facet of it\n", b""), "endsolid"),
         (b"solid\nendsolid\n", "no faces"),
         (binary([]), "no faces"),

@@ -1,4 +1,4 @@
-"""Numbers in text are read as Python reads them, to the last bit."""
+"""Numbers in text are parsed as Python parses them, to the last bit."""
 
 import random
 import re
@@ -56,7 +56,7 @@ def test_whole_numbers_are_exact_as_long_as_they_fit(numbers: list[int]) -> None
 @pytest.mark.parametrize(
     "word", ["", "-", ".", "+.", "1e", "1e+", "e5", "1.2.3", "1_0", "0x10", "1d5", "--1", "1-", "infin"]
 )
-def test_what_is_no_number_is_refused_with_its_line(word: str) -> None:
+def test_a_word_that_is_not_a_number_is_refused_with_its_line(word: str) -> None:
     words = find_words(f"1\n\n2 {word or '?'} 3".encode())
     with pytest.raises(InvalidMesh, match="Line 3"):
         words.floats(0, words.count)

@@ -1,4 +1,4 @@
-"""The 3MF reader: everything that is built, where it is built, and no archive that unpacks to more than it may."""
+"""The 3MF reader: every item of the build in its place, and no archive that unpacks to more than the limits."""
 
 import struct
 import zipfile
@@ -26,7 +26,7 @@ def square(**settings: str) -> Model3MF:
 
 
 @given(packages())
-def test_every_triangle_is_where_the_build_puts_it(data: bytes) -> None:
+def test_every_triangle_has_the_position_of_the_build(data: bytes) -> None:
     np.testing.assert_allclose(read(data).corners, slow_3mf(data), rtol=1e-12)
 
 
@@ -162,7 +162,7 @@ def test_objects_within_objects_are_counted_before_they_are_built() -> None:
         read(model.package())
 
 
-def test_nothing_is_counted_too_however_often_it_is_placed() -> None:
+def test_empty_objects_count_as_placed() -> None:
     model = Model3MF()
     model.add("")
     for level in range(40):
@@ -255,7 +255,7 @@ def test_a_directory_that_points_before_the_archive_is_refused(shift: int) -> No
         read(wrong)
 
 
-def test_cut_anywhere_a_package_is_refused() -> None:
+def test_a_package_that_is_cut_short_is_refused() -> None:
     for length in range(len(THREEMF_SQUARE)):
         assert read_or_none(THREEMF_SQUARE[:length], "3mf") is None
 
