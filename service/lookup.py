@@ -101,6 +101,20 @@ def jobs_of_batch(context: Context, batch: Batch) -> list[tuple[Job | None, JobD
     return [(found[job_id], documents.get(job_id)) for job_id in batch.job_ids]
 
 
+def ended_jobs(context: Context, batch: Batch) -> list[tuple[Job, JobDocument]]:
+    """Return the jobs of a finished batch in its order, without deleted ones.
+
+    Raises
+    ------
+    Problem
+        If a job has not ended.
+    """
+    jobs = [(job, document) for job, document in jobs_of_batch(context, batch) if job and document]
+    if any(document.finished_at is None for _, document in jobs):
+        raise Problem("not_finished", "Some jobs of the batch have not ended: poll it until its status is finished.")
+    return jobs
+
+
 def describe_batch(context: Context, batch: Batch) -> BatchDocument:
     """Return the document of a batch."""
     documents = [document for _, document in jobs_of_batch(context, batch)]

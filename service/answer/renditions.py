@@ -71,19 +71,17 @@ def answer_rendition(request: Request, rendition: Rendition) -> Response:
     is_gzip = compressible and "range" not in request.headers and takes_gzip(request.headers.get("accept-encoding", ""))
     tag = entity_tag(f"{rendition.identity}{';gzip' if is_gzip else ''}".encode())
     headers = {"ETag": tag, "Cache-Control": IMMUTABLE, "Accept-Ranges": "bytes"}
-    varies_by = [rendition.vary, "Accept-Encoding" if compressible else None]
-    if any(varies_by):
-        headers["Vary"] = ", ".join(filter(None, varies_by))
+    if compressible or rendition.vary:
+        headers["Vary"] = ", ".join(filter(None, [rendition.vary, "Accept-Encoding" if compressible else None]))
     if is_current(request, tag):
         return Response(status_code=304, headers=headers)
     if rendition.file_name:
         headers["Content-Disposition"] = f'attachment; filename="{rendition.file_name}"'
     body = rendition.render()
-    if request.headers.get("if-range", tag) == tag:
-        part = _range(request.headers.get("range"), len(body))
-        if part is not None:
-            headers["Content-Range"] = f"bytes {part.start}-{part.stop - 1}/{len(body)}"
-            return Response(body[part.start : part.stop], 206, headers, rendition.media_type)
+    part = _range(request.headers.get("range"), len(body)) if request.headers.get("if-range", tag) == tag else None
+    if part is not None:
+        headers["Content-Range"] = f"bytes {part.start}-{part.stop - 1}/{len(body)}"
+        return Response(body[part.start : part.stop], 206, headers, rendition.media_type)
     if is_gzip:
         headers["Content-Encoding"] = "gzip"
         body = gzip.compress(body, _GZIP_LEVEL, mtime=0)  # no time stamp, so that equal tags mean equal bytes

@@ -15,8 +15,8 @@ from service.answer.waiting import wait_for_end
 from service.context import Context, ContextOf
 from service.documents import BatchDocument
 from service.guard.callers import CallerOf
-from service.lookup import describe_batch, find_batch, jobs_of_batch
-from service.problems import Problem, documented
+from service.lookup import describe_batch, ended_jobs, find_batch
+from service.problems import documented
 from service.submit.batch import submit_batch
 from service.submit.contract import BATCH_BODY, BATCH_RESPONSES, JSON, SUBMISSION_PROBLEMS
 from service.submit.options import BatchOptionsOf
@@ -83,11 +83,9 @@ def get_batch_results(
     """The results of all jobs that succeeded; of a hierarchy with fewer than `segments` segments, the last level."""
     fineness = Fineness(segments, granularity)
     batch = find_batch(context, caller, batch_id)
-    jobs = [(job, document) for job, document in jobs_of_batch(context, batch) if job and document]
-    if any(document.finished_at is None for _, document in jobs):
-        raise Problem("not_finished", "Some jobs of the batch have not ended: poll it until its status is finished.")
+    archive = batch_archive(context, ended_jobs(context, batch), fineness)
     name = {"Content-Disposition": f'attachment; filename="{batch.id}.zip"'}
-    return StreamingResponse(batch_archive(context, jobs, fineness), media_type=ZIP, headers=name)
+    return StreamingResponse(archive, media_type=ZIP, headers=name)
 
 
 @router.delete(

@@ -49,14 +49,14 @@ def get_result_file(
     url = context.store.results.presigned_url(job.id, _URL_VALID_S) if redirect else None
     if url is not None:
         return Response(status_code=307, headers={"Location": url, "Cache-Control": "no-store"})
-    headers["Content-Disposition"] = f'attachment; filename="{job.id}.cleave"'
-    return _streamed(context.store.results.open(job.id), headers)
+    return _streamed(context.store.results.open(job.id), f"{job.id}.cleave", headers)
 
 
-def _streamed(file: BinaryIO, headers: dict[str, str]) -> StreamingResponse:
-    length = {"Content-Length": str(file.seek(0, os.SEEK_END))}
+def _streamed(file: BinaryIO, name: str, headers: dict[str, str]) -> StreamingResponse:
+    headers["Content-Length"] = str(file.seek(0, os.SEEK_END))
+    headers["Content-Disposition"] = f'attachment; filename="{name}"'
     file.seek(0)
-    return StreamingResponse(_chunks(file), media_type=_MEDIA_TYPE, headers=headers | length)
+    return StreamingResponse(_chunks(file), media_type=_MEDIA_TYPE, headers=headers)
 
 
 def _chunks(file: BinaryIO) -> Iterator[bytes]:
