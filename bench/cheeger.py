@@ -18,7 +18,7 @@ from segcore.affinity.mesh_graphs import mesh_graph
 from segcore.clean.surface import build_surface
 from segcore.coarsen.clusters import cluster_nodes
 from segcore.graphs.cheeger import Cut
-from segcore.graphs.surface_graph import SurfaceGraph, connected_components
+from segcore.graphs.surface_graph import SurfaceGraph, connected_components, weighted_degrees
 from segcore.parameters import SegmentationParameters
 from segcore.solvers.solvers import SOLVERS
 
@@ -70,11 +70,11 @@ def _reference(folder: Path, row: dict[str, str]) -> Reference:
     with np.load(folder / f"{row['graph']}.npz") as arrays:
         edges = np.sort(arrays["edges"], axis=1).astype(np.int32)
         weight = arrays["weights"].astype(np.float64)
-        graph = SurfaceGraph(edges, weight, np.ones(int(edges.max()) + 1))
-        volume = arrays["volumes"].astype(np.float64) if "volumes" in arrays else graph.degrees()
+        degrees = weighted_degrees(edges, weight, int(edges.max()) + 1)
+        volume = arrays["volumes"].astype(np.float64) if "volumes" in arrays else degrees
     return Reference(
         name=row["graph"],
-        graph=SurfaceGraph(edges, weight, volume),
+        graph=SurfaceGraph(edges, weight, volume, length=weight),
         best_known=float(row["ncc_best_known"]),
         six_starts=float(row["runs5_mean20"]),
         six_starts_s=float(row["seconds_runs5"]),
@@ -91,7 +91,7 @@ def first_cut_graphs(model: Model) -> dict[str, SurfaceGraph]:
 
 
 def _largest_component(graph: SurfaceGraph) -> SurfaceGraph:
-    component = connected_components(graph)
+    component = connected_components(graph.edges, graph.node_count)
     return graph.subgraph(np.flatnonzero(component == np.bincount(component).argmax()).astype(np.int32))
 
 
@@ -103,7 +103,8 @@ def warm_up(solvers: Sequence[str]) -> None:
     """Compile what the solvers need, on a ladder."""
     rung = np.arange(40, dtype=np.int32)
     edges = np.concatenate([np.stack([rung[:-1], rung[1:]], axis=1), np.stack([rung[:-2], rung[2:]], axis=1)])
-    measure(SurfaceGraph(edges, np.ones(len(edges)), np.ones(40)), solvers, 1)
+    ones = np.ones(len(edges))
+    measure(SurfaceGraph(edges, ones, np.ones(40), ones), solvers, 1)
 
 
 def _timed(graph: SurfaceGraph, solver: str, seed: int) -> tuple[Cut, float]:

@@ -68,10 +68,10 @@ def segment(
 
 def _over_faces(tree: Tree, clusters: Clusters, nodes: MeshGraph, links: Links, surface: Surface) -> Tree:
     """Carry a tree over the clusters over to the faces; where faces are the nodes, draw the boundaries anew."""
-    if nodes.corners.shape[1] > 1:
-        linked = surface.face_graph().with_edges(links.faces, links.length, links.length)
-        return project(tree, clusters.of_node[nodes.corners], linked)
-    return draw_boundaries(replace(tree, leaf=tree.leaf[clusters.of_node]), nodes, links, surface)
+    if nodes.corners is None:
+        return draw_boundaries(replace(tree, leaf=tree.leaf[clusters.of_node]), nodes, links, surface)
+    linked = surface.face_graph().with_edges(links.faces, links.length, links.length)
+    return project(tree, clusters.of_node[nodes.corners], linked)
 
 
 def _of_input(surface: Surface, tree: Tree) -> Hierarchy:

@@ -14,7 +14,7 @@ from numba import njit
 
 from segcore.affinity.curvature import PrincipalCurvatures
 from segcore.arrays import BoolArray, FloatArray, IntArray
-from segcore.graphs.surface_graph import Rows, SurfaceGraph, connected_components
+from segcore.graphs.surface_graph import Rows, connected_components
 from segcore.parameters import Thinning
 
 DEEP = -0.8  # z-score of the minimum curvature below which a vertex is deep concave
@@ -56,7 +56,7 @@ def cleaned_up(concave: BoolArray, z: FloatArray, rows: Rows) -> BoolArray:
     owner = np.repeat(np.arange(len(concave), dtype=np.int32), np.diff(rows.start))
     inside = concave[owner] & concave[rows.neighbour] & (owner < rows.neighbour)
     pairs = np.stack([owner[inside], rows.neighbour[inside]], axis=1)
-    path = connected_components(SurfaceGraph(pairs, np.ones(len(pairs)), np.ones(len(concave))))
+    path = connected_components(pairs, len(concave))
     length = np.bincount(path, concave)
     depth = np.full(len(length), np.inf)
     np.minimum.at(depth, path[concave], z[concave])

@@ -8,7 +8,7 @@ from segcore.clean.edge_geometry import edge_lengths
 from segcore.clean.surface import Surface
 from segcore.clean.topology import mesh_edges
 from segcore.graphs.mesh_graph import MeshGraph
-from segcore.graphs.surface_graph import SurfaceGraph, connected_components
+from segcore.graphs.surface_graph import SurfaceGraph, connected_components, weighted_degrees
 from segcore.mesh import face_centroids
 from segcore.parameters import SegmentationParameters
 
@@ -31,7 +31,7 @@ def face_dual_graph(surface: Surface, parameters: SegmentationParameters) -> Mes
     length = at_least(edge_lengths(surface), _SHORTEST_EDGE)
     graph = SurfaceGraph(surface.edge_faces, length * affinity.value, at_least(surface.areas, _SMALLEST_FACE), length)
     centroids = face_centroids(surface.vertices, surface.faces)
-    return MeshGraph(graph, centroids, np.arange(len(surface.faces), dtype=np.int32)[:, None], affinity.thickness)
+    return MeshGraph(graph, centroids, None, affinity.thickness)
 
 
 def vertex_graph(surface: Surface, parameters: SegmentationParameters) -> MeshGraph:
@@ -42,7 +42,7 @@ def vertex_graph(surface: Surface, parameters: SegmentationParameters) -> MeshGr
     corners, vertex = _vertices_of_components(surface)
     edges = mesh_edges(corners)
     affinity = VERTEX_AFFINITIES[parameters.affinity](surface, vertex[edges], parameters)
-    degrees = SurfaceGraph(edges, affinity, np.ones(len(vertex))).degrees()
+    degrees = weighted_degrees(edges, affinity, len(vertex))
     return MeshGraph(SurfaceGraph(edges, affinity, degrees, np.ones(len(edges))), surface.vertices[vertex], corners)
 
 
@@ -51,8 +51,7 @@ _GRAPHS = {"faces": face_dual_graph, "vertices": vertex_graph}
 
 def _vertices_of_components(surface: Surface) -> tuple[IntArray, IntArray]:
     """(F, 3) the nodes at the corners of every face, and (N,) the vertex of every node."""
-    faces = SurfaceGraph(surface.edge_faces, np.ones(len(surface.edge_faces)), np.ones(len(surface.faces)))
-    component = connected_components(faces).astype(np.int64)
+    component = connected_components(surface.edge_faces, len(surface.faces)).astype(np.int64)
     keys = component[:, None] * len(surface.vertices) + surface.faces
     unique, corners = np.unique(keys, return_inverse=True)
     return corners.reshape(-1, 3).astype(np.int32), (unique % len(surface.vertices)).astype(np.int32)

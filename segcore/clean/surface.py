@@ -34,8 +34,9 @@ class Surface:
     unit: float  # length of one unit here, in units of the input
 
     def face_graph(self) -> SurfaceGraph:
-        """The face dual graph with all weights 1 and the areas as volumes."""
-        return SurfaceGraph(self.edge_faces, np.ones(len(self.edge_faces)), self.areas)
+        """The face dual graph with all weights and lengths 1 and the areas as volumes."""
+        ones = np.ones(len(self.edge_faces))
+        return SurfaceGraph(self.edge_faces, ones, self.areas, ones)
 
 
 def build_surface(mesh: Mesh) -> Surface:

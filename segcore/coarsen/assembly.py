@@ -11,7 +11,7 @@ from segcore.coarsen.clusters import Clusters
 from segcore.coarsen.components import largest, nearest_hosts
 from segcore.coarsen.contacts import POINTS, Links, find_contacts, spread_points
 from segcore.graphs.mesh_graph import MeshGraph
-from segcore.graphs.surface_graph import SurfaceGraph, connected_components
+from segcore.graphs.surface_graph import connected_components
 
 CONTACT = 0.1  # affinity across a contact: that of a deep concave edge
 NEGLIGIBLE = 0.002  # share of the total area below which an assembly follows its neighbour
@@ -25,10 +25,10 @@ def assemble(surface: Surface, nodes: MeshGraph, clusters: Clusters, most: int) 
     ----------
     most : the components of the new graph are at most as many.
     """
-    component = connected_components(clusters.graph)
+    component = connected_components(clusters.graph.edges, clusters.graph.node_count)
     if component.max() == 0:
         return clusters, Links.none()
-    of_face = clusters.of_node[nodes.corners[:, 0]]
+    of_face = clusters.of_node[nodes.of_face]
     links = link_components(surface, component[of_face], most)
     border = _border_per_length(surface, nodes) * links.length
     return replace(clusters, graph=clusters.graph.with_edges(of_face[links.faces], CONTACT * border, border)), links
@@ -69,4 +69,4 @@ def link_components(surface: Surface, component: IntArray, most: int) -> Links:
 def _joined(component: IntArray, links: Links) -> IntArray:
     """(C,) the assembly of every component."""
     ends = component[links.faces]
-    return connected_components(SurfaceGraph(ends, links.length, np.ones(int(component.max()) + 1)))
+    return connected_components(ends, int(component.max()) + 1)

@@ -30,7 +30,7 @@ def cluster_nodes(mesh_graph: MeshGraph, target: int, rng: np.random.Generator) 
     is nearest to them.
     """
     graph, points = mesh_graph.graph, mesh_graph.points
-    component = connected_components(graph)
+    component = connected_components(graph.edges, graph.node_count)
     is_host = largest(component, graph.volume, MOST_COMPONENTS)
     if is_host.all():
         coarse, of_node = coarsen(graph, target or graph.node_count, rng)

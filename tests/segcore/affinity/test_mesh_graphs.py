@@ -51,7 +51,7 @@ def test_components_that_touch_at_a_vertex_have_a_node_each_there():
     touching = Mesh([[0.0, 0, 0], [1, 0, 0], [0, 1, 0], [-1, 0, 0], [0, -1, 0]], [[0, 1, 2], [0, 3, 4]])
     made = graph_of(touching, graph="vertices", affinity="adjacency")
     assert made.graph.node_count == 6
-    assert connected_components(made.graph).max() == 1
+    assert connected_components(made.graph.edges, made.graph.node_count).max() == 1
 
 
 @pytest.mark.parametrize("affinity", ["minima_rule", "adjacency"])

@@ -44,7 +44,9 @@ def test_the_solution_satisfies_the_optimality_conditions(case: tuple[SurfaceGra
     problem.advance(20_000)
     r = problem.solution
     variation = graph.weight @ np.abs(r[graph.edges[:, 0]] - r[graph.edges[:, 1]])
-    assert variation == pytest.approx(problem.divergence @ r, abs=1e-3 * np.abs(supply).sum() * np.abs(r).max() + 1e-12)
+    assert variation == pytest.approx(
+        problem.flow.divergence @ r, abs=1e-3 * np.abs(supply).sum() * np.abs(r).max() + 1e-12
+    )
 
 
 @given(problems())
@@ -54,8 +56,8 @@ def test_the_flow_keeps_to_the_capacities_and_its_divergence_is_kept(case: tuple
     for target in (supply, supply[::-1] - supply.mean()):
         problem.aim(target)
         problem.advance(7)
-        assert (np.abs(problem.flow) <= problem.weight).all()
-        first = np.repeat(np.arange(graph.node_count), np.diff(problem.start))
-        leaving = np.bincount(first, problem.flow, graph.node_count)
-        entering = np.bincount(problem.other, problem.flow, graph.node_count)
-        np.testing.assert_allclose(problem.divergence, leaving - entering, atol=1e-9 * np.abs(supply).sum())
+        assert (np.abs(problem.flow.value) <= problem.dual.weight).all()
+        first = np.repeat(np.arange(graph.node_count), np.diff(problem.dual.start))
+        leaving = np.bincount(first, problem.flow.value, graph.node_count)
+        entering = np.bincount(problem.dual.other, problem.flow.value, graph.node_count)
+        np.testing.assert_allclose(problem.flow.divergence, leaving - entering, atol=1e-9 * np.abs(supply).sum())

@@ -25,7 +25,7 @@ def test_the_matrix_of_the_linear_systems_is_the_one_of_the_formula(case: tuple[
     flow = TotalVariationFlow.of(graph, values)
     matrix = np.diag(graph.volume) / TIME_STEP + flow.penalty * laplacian(graph)
     source = graph.volume * values
-    potential = flow.factor.solve(np.append(source, -source.sum()))
+    potential = flow.system.factor.solve(np.append(source, -source.sum()))
     np.testing.assert_allclose(matrix @ (potential[:-1] - potential[-1]), source, atol=1e-8 * np.abs(source).max())
 
 
