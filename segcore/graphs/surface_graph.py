@@ -126,7 +126,7 @@ def _rows(edges, node_count):  # type: ignore[no-untyped-def]
 
 @njit(cache=True)
 def _induced_edges(edges, nodes, node_count):  # type: ignore[no-untyped-def]
-    """(M, 2) edges inside a set of nodes, numbered by their places in ``nodes``, and (M,) where they come from."""
+    """(M, 2) edges inside a set of nodes, numbered as in ``nodes``, and (M,) their indices in ``edges``."""
     local = np.full(node_count, -1, dtype=np.int32)
     for i in range(len(nodes)):
         local[nodes[i]] = i

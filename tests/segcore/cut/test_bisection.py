@@ -3,10 +3,9 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from helpers.graphs import is_connected, weighted_graph
+from helpers.trees import members
 from segcore.cut.bisection import bisect
 from segcore.cut.rules import AUTOMATIC_NCUT, RatioRule
-from segcore.graphs.cheeger import cut_of
-from segcore.graphs.connected_sides import with_connected_sides
 from segcore.graphs.surface_graph import connected_components
 from segcore.parameters import SegmentationParameters
 
@@ -38,12 +37,8 @@ def grown(graph, max_segments):
 def test_every_segment_of_every_level_is_connected_within_its_component(graph):
     tree = grown(graph, 50)
     components = int(connected_components(graph.edges, graph.node_count).max()) + 1
-    nodes = 2 * len(tree.split_node) + 1
-    below = {node: {node} for node in range(nodes)}
-    for split in reversed(range(len(tree.split_node))):
-        below[int(tree.split_node[split])] |= below[2 * split + 1] | below[2 * split + 2]
-    for node in range(2 * (components - 1) + 1, nodes):
-        assert is_connected(graph, np.isin(tree.leaf, list(below[node])))
+    for nodes in members(tree)[2 * (components - 1) + 1 :]:
+        assert is_connected(graph, nodes)
 
 
 @settings(max_examples=80)
@@ -52,19 +47,6 @@ def test_splitting_ends_when_every_segment_is_one_node(graph):
     tree = grown(graph, 10_000)
     assert len(tree.split_node) + 1 == graph.node_count
     assert len(set(tree.leaf)) == graph.node_count
-
-
-@settings(max_examples=80)
-@given(graphs(), st.data())
-def test_both_sides_of_a_cut_become_connected(graph, data):
-    first = connected_components(graph.edges, graph.node_count) == 0
-    graph = graph.subgraph(np.flatnonzero(first).astype(np.int32))
-    side = np.array(data.draw(st.lists(st.booleans(), min_size=graph.node_count, max_size=graph.node_count)))
-    if side.all() or not side.any():
-        return
-    cut = with_connected_sides(graph, cut_of(graph, side))
-    assert is_connected(graph, cut.side)
-    assert is_connected(graph, ~cut.side)
 
 
 def test_the_least_normalized_cut_is_made_first():
@@ -89,7 +71,7 @@ def test_the_automatic_number_counts_the_cuts_below_the_threshold():
 
 
 def test_a_side_of_less_than_a_five_hundredth_waits_for_all_others():
-    """A tiny node on a thread beside two halves joined by a band: the thread is by far the better cut."""
+    """Two halves joined by a strong edge and a tiny node at a weak one: the weak edge is by far the better cut."""
     graph = graph_of([(0, 1), (1, 2)], 3, np.array([0.5, 1e-9]), np.array([1.0, 1.0, 0.001]))
     tree = grown(graph, 3)
     assert tree.leaf[1] != tree.leaf[2]

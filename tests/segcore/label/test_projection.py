@@ -3,6 +3,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from helpers.graphs import is_connected
+from helpers.trees import members, two_sides
 from segcore import shapes
 from segcore.clean.surface import build_surface
 from segcore.graphs.tree import Tree
@@ -14,7 +15,7 @@ FACES = SURFACE.face_graph()
 
 @st.composite
 def trees(draw):
-    """Random trees over the 42 vertices of a sphere, as scattered as a tree can be."""
+    """Random trees over the 42 vertices of a sphere, with leaves that are not connected."""
     splits = draw(st.integers(0, 8))
     leaves, split_node = [0], []
     for s in range(splits):
@@ -29,20 +30,15 @@ def trees(draw):
 @given(trees())
 def test_every_node_of_the_tree_over_the_faces_is_a_connected_set_of_faces(tree):
     projected = project(tree, SURFACE.faces, FACES)
-    nodes = 2 * len(projected.split_node) + 1
-    below = {node: {node} for node in range(nodes)}
-    for split in reversed(range(len(projected.split_node))):
-        below[int(projected.split_node[split])] |= below[2 * split + 1] | below[2 * split + 2]
-    for node in range(nodes):
-        members = np.isin(projected.leaf, list(below[node]))
-        assert members.any()
-        assert is_connected(FACES, members)
+    for faces in members(projected):
+        assert faces.any()
+        assert is_connected(FACES, faces)
     assert 1 <= projected.automatic_segments <= min(tree.automatic_segments, len(projected.split_node) + 1)
 
 
 def test_a_clean_cut_of_the_vertices_is_kept():
     upper = SURFACE.vertices[:, 2] > 0.01
-    tree = Tree(np.zeros(1, np.int32), np.ones(1), np.where(upper, 1, 2).astype(np.int32), 2)
+    tree = two_sides(upper)
     projected = project(tree, SURFACE.faces, FACES)
     votes = upper[SURFACE.faces].sum(axis=1) >= 2
     assert len(set(projected.leaf[votes])) == len(set(projected.leaf[~votes])) == 1
@@ -61,9 +57,7 @@ def test_each_side_of_a_cut_keeps_most_of_its_faces_when_it_is_made_connected(se
 
 
 def test_a_split_that_no_face_follows_is_left_out():
-    leaf = np.ones(42, np.int32)
-    leaf[7] = 2
-    tree = Tree(np.zeros(1, np.int32), np.ones(1), leaf, 2)
+    tree = two_sides(np.arange(42) != 7)
     projected = project(tree, SURFACE.faces, FACES)
     assert len(projected.split_node) == 0
     assert projected.automatic_segments == 1

@@ -63,7 +63,7 @@ def test_closed_forms() -> None:
     )
 
 
-def test_a_hair_between_two_cliques_is_found_at_any_thinness() -> None:
+def test_a_weak_edge_between_two_cliques_is_found_at_any_weight() -> None:
     for bridge in (1e-3, 1e-9, 1e-15):
         vector = fiedler_vectors(two_cliques(20, bridge))[:, 0]
         assert len(set(np.sign(vector[:20]))) == len(set(np.sign(vector[20:]))) == 1
@@ -88,6 +88,6 @@ def test_every_eigenvector_of_a_star_is_found_though_one_eigenvalue_repeats() ->
     np.testing.assert_allclose(eigenvalues, [1, 1, 1, 1, 1, 1, 1, 2], rtol=1e-9)
 
 
-def test_a_graph_in_pieces_is_refused() -> None:
+def test_a_graph_that_is_not_connected_is_refused() -> None:
     with pytest.raises(ValueError, match="not connected"):
         fiedler_vectors(graph_of([(0, 1), (2, 3)]))

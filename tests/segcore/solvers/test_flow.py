@@ -57,7 +57,7 @@ def test_weights_and_volumes_over_twelve_decades_do_no_harm(graph: SurfaceGraph)
 
 
 @pytest.mark.parametrize("bridge", [1e-3, 1e-9, 1e-15])
-def test_a_hair_between_two_cliques_is_cut(bridge: float) -> None:
+def test_a_weak_edge_between_two_cliques_is_cut(bridge: float) -> None:
     assert flow_cut(two_cliques(12, bridge)).weight == bridge
 
 
@@ -98,7 +98,7 @@ def test_nothing_changes_with_the_units_of_weights_and_volumes() -> None:
     assert (flow_cut(graph).side == flow_cut(scaled).side).all()
 
 
-def test_a_graph_in_pieces_is_refused() -> None:
+def test_a_graph_that_is_not_connected_is_refused() -> None:
     graph = grid(2, 2)
     with pytest.raises(ValueError, match="not connected"):
         flow_cut(weighted_graph(graph.edges[:1], graph.weight[:1], graph.volume))
