@@ -18,10 +18,11 @@ from segcore.learned.models import learned_models
 from segcore.parameters import SegmentationParameters
 from segcore.solvers.solvers import SOLVERS, candidate_cuts
 
-# The normalized cut times sqrt(total area) at which splitting ends, fitted on the odd-numbered benchmark models.
-AUTOMATIC_NCUT = 1.44
+# Their neighbours are compared in bench/RESULTS.md, "Constants and their neighbours".
+AUTOMATIC_NCUT = 1.44  # normalized cut times sqrt(total area) at which splitting ends, fitted for ``concavity``
 SMALLEST_SIDE = 0.002  # share of the total area below which a part is cut off only after all others
-_NCUT_WEIGHT = 0.4  # of the normalized cut beside the learned share in the comparison of candidates
+NCUT_WEIGHT = 0.4  # of the normalized cut beside the learned share in the comparison of candidates
+_LATE_GAIN = -1.0  # of a split that comes after all others: less than any other split, which loses 0.5 at most
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -99,7 +100,7 @@ class LearnedRule:
         kept = self._model.probability(features)
         size = np.sqrt(self._total)
         late = [min(cut.inside, cut.outside) < SMALLEST_SIDE * self._total for cut in candidates]
-        loss = [q + _NCUT_WEIGHT * cut.ncut * size for q, cut in zip(kept, candidates, strict=True)]
+        loss = [q + NCUT_WEIGHT * cut.ncut * size for q, cut in zip(kept, candidates, strict=True)]
         best = min(range(len(candidates)), key=lambda i: (late[i], loss[i]))
         cut = candidates[best]
         return Split(cut, cut.ncut * size, float(kept[best]), late[best])
@@ -122,6 +123,6 @@ class LearnedRule:
         # people separate, less the part that they keep together.
         pairs = np.array([2.0 * split.cut.inside * split.cut.outside / self._total**2 for split in learned])
         kept = np.array([split.priority for split in learned])
-        gain = np.where([split.late for split in learned], -1.0, pairs * (1.0 - 2.0 * kept))
+        gain = np.where([split.late for split in learned], _LATE_GAIN, pairs * (1.0 - 2.0 * kept))
         order, worthwhile = best_order(parent, gain, pairs)
         return tree.reordered([*range(apart), *(apart + s for s in order)], apart + worthwhile + 1)

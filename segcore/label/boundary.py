@@ -28,6 +28,8 @@ from segcore.label.leaves import (
     move,
 )
 
+# The first two are compared with their neighbours in bench/RESULTS.md, "Constants and their neighbours", and their
+# effect is in "Boundaries" there. The others were set by hand.
 BAND = 0.03  # of sqrt(total area), to either side of a boundary
 STIFFNESS = 0.1  # added to the affinity in the cost of a boundary, which makes it short if there are few concavities
 _MOST_FACES = 16384  # in one band: that of a very fine mesh is narrower, because flows take longer on wide bands

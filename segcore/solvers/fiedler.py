@@ -9,9 +9,10 @@ from segcore.arrays import FloatArray
 from segcore.graphs.laplacian import LaplacianFactor, factorise
 from segcore.graphs.surface_graph import SurfaceGraph
 
-# Set by hand; with this tolerance the first eigenvalues agree with a dense solver to 1e-6 (tests/segcore/solvers).
+# Set by hand. TOLERANCE and CHECK_EVERY are compared with their neighbours in bench/RESULTS.md, "Constants and their
+# neighbours".
 TOLERANCE = 1e-5  # residual of an eigenvector of the pseudo-inverse of L, relative to its eigenvalue
-MOST_STEPS = 250  # of Lanczos, set by hand: closer eigenvalues are treated as equal
+MOST_STEPS = 250  # of Lanczos: eigenvalues that it does not separate are treated as equal
 CHECK_EVERY = 3  # steps between tests of convergence, each of which solves a tridiagonal eigenproblem
 EXHAUSTED = 1e-12  # relative norm of the next basis vector below which the Krylov space is invariant
 START_SEED = 20130717  # any seed: a random start has a component along every eigenvector

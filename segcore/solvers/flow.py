@@ -9,8 +9,7 @@ from segcore.graphs.surface_graph import SurfaceGraph
 from segcore.solvers.fiedler import eigenvectors
 from segcore.solvers.total_variation import TotalVariationFlow
 
-# The three numbers were set by hand; how near to the best known cuts they lead is the column "flow" of the section
-# "Normalized Cheeger cuts" of bench/RESULTS.md.
+# Set by hand. The first three are compared with their neighbours in bench/RESULTS.md, "Constants and their neighbours".
 STEPS = 4  # of total variation flow from every eigenvector
 ITERATIONS = 5  # of split Bregman in a step
 WORST_IMPROVED = 1.35  # times the best value so far: cuts with a larger one are not improved

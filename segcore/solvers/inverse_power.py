@@ -9,8 +9,7 @@ from segcore.graphs.surface_graph import SurfaceGraph
 from segcore.solvers.inner_problem import InnerProblem
 from segcore.solvers.starts import start_functions
 
-# The first two were set by hand; the column "inverse_power" of the section "Normalized Cheeger cuts" of
-# bench/RESULTS.md shows the cuts that they lead to.
+# Set by hand. The first two are compared with their neighbours in bench/RESULTS.md, "Constants and their neighbours".
 FIRST_ITERATIONS = 50  # of FISTA before the first sweep; each further sweep comes when the total has doubled
 WORTHWHILE_GAIN = 0.02  # a start ends if the duality gap allows a smaller relative gain over the best cut
 LEAST_GAIN = 1e-12  # relative decrease of the value; a smaller one is rounding error

@@ -14,8 +14,8 @@ from segcore.graphs.surface_graph import SurfaceGraph
 from segcore.solvers.starts import start_functions
 
 # MEMORY and SUFFICIENT_DECREASE are the usual values of L-BFGS and of the Armijo rule (Nocedal and Wright, Numerical
-# optimization, 2006); the others were set by hand. The column "p_laplacian" of the section "Normalized Cheeger cuts" of
-# bench/RESULTS.md shows the cuts that they lead to.
+# optimization, 2006); the others were set by hand. CONTINUATION and LEAST_DECREASE are compared with their neighbours
+# in bench/RESULTS.md, "Constants and their neighbours".
 CONTINUATION = 0.7  # p - 1 of a stage, relative to that of the stage before
 MEMORY = 10  # pairs of L-BFGS
 SUFFICIENT_DECREASE = 1e-4  # of a step, relative to the first order

@@ -11,8 +11,7 @@ from segcore.graphs.surface_graph import SurfaceGraph
 from segcore.solvers.starts import start_functions
 from segcore.solvers.total_variation import TotalVariationFlow
 
-# Both were set by hand; the column "split_bregman" of the section "Normalized Cheeger cuts" of bench/RESULTS.md shows
-# the cuts that they lead to.
+# Set by hand, and compared with their neighbours in bench/RESULTS.md, "Constants and their neighbours".
 ITERATIONS_PER_STEP = 10  # of the flow
 STEPS_WITHOUT_GAIN = 5  # after which a start ends
 

@@ -9,7 +9,9 @@ from segcore.graphs.laplacian import LaplacianFactor
 from segcore.graphs.surface_graph import SurfaceGraph
 from segcore.solvers.fiedler import eigenvectors
 
-SMOOTHING_STEPS = 2  # of the linear inverse power method on noise, set by hand: leaves the low frequencies
+# Steps of the linear inverse power method on noise, which leave the low frequencies. Set by hand, and compared with its
+# neighbours in bench/RESULTS.md, "Constants and their neighbours".
+SMOOTHING_STEPS = 2
 
 
 def start_functions(

@@ -12,8 +12,7 @@ from segcore.graphs.cheeger import Cut, sweep
 from segcore.graphs.laplacian import LaplacianFactor, factorise_edges, substitute
 from segcore.graphs.surface_graph import IndexArray, SurfaceGraph
 
-# Both were set by hand; the columns "flow" and "split_bregman" of the section "Normalized Cheeger cuts" of
-# bench/RESULTS.md show the cuts that they lead to.
+# Set by hand, and compared with their neighbours in bench/RESULTS.md, "Constants and their neighbours".
 TIME_STEP = 30.0  # of the flow, for functions of mean magnitude 1
 FIRST_THRESHOLD = 0.3  # of the shrinkage, for the same
 
