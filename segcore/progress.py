@@ -18,9 +18,6 @@ _SECONDS = {
 STAGES = tuple(_SECONDS)  # in order
 
 
-STAGES = tuple(_SECONDS)
-
-
 class Progress:
     """Reports stages and fractions to a callback, which may end the segmentation by raising an exception."""
 

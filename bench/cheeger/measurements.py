@@ -49,7 +49,8 @@ def warm_up(solvers: Sequence[str]) -> None:
     """Compile the kernels of the solvers by cutting a ladder of 40 nodes."""
     rung = np.arange(40, dtype=np.int32)
     edges = np.concatenate([np.stack([rung[:-1], rung[1:]], axis=1), np.stack([rung[:-2], rung[2:]], axis=1)])
-    measure(SurfaceGraph(edges, np.ones(len(edges)), np.ones(40)), solvers, 1)
+    ones = np.ones(len(edges))
+    measure(SurfaceGraph(edges, ones, np.ones(40), ones), solvers, 1)
 
 
 def _largest_component(graph: SurfaceGraph) -> SurfaceGraph:

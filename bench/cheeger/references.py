@@ -9,7 +9,7 @@ from pathlib import Path
 import numpy as np
 
 from bench.errors import BenchmarkError
-from segcore.graphs.surface_graph import SurfaceGraph
+from segcore.graphs.surface_graph import SurfaceGraph, weighted_degrees
 
 
 @dataclass(frozen=True, slots=True)
@@ -45,11 +45,11 @@ def _reference(folder: Path, row: dict[str, str]) -> Reference:
     with np.load(folder / f"{row['graph']}.npz") as arrays:
         edges = np.sort(arrays["edges"], axis=1).astype(np.int32)
         weight = arrays["weights"].astype(np.float64)
-        graph = SurfaceGraph(edges, weight, np.ones(int(edges.max()) + 1))
-        volume = arrays["volumes"].astype(np.float64) if "volumes" in arrays else graph.degrees()
+        degrees = weighted_degrees(edges, weight, int(edges.max()) + 1)
+        volume = arrays["volumes"].astype(np.float64) if "volumes" in arrays else degrees
     return Reference(
         name=row["graph"],
-        graph=SurfaceGraph(edges, weight, volume),
+        graph=SurfaceGraph(edges, weight, volume, length=weight),
         best_known=float(row["ncc_best_known"]),
         six_starts=float(row["runs5_mean20"]),
         six_starts_s=float(row["seconds_runs5"]),

@@ -14,9 +14,10 @@ from pathlib import Path
 
 from bench.errors import BenchmarkError
 from bench.pool import one_thread_by_default
-from bench.scale.cost import STAGES, Cost, cost_of
+from bench.scale.cost import Cost, cost_of
 from bench.scale.shapes import crowds, dumbbells, subdivisions
 from bench.text import format_table, number
+from segcore.progress import STAGES
 
 SIZES = (20_000, 60_000, 200_000, 600_000, 2_000_000)
 

@@ -12,10 +12,10 @@ from multiprocessing import get_context
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+from segcore.progress import STAGES
+
 if TYPE_CHECKING:
     from segcore.mesh import Mesh
-
-STAGES = ("clean", "affinity", "coarsen", "cut", "label")
 
 
 @dataclass(frozen=True, slots=True)

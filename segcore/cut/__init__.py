@@ -1,1 +1,1 @@
-"""The coarse graph is cut again and again: which segment is next, where it is cut, and when to stop."""
+"""Recursive cuts of the coarse graph: the next segment, its cut, and the number of segments."""

@@ -1,4 +1,4 @@
-"""Best-first bisection: which segment is split next, where, and when to stop."""
+"""Best-first bisection of a graph into a tree of segments."""
 
 from collections.abc import Callable
 from heapq import heappop, heappush
@@ -20,19 +20,19 @@ def bisect(
     max_segments: int,
     on_split: Callable[[float], None] = lambda _: None,
 ) -> Tree:
-    """Part the components of a graph, then cut the segment that comes first by a rule again and again.
+    """Separate the components of a graph, then repeatedly cut the segment of highest priority.
 
     Parameters
     ----------
-    points : (N, 3) positions of the nodes, for the nearness of components.
-    rule : says how a segment is cut, which one is next and where people would stop.
-    max_segments : where to stop; components are parted in any case.
+    points : (N, 3) positions of the nodes, by which near components are grouped.
+    rule : chooses the cut of a segment, its priority, and the automatic number of segments.
+    max_segments : limit of the segments; components are separated in any case.
     on_split : called with the fraction of ``max_segments`` that is reached.
 
     Notes
     -----
-    Volumes stay those of the whole graph. A cut whose smaller side has less than 0.2 % of the total volume comes after
-    all others.
+    Nodes keep their volumes in every segment. A cut whose smaller side has less than 0.2 % of the total volume comes
+    after all others.
     """
     component = connected_components(graph.edges, graph.node_count)
     tree = _GrowingTree(graph, rule)
@@ -62,7 +62,13 @@ class _GrowingTree:
         return len(self._split_node) + 1
 
     def part_components(self, component: IntArray, merges: IntArray) -> list[tuple[int, IntArray]]:
-        """Undo the merges of components from the last to the first; the components and their nodes in the tree."""
+        """Split groups of components in the reverse order of their merges; return every component's node and members.
+
+        Parameters
+        ----------
+        component : (N,) 0..C - 1.
+        merges : (C - 1, 2) groups that are merged into group C, C + 1, ...; group i < C is component i.
+        """
         count = len(merges) + 1
         volume = np.zeros(2 * count - 1)
         volume[:count] = group_sums(component, self._volume, count)
@@ -76,7 +82,7 @@ class _GrowingTree:
         return [(int(node_of_group[c]), members[c].astype(np.int32)) for c in range(count)]
 
     def add(self, node: int, segment: Segment) -> None:
-        """A new segment: find its best split now, or later where that can only be a late one."""
+        """Add a segment to the queue; find its best split now unless the split can only be a late one."""
         self._segments[node] = segment
         self._leaf[segment.nodes] = node
         volume = segment.graph.total_volume
@@ -90,7 +96,7 @@ class _GrowingTree:
         heappush(self._queue, (True, -volume, node))
 
     def split_next(self) -> bool:
-        """Make the next split; False where every segment is a single node."""
+        """Make the next split; return False if every segment is a single node."""
         if not self._queue:
             return False
         _, _, node = heappop(self._queue)
@@ -103,11 +109,13 @@ class _GrowingTree:
         return True
 
     def finished(self) -> Tree:
+        """Return the tree in the order of the rule."""
         values = np.array([split.value if split else 0.0 for split in self._splits])
         tree = Tree(np.array(self._split_node, dtype=np.int32), values, self._leaf, 1)
         return self._rule.finished(tree, self._splits)
 
     def _split(self, node: int, split: Split | None) -> tuple[int, int]:
+        """Append a split of a node; return its two children."""
         self._split_node.append(node)
         self._splits.append(split)
         return 2 * len(self._split_node) - 1, 2 * len(self._split_node)

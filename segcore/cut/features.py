@@ -1,10 +1,11 @@
-"""How many of the pairs that a cut parts people would have kept together: what a logistic model says of the cut.
+"""Features of a cut, from which a logistic model estimates the share of separated pairs that people keep together.
 
-The Rand index adds up over the splits of a hierarchy. So this one number says which of several cuts of a segment
-is the best, which split is worth most, and which is worth nothing.
+The Rand index adds up over the splits of a hierarchy. This one number therefore decides which of several cuts of a
+segment is the best, which split comes next, and which split to omit.
 """
 
 from dataclasses import dataclass
+from typing import NamedTuple
 
 import numpy as np
 from numba import njit
@@ -13,42 +14,54 @@ from segcore.arrays import BoolArray, FloatArray, IntArray, group_sums
 from segcore.graphs.cheeger import Cut
 from segcore.graphs.surface_graph import SurfaceGraph
 
-FEATURES = (
-    "ncut",
-    "ncc",
-    "small_area",
-    "large_area",
-    "balance",
-    "affinity",
-    "affinity_contrast_small",
-    "affinity_contrast_large",
-    "border",
-    "border_over_small",
-    "border_over_large",
-    "border_over_girth",
-    "small_closed",
-    "large_closed",
-    "small_thickness",
-    "large_thickness",
-    "neck",
-    "thickness_step",
-    "small_thickness_spread",
-    "large_thickness_spread",
-    "small_flatness",
-    "small_roundness",
-    "large_flatness",
-    "large_roundness",
-    "depth",
-    "parent_ncut",
-    "against_parent",
-)
+_TINY = 1e-12  # keeps logarithms and quotients finite; far below all values of surfaces of unit size
 
-_TINY = 1e-12
+# Columns of the sums over a side; the position takes three columns, the products take nine.
+_AREA, _WEIGHT, _LENGTH, _DEGREE, _THICKNESS, _SQUARES, _POSITION, _PRODUCTS = 0, 1, 2, 3, 4, 5, 6, 9
+
+
+class CutFeatures(NamedTuple):
+    """The features of a cut. ``small`` is the side of less area; lengths and areas are relative to the whole surface.
+
+    Affinities are means over borders, weighted by length; thicknesses are means over the area of the logarithm of the
+    shape diameter over sqrt(total area).
+    """
+
+    ncut: float  # logarithm of the normalized cut times sqrt(total area)
+    ncc: float  # logarithm of the normalized Cheeger cut times sqrt(total area)
+    small_area: float  # logarithm of the share of the total area
+    large_area: float
+    balance: float  # logarithm of the ratio of the areas, small over large
+    affinity: float  # logarithm of the affinity along the cut
+    affinity_contrast_small: float  # the same over the affinity inside the small side
+    affinity_contrast_large: float
+    border: float  # logarithm of the length of the cut over sqrt(total area)
+    border_over_small: float  # logarithm of the length of the cut over the square root of the area of the small side
+    border_over_large: float
+    border_over_girth: float  # logarithm of the length of the cut over the thickness at the cut
+    small_closed: float  # share of the outline of the small side that is this cut, 0 to 1
+    large_closed: float
+    small_thickness: float
+    large_thickness: float
+    neck: float  # thickness at the cut less that of the thinner side
+    thickness_step: float  # absolute difference of the thicknesses of the sides
+    small_thickness_spread: float  # standard deviation
+    large_thickness_spread: float
+    small_flatness: float  # least over largest standard deviation of the points of the small side
+    small_roundness: float  # middle over largest
+    large_flatness: float
+    large_roundness: float
+    depth: float  # logarithm of one more than the number of cuts above
+    parent_ncut: float  # ncut of the last cut above; 0 if there is none
+    against_parent: float  # ncut less parent_ncut; 0 if there is no cut above
+
+
+FEATURES = CutFeatures._fields
 
 
 @dataclass(frozen=True, slots=True, eq=False)
 class ClusterFields:
-    """What the features of cuts are made from: the whole graph of clusters, where they are and how thick."""
+    """The graph of all clusters, with their positions and thickness."""
 
     graph: SurfaceGraph
     points: FloatArray  # (N, 3)
@@ -67,55 +80,66 @@ class Segment:
 
     nodes: IntArray  # (M,) in the whole graph
     graph: SurfaceGraph  # the edges inside
-    depth: int  # cuts above it, those between components left out
-    parent_ncut: float  # normalized cut of the last of them; 0 where there is none
+    depth: int  # number of cuts above it, without the splits between components
+    parent_ncut: float  # normalized cut of the last of them; 0 if there is none
+
+
+class SegmentFields(NamedTuple):
+    """The arrays of a segment over which the features sum."""
+
+    edges: IntArray  # (E, 2)
+    weight: FloatArray  # (E,)
+    length: FloatArray  # (E,)
+    volume: FloatArray  # (M,)
+    degree: FloatArray  # (M,) in the whole graph
+    thickness: FloatArray  # (M,)
+    points: FloatArray  # (M, 3)
 
 
 def cut_features(fields: ClusterFields, segment: Segment, cut: Cut) -> FloatArray:
-    """(M,) the features of a cut of a segment, in the order of ``FEATURES``."""
+    """(M,) features of a cut of a segment, in the order of ``FEATURES``."""
     total = fields.graph.total_volume
     size = float(np.sqrt(total))
     graph, small = segment.graph, cut.side if cut.inside <= cut.outside else ~cut.side
     crossing = small[graph.edges[:, 0]] != small[graph.edges[:, 1]]
-    border = float(graph.length[crossing].sum())
+    length = graph.length[crossing]
+    border = float(length.sum())
     one, other = _sides(fields, segment, small, border)
     affinity = cut.weight / border
-    ends = graph.edges[crossing]
-    at_cut = fields.thickness[segment.nodes[ends]].mean(axis=1)
-    thickness = float(np.average(at_cut, weights=graph.length[crossing]))
+    at_cut = fields.thickness[segment.nodes[graph.edges[crossing]]].mean(axis=1)
+    thickness = float((at_cut * length).sum() / border)
     ncut = np.log(cut.ncut * size + _TINY)
     parent = np.log(segment.parent_ncut * size) if segment.parent_ncut > 0 else 0.0
-    return np.array(
-        [
-            ncut,
-            np.log(cut.ncc * size + _TINY),
-            np.log(one.area / total),
-            np.log(other.area / total),
-            np.log(one.area / other.area),
-            np.log(affinity),
-            np.log(affinity / one.affinity),
-            np.log(affinity / other.affinity),
-            np.log(border / size),
-            np.log(border / np.sqrt(one.area)),
-            np.log(border / np.sqrt(other.area)),
-            np.log(border / size) - thickness,
-            one.closed,
-            other.closed,
-            one.thickness,
-            other.thickness,
-            thickness - min(one.thickness, other.thickness),
-            abs(one.thickness - other.thickness),
-            one.thickness_spread,
-            other.thickness_spread,
-            one.flatness,
-            one.roundness,
-            other.flatness,
-            other.roundness,
-            np.log1p(segment.depth),
-            parent,
-            ncut - parent if segment.parent_ncut > 0 else 0.0,
-        ]
+    features = CutFeatures(
+        ncut=ncut,
+        ncc=np.log(cut.ncc * size + _TINY),
+        small_area=np.log(one.area / total),
+        large_area=np.log(other.area / total),
+        balance=np.log(one.area / other.area),
+        affinity=np.log(affinity),
+        affinity_contrast_small=np.log(affinity / one.affinity),
+        affinity_contrast_large=np.log(affinity / other.affinity),
+        border=np.log(border / size),
+        border_over_small=np.log(border / np.sqrt(one.area)),
+        border_over_large=np.log(border / np.sqrt(other.area)),
+        border_over_girth=np.log(border / size) - thickness,
+        small_closed=one.closed,
+        large_closed=other.closed,
+        small_thickness=one.thickness,
+        large_thickness=other.thickness,
+        neck=thickness - min(one.thickness, other.thickness),
+        thickness_step=abs(one.thickness - other.thickness),
+        small_thickness_spread=one.thickness_spread,
+        large_thickness_spread=other.thickness_spread,
+        small_flatness=one.flatness,
+        small_roundness=one.roundness,
+        large_flatness=other.flatness,
+        large_roundness=other.roundness,
+        depth=np.log1p(segment.depth),
+        parent_ncut=parent,
+        against_parent=ncut - parent if segment.parent_ncut > 0 else 0.0,
     )
+    return np.array(features)
 
 
 @dataclass(frozen=True, slots=True)
@@ -123,35 +147,34 @@ class _Side:
     """One side of a cut."""
 
     area: float
-    affinity: float  # mean over the borders inside
+    affinity: float  # mean over the borders inside, weighted by length; 1 if there are none
     closed: float  # share of its outline that is this cut
     thickness: float  # mean
-    thickness_spread: float
+    thickness_spread: float  # standard deviation
     flatness: float  # least over largest standard deviation of the points
     roundness: float  # middle over largest
 
 
 def _sides(fields: ClusterFields, segment: Segment, small: BoolArray, border: float) -> list[_Side]:
     graph, nodes = segment.graph, segment.nodes
-    sums = _sums_of_sides(
+    inside = SegmentFields(
         graph.edges,
         graph.weight,
         graph.length,
         graph.volume,
-        small,
         fields.degree[nodes],
         fields.thickness[nodes],
         fields.points[nodes],
     )
-    return [_side(row, border) for row in sums]
+    return [_side(row, border) for row in _sums_of_sides(inside, small)]
 
 
 def _side(sums: FloatArray, border: float) -> _Side:
-    area, weight, length, degree, thickness, squares = sums[:6].tolist()
+    area, weight, length, degree, thickness, squares = sums[:_POSITION].tolist()
     outline = degree - 2.0 * length
     mean = thickness / area
-    centre = sums[6:9] / area
-    variance = np.linalg.eigvalsh(sums[9:].reshape(3, 3) / area - np.outer(centre, centre))
+    centre = sums[_POSITION:_PRODUCTS] / area
+    variance = np.linalg.eigvalsh(sums[_PRODUCTS:].reshape(3, 3) / area - np.outer(centre, centre))
     deviation = np.sqrt(np.maximum(variance, 0.0)) / np.sqrt(max(variance[2], _TINY))
     return _Side(
         area=area,
@@ -165,25 +188,29 @@ def _side(sums: FloatArray, border: float) -> _Side:
 
 
 @njit(cache=True)
-def _sums_of_sides(edges, weight, length, volume, small, degree, thickness, points):  # type: ignore[no-untyped-def]
-    """(2, 18) for the small side and the other: area; weight and length inside; and sums over the nodes of the degree,
-    and, times the area, of thickness, its square, the position, and its products."""
-    sums = np.zeros((2, 18))
+def _sums_of_sides(fields, small):  # type: ignore[no-untyped-def]
+    """(2, 18) sums over the small side and over the other one.
+
+    Area; weight and length of the edges inside; degree; and, weighted by area, thickness, its square, the position, and
+    the products of its coordinates.
+    """
+    edges, points = fields.edges, fields.points
+    sums = np.zeros((2, _PRODUCTS + 9))
     for e in range(len(edges)):
         a, b = edges[e, 0], edges[e, 1]
         if small[a] == small[b]:
             row = 0 if small[a] else 1
-            sums[row, 1] += weight[e]
-            sums[row, 2] += length[e]
-    for i in range(len(volume)):
+            sums[row, _WEIGHT] += fields.weight[e]
+            sums[row, _LENGTH] += fields.length[e]
+    for i in range(len(small)):
         row = 0 if small[i] else 1
-        v, t, p = volume[i], thickness[i], points[i]
-        sums[row, 0] += v
-        sums[row, 3] += degree[i]
-        sums[row, 4] += v * t
-        sums[row, 5] += v * t * t
+        v, t, p = fields.volume[i], fields.thickness[i], points[i]
+        sums[row, _AREA] += v
+        sums[row, _DEGREE] += fields.degree[i]
+        sums[row, _THICKNESS] += v * t
+        sums[row, _SQUARES] += v * t * t
         for k in range(3):
-            sums[row, 6 + k] += v * p[k]
+            sums[row, _POSITION + k] += v * p[k]
             for m in range(3):
-                sums[row, 9 + 3 * k + m] += v * p[k] * p[m]
+                sums[row, _PRODUCTS + 3 * k + m] += v * p[k] * p[m]
     return sums

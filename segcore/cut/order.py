@@ -1,4 +1,4 @@
-"""The order in which the splits of a tree are made, when every split has a worth."""
+"""The best order of the splits of a tree, given the gain and the cost of each."""
 
 from heapq import heapify, heappop, heappush
 
@@ -6,20 +6,20 @@ from segcore.arrays import FloatArray, IntArray
 
 
 def best_order(parent: IntArray, gain: FloatArray, cost: FloatArray) -> tuple[list[int], int]:
-    """Order the splits of a forest so that every beginning of the order gains as much as it can for its cost.
+    """Order the splits of a forest by decreasing ratio of gain and cost, parents before children.
 
-    A split that is worth little by itself is drawn forward by what becomes possible after it: blocks of splits are made
-    in the order of their gain over their cost.
+    A split of low gain is moved forward if it makes splits of high gain possible: the splits are joined to blocks, and
+    the blocks are ordered by total gain over total cost.
 
     Parameters
     ----------
-    parent : (S,) the split that has to be made before, smaller than the split itself; -1 where there is none.
-    gain : (S,) what a split is worth; negative where it does harm.
-    cost : (S,) positive.
+    parent : (S,) the split that has to be made before, smaller than the split itself; -1 if there is none.
+    gain : (S,) gain of every split, of any sign.
+    cost : (S,) cost of every split, > 0.
 
     Returns
     -------
-    The splits in order, and how many of them belong to blocks that gain something.
+    The splits in order, and how many of them belong to blocks of positive gain.
 
     References
     ----------
@@ -28,7 +28,7 @@ def best_order(parent: IntArray, gain: FloatArray, cost: FloatArray) -> tuple[li
     """
     total_gain, total_cost = gain.tolist(), cost.tolist()
     members: list[list[int]] = [[s] for s in range(len(total_gain))]
-    waiting: list[list[tuple[float, int]]] = [[] for _ in total_gain]  # heaps of blocks that come after a block
+    waiting: list[list[tuple[float, int]]] = [[] for _ in total_gain]  # heaps of the blocks that follow a block
     first: list[tuple[float, int]] = []
     for split in reversed(range(len(total_gain))):
         later = waiting[split]

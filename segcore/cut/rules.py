@@ -1,4 +1,4 @@
-"""Which of several cuts of a segment is made, which segment is next, and when people would stop."""
+"""Rules for splitting: the choice among several cuts, the order of the splits, and the automatic number of segments."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -18,45 +18,47 @@ from segcore.learned.models import learned_models
 from segcore.parameters import SegmentationParameters
 from segcore.solvers.solvers import SOLVERS, candidate_cuts
 
-# The normalized cut times sqrt(total area) from which people no longer cut, on the odd-numbered benchmark models.
-AUTOMATIC_NCUT = 1.44
-SMALLEST_SIDE = 0.002  # share of the total area below which a part is cut off only after everything else
-_NCUT_WEIGHT = 0.4  # of the normalized cut next to the learned share, where candidates are compared
+# Their neighbours are compared in bench/RESULTS.md, "Constants and their neighbours".
+AUTOMATIC_NCUT = 1.44  # normalized cut times sqrt(total area) at which splitting ends, fitted for ``concavity``
+SMALLEST_SIDE = 0.002  # share of the total area below which a part is cut off only after all others
+NCUT_WEIGHT = 0.4  # of the normalized cut beside the learned share in the comparison of candidates
+_LATE_GAIN = -1.0  # of a split that comes after all others: less than any other split, which loses 0.5 at most
 
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Split:
-    """The cut that is made if a segment is split."""
+    """A split of a segment: its cut and its place among the other splits."""
 
     cut: Cut
     value: float  # normalized cut, or the ratio that orders the splits, times sqrt(total volume)
-    priority: float  # the least is next
-    late: bool  # parts off so little that it waits for everything else
+    priority: float  # splits are made by increasing priority
+    late: bool  # True if the smaller side is so small that the split comes after all others
 
 
 class SplitRule(Protocol):
-    """How a tree grows."""
+    """Chooses the splits of a tree."""
 
-    def best_split(self, segment: Segment) -> Split: ...
+    def best_split(self, segment: Segment) -> Split:
+        """Return the split of a segment of at least two nodes."""
 
     def finished(self, tree: Tree, splits: Sequence[Split | None]) -> Tree:
-        """The tree in its final order with its automatic number of segments.
+        """Return the tree in its final order with its automatic number of segments.
 
         Parameters
         ----------
-        splits : (S,) None where components part; those come first.
+        splits : (S,) None for splits between components, which come first.
         """
 
 
 def split_rule(clusters: Clusters, parameters: SegmentationParameters, rng: np.random.Generator) -> SplitRule:
-    """The rule that the parameters name. The learned one needs to know the thickness of the clusters."""
+    """Return the rule that the parameters name; the learned one needs the thickness of the clusters."""
     if parameters.split_order != "learned" or clusters.thickness is None:
         return RatioRule(clusters.graph, parameters, rng)
     return LearnedRule(ClusterFields.of(clusters.graph, clusters.points, clusters.thickness), parameters, rng)
 
 
 class RatioRule:
-    """The solver's cut; the least normalized cut (or Cheeger cut, or the largest volume) first; a threshold."""
+    """The solver's cut; order by normalized cut, Cheeger cut or volume; a threshold of the normalized cut."""
 
     def __init__(self, graph: SurfaceGraph, parameters: SegmentationParameters, rng: np.random.Generator) -> None:
         self._parameters = parameters
@@ -80,7 +82,7 @@ class RatioRule:
 
 
 class LearnedRule:
-    """The cut, the order and the end that people would choose, as far as ``segcore.cut.features`` knows."""
+    """The cut, the order and the number of segments by the learned model of ``segcore.cut.features``."""
 
     def __init__(self, fields: ClusterFields, parameters: SegmentationParameters, rng: np.random.Generator) -> None:
         self._model = learned_models().split
@@ -94,32 +96,33 @@ class LearnedRule:
         return self.best_of(candidates, self.features(segment, candidates))
 
     def best_of(self, candidates: Sequence[Cut], features: FloatArray) -> Split:
-        """The candidate that people would rather make; one that has to wait only where there is no other."""
+        """Return the candidate of least learned share and normalized cut; a late one only if there is no other."""
         kept = self._model.probability(features)
         size = np.sqrt(self._total)
         late = [min(cut.inside, cut.outside) < SMALLEST_SIDE * self._total for cut in candidates]
-        loss = [q + _NCUT_WEIGHT * cut.ncut * size for q, cut in zip(kept, candidates, strict=True)]
+        loss = [q + NCUT_WEIGHT * cut.ncut * size for q, cut in zip(kept, candidates, strict=True)]
         best = min(range(len(candidates)), key=lambda i: (late[i], loss[i]))
         cut = candidates[best]
         return Split(cut, cut.ncut * size, float(kept[best]), late[best])
 
     def candidates(self, segment: Segment) -> list[Cut]:
-        """Different cuts with connected sides. Of a segment that can only be split late there is one."""
+        """Return different cuts of a segment, each with connected sides."""
         cuts = candidate_cuts(segment.graph, self._parameters, self._rng)
         connected = (with_connected_sides(segment.graph, cut) for cut in cuts)
         return list({cut.key: cut for cut in connected}.values())
 
     def features(self, segment: Segment, candidates: Sequence[Cut]) -> FloatArray:
-        """(N, M): see ``segcore.cut.features``."""
+        """(N, M) features of the candidates, see ``segcore.cut.features``."""
         return np.stack([cut_features(self._fields, segment, cut) for cut in candidates])
 
     def finished(self, tree: Tree, splits: Sequence[Split | None]) -> Tree:
         apart = sum(split is None for split in splits)
         learned = [split for split in splits if split is not None]
         parent = np.maximum((tree.split_node[apart:] - 1) // 2 - apart, -1)
-        # Of all pairs of points those that a split parts; of these, those that more people part than keep together.
+        # The cost of a split is the share of all pairs of points that it separates. Its gain is the part of them that
+        # people separate, less the part that they keep together.
         pairs = np.array([2.0 * split.cut.inside * split.cut.outside / self._total**2 for split in learned])
         kept = np.array([split.priority for split in learned])
-        gain = np.where([split.late for split in learned], -1.0, pairs * (1.0 - 2.0 * kept))
+        gain = np.where([split.late for split in learned], _LATE_GAIN, pairs * (1.0 - 2.0 * kept))
         order, worthwhile = best_order(parent, gain, pairs)
         return tree.reordered([*range(apart), *(apart + s for s in order)], apart + worthwhile + 1)

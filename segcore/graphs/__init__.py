@@ -1,1 +1,1 @@
-"""Weighted graphs and trees, and the algorithms on them that know nothing of meshes."""
+"""Weighted graphs, trees of their cuts, and algorithms on them; independent of meshes."""

@@ -15,7 +15,7 @@ Criterion: TypeAlias = Literal["ncc", "ncut"]
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Cut:
-    """A bipartition of the nodes of a graph, and what it costs."""
+    """A bipartition of the nodes of a graph, its weight and its volumes."""
 
     side: BoolArray  # (N,) True for the nodes of S
     weight: float  # cut(S, T): sum of the weights between the sides
@@ -24,33 +24,34 @@ class Cut:
 
     @property
     def ncc(self) -> float:
-        """Normalized Cheeger cut, cut(S, T) / min(vol(S), vol(T)); infinity where a side is empty."""
+        """Normalized Cheeger cut, cut(S, T) / min(vol(S), vol(T)); infinity if a side is empty."""
         smaller = min(self.inside, self.outside)
         return self.weight / smaller if smaller > 0 else inf
 
     @property
     def ncut(self) -> float:
-        """Normalized cut, cut(S, T) (1 / vol(S) + 1 / vol(T)); infinity where a side is empty."""
+        """Normalized cut, cut(S, T) (1 / vol(S) + 1 / vol(T)); infinity if a side is empty."""
         if min(self.inside, self.outside) <= 0:
             return inf
         return self.weight / self.inside + self.weight / self.outside
 
     def value(self, criterion: Criterion) -> float:
+        """Return the ratio that the criterion names."""
         return self.ncc if criterion == "ncc" else self.ncut
 
     @property
     def canonical(self) -> "Cut":
-        """The same bipartition with node 0 in S: what is left of a cut when it does not matter which side is which."""
+        """The same bipartition with node 0 in S, which makes equal bipartitions equal cuts."""
         return self if self.side[0] else Cut(~self.side, self.weight, self.outside, self.inside)
 
     @property
     def key(self) -> bytes:
-        """The same for two cuts of a graph just when they are the same bipartition."""
+        """Equal for two cuts of a graph if and only if they are the same bipartition."""
         return np.packbits(self.canonical.side).tobytes()
 
 
 def cut_of(graph: SurfaceGraph, side: BoolArray) -> Cut:
-    """The cut that a set of nodes makes.
+    """Return the cut between a set of nodes and the rest.
 
     Parameters
     ----------
@@ -69,7 +70,7 @@ def cut_weight(graph: SurfaceGraph, side: BoolArray) -> float:
 def ncc(graph: SurfaceGraph, side: BoolArray) -> float:
     """Normalized Cheeger cut of a bipartition.
 
-    NCC(S, T) = cut(S, T) / min(vol(S), vol(T)), infinity where a side is empty.
+    NCC(S, T) = cut(S, T) / min(vol(S), vol(T)), infinity if a side is empty.
 
     References
     ----------
@@ -81,7 +82,7 @@ def ncc(graph: SurfaceGraph, side: BoolArray) -> float:
 def ncut(graph: SurfaceGraph, side: BoolArray) -> float:
     """Normalized cut of a bipartition.
 
-    NCut(S, T) = cut(S, T) (1 / vol(S) + 1 / vol(T)), infinity where a side is empty.
+    NCut(S, T) = cut(S, T) (1 / vol(S) + 1 / vol(T)), infinity if a side is empty.
 
     References
     ----------
@@ -91,7 +92,7 @@ def ncut(graph: SurfaceGraph, side: BoolArray) -> float:
 
 
 def balance_subgradient(graph: SurfaceGraph, cut: Cut) -> FloatArray:
-    """(N,): vol[i] on the smaller side, -r vol[i] on the larger one, r = vol(smaller) / vol(larger); the sum is 0.
+    """(N,) vol[i] on the smaller side, -r vol[i] on the larger one, r = vol(smaller) / vol(larger); the sum is 0.
 
     At the indicator of the smaller side it is a subgradient of the balance B(f) = min over c of sum vol[i] |f[i] - c|.
     B is min(vol(A), vol(rest)) at the indicator of any set A, and the sum over A is at most that.
@@ -102,18 +103,18 @@ def balance_subgradient(graph: SurfaceGraph, cut: Cut) -> FloatArray:
 
 
 def sweep(graph: SurfaceGraph, values: FloatArray, criterion: Criterion = "ncc") -> Cut:
-    """The best cut among the upper level sets {i : values[i] > t} of a function. O(E + N log N).
+    """Return the best cut among the upper level sets {i : values[i] > t} of a function. O(E + N log N).
 
-    Nodes of equal value always stay together; of equally good thresholds the lowest wins.
+    Nodes of equal value always stay together; of equally good thresholds the lowest one is taken.
 
     Parameters
     ----------
     values : (N,) finite.
-    criterion : what is minimised, the normalized Cheeger cut or the normalized cut.
+    criterion : the ratio to minimise, the normalized Cheeger cut or the normalized cut.
 
     Returns
     -------
-    The cut, whose ``side`` is the upper level set; it is empty (and both ratios infinite) where all values are equal.
+    The cut, whose ``side`` is the upper level set; it is empty (and both ratios are infinite) if all values are equal.
     """
     values = np.ascontiguousarray(values)
     order = np.argsort(values)
@@ -125,8 +126,8 @@ def sweep(graph: SurfaceGraph, values: FloatArray, criterion: Criterion = "ncc")
 def _best_threshold(edges, weight, volume, values, order, both_sides):  # type: ignore[no-untyped-def]
     """The value whose upper level set has the least ratio.
 
-    An edge between ranks a < b is cut by the thresholds after rank a, a + 1, ..., b - 1: adding its weight at a and
-    taking it away at b makes the cut of every threshold a running sum.
+    An edge between ranks a < b is cut by the thresholds after rank a, a + 1, ..., b - 1. With its weight added at a and
+    subtracted at b, the cut of every threshold is a running sum.
     """
     node_count = len(volume)
     rank = np.empty(node_count, dtype=np.int32)

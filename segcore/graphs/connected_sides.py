@@ -8,10 +8,11 @@ from segcore.graphs.surface_graph import SurfaceGraph, connected_components
 
 
 def with_connected_sides(graph: SurfaceGraph, cut: Cut) -> Cut:
-    """The best cut (by NCC) of a connected graph that parts off one of the connected pieces that a cut leaves.
+    """Return a cut of a connected graph with two connected sides: the best (by NCC) that cuts off a piece of a cut.
 
-    The complement of a piece can itself fall apart. Its pieces then all touch the one taken first, so that any of them
-    has a connected complement, and the best of them is taken.
+    The pieces are the connected components of both sides. If the complement of the best piece is not connected, all of
+    its components touch that piece. The complement of each of them is therefore connected, and the best of them is cut
+    off instead.
     """
     pieces = _pieces(graph, cut.side)
     if pieces.max() <= 1:
@@ -25,19 +26,19 @@ def with_connected_sides(graph: SurfaceGraph, cut: Cut) -> Cut:
 
 
 def _pieces(graph: SurfaceGraph, side: BoolArray) -> IntArray:
-    """(N,) the connected piece of every node when the edges across the cut are taken away."""
+    """(N,) connected component of every node in the graph without the edges across the cut."""
     kept = side[graph.edges[:, 0]] == side[graph.edges[:, 1]]
     return connected_components(graph.edges[kept], graph.node_count)
 
 
-def _best_piece(graph: SurfaceGraph, pieces: IntArray, excluded: int = -1) -> Cut:
-    """The piece with the least NCC against everything else."""
+def _best_piece(graph: SurfaceGraph, pieces: IntArray, excluded: int | None = None) -> Cut:
+    """Cut off the piece with the least NCC against all other nodes."""
     count = int(pieces.max()) + 1
     ends = pieces[graph.edges]
     crossing = ends[:, 0] != ends[:, 1]
     border = group_sums(ends[crossing].ravel(), np.repeat(graph.weight[crossing], 2), count)
     volume = group_sums(pieces, graph.volume, count)
     ncc = border / np.minimum(volume, graph.total_volume - volume)
-    if excluded >= 0:
+    if excluded is not None:
         ncc[excluded] = np.inf
     return cut_of(graph, pieces == int(np.argmin(ncc)))

@@ -1,17 +1,16 @@
-"""The graph Laplacian, factorised: solving L x = b again and again."""
+"""Sparse elimination of a graph Laplacian: a factor with which L x = b is solved many times."""
 
-from dataclasses import dataclass
+from typing import NamedTuple
 
 import numpy as np
 from numba import njit
 
 from segcore.arrays import FloatArray, IntArray, LongArray
 from segcore.graphs.ordering import minimum_degree
-from segcore.graphs.surface_graph import IndexArray, SurfaceGraph
+from segcore.graphs.surface_graph import IndexArray, SurfaceGraph, rows_of
 
 
-@dataclass(frozen=True, slots=True, eq=False)
-class LaplacianFactor:
+class LaplacianFactor(NamedTuple):
     """L = (I - C) diag(pivot) (I - C)^T with rows and columns in an order of elimination.
 
     Column k of C is sparse, non-negative, below the diagonal, and sums to 1; it is empty, with pivot 0, for the last
@@ -30,35 +29,52 @@ class LaplacianFactor:
         return len(self.pivot) - int(np.count_nonzero(self.pivot))
 
     def solve(self, b: FloatArray) -> FloatArray:
-        """A solution x of L x = b, where b sums to 0 over every component. (N,)
+        """(N,) a solution x of L x = b.
 
         x is determined up to a constant on every component; the one returned is 0 at the node eliminated last.
+
+        Parameters
+        ----------
+        b : (N,) with sum 0 over every component.
         """
-        return substitute(self.order, self.start, self.row, self.share, self.pivot, b)
+        return substitute(self, b)
 
 
 def factorise(graph: SurfaceGraph) -> LaplacianFactor:
-    """Gaussian elimination on L = diag(degree) - W.
+    """Factorise L = diag(degree) - W by Gaussian elimination."""
+    return factorise_edges(graph.edges, graph.weight, graph.node_count)
 
-    What is left of a Laplacian after an elimination is a Laplacian again, so that a pivot is the sum of the weights in
-    its row: no number is ever subtracted, and every entry of the factor is accurate in all its digits however many
-    decades the weights span.
+
+def factorise_edges(edges: IntArray, weight: FloatArray, node_count: int) -> LaplacianFactor:
+    """Factorise the Laplacian of an edge list by Gaussian elimination.
+
+    A Laplacian after an elimination is a Laplacian again, so that a pivot is the sum of the weights in its row. No
+    number is ever subtracted, and every entry of the factor is accurate in all its digits for weights of any range.
+
+    Parameters
+    ----------
+    edges : (E, 2) node pairs, each listed once, without loops.
+    weight : (E,) > 0.
 
     References
     ----------
     Grassmann, Taksar and Heyman, Regenerative analysis and steady state distributions for Markov chains, Operations
     Research 33, 1985; George and Liu, Computer solution of large sparse positive definite systems, 1981, ch. 5.
     """
-    rows = graph.rows()
+    rows = rows_of(edges, node_count)
     order = minimum_degree(rows)
-    start, row = _structure(rows.start, rows.neighbour, order)
-    share, pivot = _eliminate(rows.start, rows.neighbour, graph.weight[rows.edge], order, start, row)
+    start, row = _structure(rows, order)
+    share, pivot = _eliminate(rows, weight[rows.edge], order, start, row)
     return LaplacianFactor(order, start, row, share, pivot)
 
 
 @njit(cache=True)
-def _structure(adjacency_start, neighbour, order):  # type: ignore[no-untyped-def]
-    """Where the factor has entries: row i has those on the paths up the elimination tree from its neighbours to i."""
+def _structure(rows, order):  # type: ignore[no-untyped-def]
+    """``start`` and ``row`` of the factor: row i has entries on the tree paths from its neighbours up to i.
+
+    The tree is the elimination tree: the parent of k is the first row below the diagonal of column k.
+    """
+    adjacency_start, neighbour = rows.start, rows.neighbour
     node_count = len(order)
     rank = np.empty(node_count, dtype=np.int32)
     for k in range(node_count):
@@ -94,11 +110,16 @@ def _structure(adjacency_start, neighbour, order):  # type: ignore[no-untyped-de
 
 
 @njit(cache=True)
-def _eliminate(adjacency_start, neighbour, weight, order, start, row):  # type: ignore[no-untyped-def]
-    """Left-looking: column k gathers, from every earlier column with an entry in row k, what that one passes on to it.
+def _eliminate(rows, weight, order, start, row):  # type: ignore[no-untyped-def]
+    """``share`` and ``pivot`` of the factor, left-looking: column k adds up the updates from earlier columns.
 
     ``waiting[k]`` heads a list, linked by ``next_column``, of the columns whose entry at ``reached`` is in row k.
+
+    Parameters
+    ----------
+    weight : (2 E,) of the entries of the rows.
     """
+    adjacency_start, neighbour = rows.start, rows.neighbour
     node_count = len(order)
     rank = np.empty(node_count, dtype=np.int32)
     for k in range(node_count):
@@ -135,7 +156,9 @@ def _eliminate(adjacency_start, neighbour, weight, order, start, row):  # type: 
 
 
 @njit(cache=True)
-def substitute(order, start, row, share, pivot, b):  # type: ignore[no-untyped-def]
+def substitute(factor, b):  # type: ignore[no-untyped-def]
+    """Forward and backward substitution: ``LaplacianFactor.solve`` for use in other kernels."""
+    order, start, row, share, pivot = factor.order, factor.start, factor.row, factor.share, factor.pivot
     node_count = len(order)
     y = np.empty(node_count)
     for k in range(node_count):

@@ -1,6 +1,7 @@
 """Maximum flows between sources and sinks that are spread over all nodes of a graph."""
 
 from dataclasses import dataclass
+from typing import NamedTuple
 
 import numpy as np
 from numba import njit
@@ -10,91 +11,107 @@ from segcore.graphs.laplacian import LaplacianFactor, factorise
 from segcore.graphs.surface_graph import IndexArray, SurfaceGraph
 
 
+class Arcs(NamedTuple):
+    """The arcs of a flow network, two for each edge: node i has the arcs start[i]..start[i + 1]."""
+
+    start: IndexArray  # (N + 1,)
+    target: IndexArray  # (2 E,) the node that an arc leads to
+    reverse: IndexArray  # (2 E,) the arc of the same edge in the other direction
+
+
 @dataclass(frozen=True, slots=True, eq=False)
 class Network:
     """A graph prepared for many maximum flows."""
 
     graph: SurfaceGraph
-    start: IndexArray  # (N + 1,) the entries start[i]..start[i + 1] lead away from node i
-    neighbour: IndexArray  # (2 E,)
-    reverse: IndexArray  # (2 E,) the entry of the same edge in the other direction
-    capacity: FloatArray  # (2 E,)
+    arcs: Arcs
+    capacity: FloatArray  # (2 E,) of the arcs
     factor: LaplacianFactor
 
     @classmethod
     def of(cls, graph: SurfaceGraph) -> "Network":
         rows = graph.rows()
-        reverse = _reverse_entries(rows.edge, len(graph.edges))
-        start, neighbour = rows.start.view(np.uint32), rows.neighbour.view(np.uint32)
-        return cls(graph, start, neighbour, reverse, graph.weight[rows.edge], factorise(graph))
+        reverse = _reverse_arcs(rows.edge, len(graph.edges))
+        arcs = Arcs(rows.start.view(np.uint32), rows.neighbour.view(np.uint32), reverse)
+        return cls(graph, arcs, graph.weight[rows.edge], factorise(graph))
 
     def minimum_cut(self, supply: FloatArray) -> BoolArray:
-        """(N,): the largest set A of least cut(A) - supply(A), up to rounding.
+        """(N,) True for the nodes of the largest set A of least cut(A) - supply(A), up to rounding.
 
-        By the theorem of Ford and Fulkerson it is where the supply stays that a maximum flow cannot carry to where the
-        supply is negative. The flow starts as the electrical one, which carries everything but exceeds capacities: what
-        is over is cut off and leaves an excess and a deficit at the ends of the edge, close to each other more often
-        than not.
+        By the theorem of Ford and Fulkerson, A has the nodes at which supply is left over by a maximum flow from the
+        positive supplies to the negative ones. The flow starts as the electrical flow, which satisfies all supplies but
+        exceeds capacities. It is clipped to the capacities, which leaves an excess and a deficit at the ends of the
+        edge, in most cases close to each other.
 
         Parameters
         ----------
         supply : (N,) with sum 0 over every component.
         """
         potential = self.factor.solve(supply)
-        residual, excess = _electrical_flow(self.start, self.neighbour, self.capacity, potential)
-        distance = push(self.start, self.neighbour, self.reverse, residual, excess)
+        residual, excess = _electrical_flow(self.arcs, self.capacity, potential)
+        distance = push(self.arcs, residual, excess)
         return distance == len(distance)
 
 
 @njit(cache=True)
-def _reverse_entries(edge, edge_count):  # type: ignore[no-untyped-def]
+def _reverse_arcs(edge, edge_count):  # type: ignore[no-untyped-def]
+    """(2 E,) the other arc of the same edge, from the edge of every arc."""
     first = np.full(edge_count, -1, dtype=np.int32)
     reverse = np.empty(len(edge), dtype=np.uint32)
-    for entry in range(len(edge)):
-        other = first[edge[entry]]
+    for arc in range(len(edge)):
+        other = first[edge[arc]]
         if other < 0:
-            first[edge[entry]] = entry
+            first[edge[arc]] = arc
         else:
-            reverse[entry] = other
-            reverse[other] = entry
+            reverse[arc] = other
+            reverse[other] = arc
     return reverse
 
 
 @njit(cache=True)
-def _electrical_flow(start, neighbour, capacity, potential):  # type: ignore[no-untyped-def]
-    """The flow of a potential, cut off at the capacities: what every entry can still take, and every node's excess."""
-    residual = np.empty(len(neighbour))
+def _electrical_flow(arcs, capacity, potential):  # type: ignore[no-untyped-def]
+    """The flow of a potential, clipped to the capacities: (2 E,) residual capacities and (N,) excess of the nodes."""
+    start, target = arcs.start, arcs.target
+    residual = np.empty(len(target))
     excess = np.zeros(len(potential))
     for i in range(len(potential)):
-        for entry in range(start[i], start[i + 1]):
-            flow = capacity[entry] * (potential[i] - potential[neighbour[entry]])
-            kept = min(max(flow, -capacity[entry]), capacity[entry])
+        for arc in range(start[i], start[i + 1]):
+            flow = capacity[arc] * (potential[i] - potential[target[arc]])
+            kept = min(max(flow, -capacity[arc]), capacity[arc])
             excess[i] += flow - kept
-            residual[entry] = capacity[entry] - kept
+            residual[arc] = capacity[arc] - kept
     return residual, excess
 
 
 @njit(cache=True)
-def push(start, neighbour, reverse, residual, excess):  # type: ignore[no-untyped-def]
-    """Push-relabel: move excess to deficits (negative excess) until the rest of it cannot reach any.
+def push(arcs, residual, excess):  # type: ignore[no-untyped-def]
+    """Move excess to deficits (negative excess) by push-relabel until the remaining excess cannot reach any.
 
-    First in, first out, with exact distances now and then. Both arrays are changed. Amounts are moved whole or up to a
-    capacity, so that zeros are exact in floating point.
+    Nodes are processed first in, first out, and exact distances are measured now and then. Both arrays are changed. A
+    push moves either the whole excess or the whole residual capacity, so that zeros are exact in floating point.
 
-    Returns a distance for every node, N exactly where no deficit can be reached.
+    Parameters
+    ----------
+    residual : (2 E,) residual capacities of the arcs.
+    excess : (N,)
+
+    Returns
+    -------
+    (N,) distances to the nearest deficit in the residual graph; N exactly if none can be reached.
 
     References
     ----------
     Goldberg and Tarjan, A new approach to the maximum-flow problem, J. ACM 35, 1988; Cherkassky and Goldberg, On
     implementing the push-relabel method for the maximum flow problem, Algorithmica 19, 1997.
     """
+    start, target, reverse = arcs.start, arcs.target, arcs.reverse
     node_count = len(excess)
     distance = np.zeros(node_count, dtype=np.int32)
     queue = np.empty(node_count, dtype=np.uint32)
     queued = np.empty(node_count, dtype=np.bool_)
     current = np.empty(node_count, dtype=np.uint32)
     while True:
-        measured = _measure_distances(start, neighbour, reverse, residual, excess, distance, queue, False)
+        measured = _measure_distances(arcs, residual, excess, distance, queue, False)
         head = 0
         waiting = 0
         for i in range(node_count):
@@ -104,11 +121,11 @@ def push(start, neighbour, reverse, residual, excess):  # type: ignore[no-untype
                 queue[waiting] = i
                 waiting += 1
         if waiting == 0:
-            # Nodes without excess have been given lower bounds only.
-            _measure_distances(start, neighbour, reverse, residual, excess, distance, queue, True)
+            # Nodes without excess have lower bounds only.
+            _measure_distances(arcs, residual, excess, distance, queue, True)
             return distance
         raised = 0
-        enough = max(measured // 2, node_count // 10)  # then measuring again costs less than it saves
+        enough = max(measured // 2, node_count // 10)  # set by hand: after as many, measuring again saves time
         while waiting > 0 and raised <= enough:
             i = queue[head]
             head = head + 1 if head + 1 < node_count else 0
@@ -117,19 +134,19 @@ def push(start, neighbour, reverse, residual, excess):  # type: ignore[no-untype
             while excess[i] > 0 and distance[i] < node_count:
                 if current[i] == start[i + 1]:
                     lowest = node_count
-                    for entry in range(start[i], start[i + 1]):
-                        if residual[entry] > 0:
-                            lowest = min(lowest, distance[neighbour[entry]] + 1)
+                    for arc in range(start[i], start[i + 1]):
+                        if residual[arc] > 0:
+                            lowest = min(lowest, distance[target[arc]] + 1)
                     distance[i] = lowest
                     current[i] = start[i]
                     raised += 1
                     continue
-                entry = current[i]
-                j = neighbour[entry]
-                if residual[entry] > 0 and distance[i] == distance[j] + 1:
-                    amount = min(excess[i], residual[entry])
-                    residual[entry] -= amount
-                    residual[reverse[entry]] += amount
+                arc = current[i]
+                j = target[arc]
+                if residual[arc] > 0 and distance[i] == distance[j] + 1:
+                    amount = min(excess[i], residual[arc])
+                    residual[arc] -= amount
+                    residual[reverse[arc]] += amount
                     excess[i] -= amount
                     excess[j] += amount
                     if excess[j] > 0 and not queued[j]:
@@ -142,12 +159,13 @@ def push(start, neighbour, reverse, residual, excess):  # type: ignore[no-untype
 
 
 @njit(cache=True)
-def _measure_distances(start, neighbour, reverse, residual, excess, distance, queue, everywhere):  # type: ignore[no-untyped-def]
-    """Distances to the nearest deficit in the residual graph, breadth first, everywhere or as far as there is excess.
+def _measure_distances(arcs, residual, excess, distance, queue, everywhere):  # type: ignore[no-untyped-def]
+    """Measure distances to the nearest deficit in the residual graph, breadth first; returns how many were measured.
 
-    Farther nodes get a lower bound. A node from which no deficit can be reached has distance N from then on: nothing is
-    ever pushed to it. Returns the number of nodes measured.
+    The search ends after the last node that has excess, unless ``everywhere``; farther nodes get a lower bound. A node
+    from which no deficit can be reached keeps the distance N, because nothing is ever pushed to it.
     """
+    start, target, reverse = arcs.start, arcs.target, arcs.reverse
     node_count = len(excess)
     end = 0
     sought = node_count if everywhere else 0
@@ -167,9 +185,9 @@ def _measure_distances(start, neighbour, reverse, residual, excess, distance, qu
         j = queue[k]
         k += 1
         level = distance[j] + 1
-        for entry in range(start[j], start[j + 1]):
-            i = neighbour[entry]
-            if distance[i] < 0 and residual[reverse[entry]] > 0:
+        for arc in range(start[j], start[j + 1]):
+            i = target[arc]
+            if distance[i] < 0 and residual[reverse[arc]] > 0:
                 distance[i] = level
                 queue[end] = i
                 end += 1

@@ -1,4 +1,4 @@
-"""A graph of the faces or vertices of a surface, with what the method needs to know of its nodes."""
+"""A graph of the faces or vertices of a surface, with the positions and the thickness of its nodes."""
 
 from dataclasses import dataclass
 
@@ -10,12 +10,12 @@ from segcore.graphs.surface_graph import SurfaceGraph
 
 @dataclass(frozen=True, slots=True, eq=False)
 class MeshGraph:
-    """A graph of the faces or vertices of a surface."""
+    """A graph whose nodes are the faces of a surface, or its vertices."""
 
     graph: SurfaceGraph
-    points: FloatArray  # (N, 3) where the nodes are
+    points: FloatArray  # (N, 3) positions of the nodes
     corners: IntArray | None  # (F, 3) the nodes at the corners of every face; None if the nodes are the faces
-    thickness: FloatArray | None = None  # (N,) logarithm of the shape diameter over sqrt(total area)
+    thickness: FloatArray | None = None  # (N,) logarithm of the shape diameter over sqrt(total area); None if unknown
 
     @property
     def of_face(self) -> IntArray:

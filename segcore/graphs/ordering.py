@@ -1,16 +1,62 @@
 """Approximate minimum degree: an order of elimination that keeps the factor of a sparse symmetric matrix small."""
 
+from typing import NamedTuple
+
 import numpy as np
 from numba import njit
 
-from segcore.arrays import IntArray
+from segcore.arrays import BoolArray, IntArray, LongArray
 from segcore.graphs.surface_graph import Rows
 
-LEAST_DENSE_ROW = 16  # a row is dense, and comes last, from this many entries and from 10 sqrt(N) entries on
+# A row is dense, and eliminated last, from this many entries and from 10 sqrt(N) entries on: the limit of AMD, the
+# authors' own code (Amestoy, Davis and Duff, Algorithm 837, ACM Trans. Math. Softw. 30, 2004).
+LEAST_DENSE_ROW = 16
+DENSE_ROW = 10.0
+
+
+class Quotient(NamedTuple):
+    """The quotient graph of an elimination: variables, which are left, and elements, which stand for cliques.
+
+    The list of node i is memory[begin[i]]..memory[begin[i] + length[i]], its first ``elements[i]`` entries being
+    elements. The list of an element is its clique.
+    """
+
+    begin: LongArray  # (N,)
+    length: IntArray  # (N,)
+    elements: IntArray  # (N,)
+    size: IntArray  # (N,) number of nodes merged in a variable; 0 for all other nodes
+    degree: IntArray  # (N,) bound of the neighbours of a variable; number of nodes in the clique of an element
+    alive: BoolArray  # (N,) True for elements that no later one has absorbed
+    clique_of: IntArray  # (N,) the last pivot whose clique a variable was in, or -1
+    outside: IntArray  # (N,) nodes of an element, or neighbours of a variable, that are not in the clique of the pivot
+
+
+class DegreeLists(NamedTuple):
+    """The variables of every degree, as doubly linked lists; -1 ends a list."""
+
+    first: IntArray  # (N + 1,)
+    following: IntArray  # (N,)
+    preceding: IntArray  # (N,)
+
+
+class Members(NamedTuple):
+    """The nodes that are merged in every variable, as linked lists; -1 ends a list."""
+
+    following: IntArray  # (N,)
+    last: IntArray  # (N,)
+
+
+class Scratch(NamedTuple):
+    """Work arrays of one elimination step."""
+
+    counted_for: IntArray  # (N,) the last pivot for which an element was counted
+    hashed: IntArray  # (N,) hash of the list of a variable
+    bucket: IntArray  # (N,) first variable of every hash; -1 between steps
+    following: IntArray  # (N,) the next variable of the same hash
 
 
 def minimum_degree(rows: Rows) -> IntArray:
-    """(N,): the nodes in an order of elimination with little fill.
+    """(N,) the nodes in an order of elimination with little fill.
 
     Nodes are eliminated by increasing (approximate) number of the neighbours that they have at that moment. An
     eliminated node becomes an *element*, the clique of its former neighbours; a node that is left, or *variable*, has
@@ -20,100 +66,102 @@ def minimum_degree(rows: Rows) -> IntArray:
     ----------
     Amestoy, Davis and Duff, An approximate minimum degree ordering algorithm, SIAM J. Matrix Anal. Appl. 17, 1996.
     """
-    dense = max(LEAST_DENSE_ROW, int(10 * (len(rows.start) - 1) ** 0.5))
-    return _minimum_degree(rows.start, rows.neighbour, dense)
+    dense = max(LEAST_DENSE_ROW, int(DENSE_ROW * (len(rows.start) - 1) ** 0.5))
+    return _minimum_degree(rows, dense)
 
 
 @njit(cache=True)
-def _minimum_degree(adjacency_start, neighbour, dense):  # type: ignore[no-untyped-def]
-    """The lists of node i are memory[begin[i]] ... of ``length[i]`` entries, the first ``elements[i]`` being elements.
-
-    An element's list is its clique. ``size`` is the number of nodes merged in a variable, and 0 for everything else;
-    ``degree`` bounds the neighbours of a variable and is the number of nodes in the clique of an element.
-    """
-    node_count = len(adjacency_start) - 1
-    memory = neighbour.copy()
+def _minimum_degree(rows, dense):  # type: ignore[no-untyped-def]
+    node_count = len(rows.start) - 1
+    memory = rows.neighbour.copy()
     free = len(memory)
-    begin = np.empty(node_count, dtype=np.int64)
-    length = np.empty(node_count, dtype=np.int32)
-    elements = np.zeros(node_count, dtype=np.int32)
-    size = np.ones(node_count, dtype=np.int32)
-    degree = np.empty(node_count, dtype=np.int32)
-    alive = np.zeros(node_count, dtype=np.bool_)  # True for elements that no later one has absorbed
-    clique_of = np.full(node_count, -1, dtype=np.int32)  # the last pivot whose clique a variable was in
-    outside = np.zeros(node_count, dtype=np.int32)
-    scratch = np.full((4, node_count), -1, dtype=np.int32)
-    first_of_degree = np.full(node_count + 1, -1, dtype=np.int32)
-    next_of_degree = np.full(node_count, -1, dtype=np.int32)
-    previous_of_degree = np.full(node_count, -1, dtype=np.int32)
-    next_member = np.full(node_count, -1, dtype=np.int32)
-    last_member = np.empty(node_count, dtype=np.int32)
+    graph = Quotient(
+        rows.start[:node_count].astype(np.int64),
+        np.diff(rows.start).astype(np.int32),
+        np.zeros(node_count, dtype=np.int32),
+        np.ones(node_count, dtype=np.int32),
+        np.diff(rows.start).astype(np.int32),
+        np.zeros(node_count, dtype=np.bool_),
+        np.full(node_count, -1, dtype=np.int32),
+        np.zeros(node_count, dtype=np.int32),
+    )
+    lists = DegreeLists(
+        np.full(node_count + 1, -1, dtype=np.int32),
+        np.full(node_count, -1, dtype=np.int32),
+        np.full(node_count, -1, dtype=np.int32),
+    )
+    members = Members(np.full(node_count, -1, dtype=np.int32), np.arange(node_count).astype(np.int32))
+    scratch = Scratch(
+        np.full(node_count, -1, dtype=np.int32),
+        np.full(node_count, -1, dtype=np.int32),
+        np.full(node_count, -1, dtype=np.int32),
+        np.full(node_count, -1, dtype=np.int32),
+    )
     order = np.empty(node_count, dtype=np.int32)
     left = node_count
     for i in range(node_count):
-        begin[i] = adjacency_start[i]
-        length[i] = adjacency_start[i + 1] - adjacency_start[i]
-        degree[i] = length[i]
-        last_member[i] = i
-        if length[i] > dense:
-            size[i] = 0
+        if graph.length[i] > dense:
+            graph.size[i] = 0
             left -= 1
             order[left] = i
-    _enter(np.arange(node_count), size, degree, first_of_degree, next_of_degree, previous_of_degree)
+    _enter(np.arange(node_count), graph, lists)
     placed = 0
     least = 0
     while left > 0:
-        while first_of_degree[least] < 0:
+        while lists.first[least] < 0:
             least += 1
-        pivot = first_of_degree[least]
-        first_of_degree[least] = next_of_degree[pivot]
-        if next_of_degree[pivot] >= 0:
-            previous_of_degree[next_of_degree[pivot]] = -1
-        left -= size[pivot]
-        size[pivot] = 0
-        if free + degree[pivot] > len(memory):
-            larger = np.empty(2 * len(memory) + degree[pivot], dtype=np.int32)
+        pivot = lists.first[least]
+        lists.first[least] = lists.following[pivot]
+        if lists.following[pivot] >= 0:
+            lists.preceding[lists.following[pivot]] = -1
+        left -= graph.size[pivot]
+        graph.size[pivot] = 0
+        if free + graph.degree[pivot] > len(memory):
+            larger = np.empty(2 * len(memory) + graph.degree[pivot], dtype=np.int32)
             for k in range(free):
                 larger[k] = memory[k]
             memory = larger
-        end = _form_clique(pivot, free, memory, begin, length, elements, size, alive, clique_of)
+        end = _form_clique(pivot, free, memory, graph)
         clique = memory[free:end]
-        _leave(clique, degree, first_of_degree, next_of_degree, previous_of_degree)
-        _count_outside(pivot, clique, memory, begin, elements, size, degree, alive, outside, scratch)
-        _shorten(pivot, clique, memory, begin, length, elements, size, alive, clique_of, outside, scratch)
+        _leave(clique, graph, lists)
+        _count_outside(pivot, clique, memory, graph, scratch)
+        _shorten(pivot, clique, memory, graph, scratch)
         clique_size = 0
         for i in clique:
-            if outside[i] == 0:  # nothing but the clique is left around i: it is eliminated with the pivot
-                left -= size[i]
-                size[i] = 0
-                next_member[last_member[pivot]] = i
-                last_member[pivot] = last_member[i]
-            clique_size += size[i]
-        _merge_twins(clique, memory, begin, length, elements, size, next_member, last_member, scratch)
+            if graph.outside[i] == 0:  # all neighbours of i are in the clique: it is eliminated with the pivot
+                left -= graph.size[i]
+                graph.size[i] = 0
+                members.following[members.last[pivot]] = i
+                members.last[pivot] = members.last[i]
+            clique_size += graph.size[i]
+        _merge_twins(clique, memory, graph, members, scratch)
         kept = 0
         for i in clique:
-            if size[i] > 0:
-                degree[i] = min(min(degree[i], outside[i]) + clique_size, left) - size[i]
-                least = min(least, degree[i])
+            if graph.size[i] > 0:
+                bound = min(min(graph.degree[i], graph.outside[i]) + clique_size, left)
+                graph.degree[i] = bound - graph.size[i]
+                least = min(least, graph.degree[i])
                 clique[kept] = i
                 kept += 1
-        _enter(clique[:kept], size, degree, first_of_degree, next_of_degree, previous_of_degree)
-        begin[pivot] = free
-        length[pivot] = kept
-        degree[pivot] = clique_size
-        alive[pivot] = kept > 0
+        _enter(clique[:kept], graph, lists)
+        graph.begin[pivot] = free
+        graph.length[pivot] = kept
+        graph.degree[pivot] = clique_size
+        graph.alive[pivot] = kept > 0
         free += kept
         member = pivot
         while member >= 0:
             order[placed] = member
             placed += 1
-            member = next_member[member]
+            member = members.following[member]
     return order
 
 
 @njit(cache=True)
-def _enter(variables, size, degree, first, following, preceding):  # type: ignore[no-untyped-def]
-    """Put variables at the heads of the lists of those of their degrees."""
+def _enter(variables, graph, lists):  # type: ignore[no-untyped-def]
+    """Put variables at the heads of the lists of their degrees."""
+    size, degree = graph.size, graph.degree
+    first, following, preceding = lists.first, lists.following, lists.preceding
     for i in variables:
         if size[i] > 0:
             following[i] = first[degree[i]]
@@ -124,7 +172,10 @@ def _enter(variables, size, degree, first, following, preceding):  # type: ignor
 
 
 @njit(cache=True)
-def _leave(variables, degree, first, following, preceding):  # type: ignore[no-untyped-def]
+def _leave(variables, graph, lists):  # type: ignore[no-untyped-def]
+    """Take variables out of the lists of their degrees."""
+    degree = graph.degree
+    first, following, preceding = lists.first, lists.following, lists.preceding
     for i in variables:
         if following[i] >= 0:
             preceding[following[i]] = preceding[i]
@@ -135,9 +186,11 @@ def _leave(variables, degree, first, following, preceding):  # type: ignore[no-u
 
 
 @njit(cache=True)
-def _form_clique(pivot, free, memory, begin, length, elements, size, alive, clique_of):  # type: ignore[no-untyped-def]
+def _form_clique(pivot, free, memory, graph):  # type: ignore[no-untyped-def]
     """Write the variables around the pivot to ``memory`` from ``free`` on, and absorb its elements."""
-    variables = begin[pivot] + elements[pivot]
+    begin, length, size = graph.begin, graph.length, graph.size
+    alive, clique_of = graph.alive, graph.clique_of
+    variables = begin[pivot] + graph.elements[pivot]
     for k in range(begin[pivot], begin[pivot] + length[pivot]):
         other = memory[k]
         first = k
@@ -158,26 +211,28 @@ def _form_clique(pivot, free, memory, begin, length, elements, size, alive, cliq
 
 
 @njit(cache=True)
-def _count_outside(pivot, clique, memory, begin, elements, size, degree, alive, outside, scratch):  # type: ignore[no-untyped-def]
-    """``outside[e]``: the nodes of element e that are not in the pivot's clique, for every element next to it."""
-    counted_for = scratch[0]
+def _count_outside(pivot, clique, memory, graph, scratch):  # type: ignore[no-untyped-def]
+    """Count the nodes outside the clique of the pivot for every element next to it, in ``outside``."""
+    begin, elements, size, outside = graph.begin, graph.elements, graph.size, graph.outside
+    counted_for = scratch.counted_for
     for i in clique:
         for q in range(begin[i], begin[i] + elements[i]):
             e = memory[q]
-            if alive[e]:
+            if graph.alive[e]:
                 if counted_for[e] != pivot:
                     counted_for[e] = pivot
-                    outside[e] = degree[e]
+                    outside[e] = graph.degree[e]
                 outside[e] -= size[i]
 
 
 @njit(cache=True)
-def _shorten(pivot, clique, memory, begin, length, elements, size, alive, clique_of, outside, scratch):  # type: ignore[no-untyped-def]
-    """Take from the lists of the clique's variables what the clique covers, and put the pivot in; hash the lists.
+def _shorten(pivot, clique, memory, graph, scratch):  # type: ignore[no-untyped-def]
+    """Remove from the lists of the clique's variables what the clique covers, and add the pivot; hash the lists.
 
     ``outside[i]`` becomes a bound of the neighbours of variable i that are not in the clique.
     """
-    hashed = scratch[1]
+    begin, length, elements, size = graph.begin, graph.length, graph.elements, graph.size
+    alive, clique_of, outside = graph.alive, graph.clique_of, graph.outside
     for i in clique:
         old_variables = begin[i] + elements[i]
         bound = 0
@@ -210,15 +265,14 @@ def _shorten(pivot, clique, memory, begin, length, elements, size, alive, clique
         elements[i] = put + 1 - begin[i]
         length[i] = elements[i] + variable_count
         outside[i] = bound
-        hashed[i] = total % len(size)
+        scratch.hashed[i] = total % len(size)
 
 
 @njit(cache=True)
-def _merge_twins(clique, memory, begin, length, elements, size, next_member, last_member, scratch):  # type: ignore[no-untyped-def]
-    """Merge the variables of the pivot's clique whose lists are the same; those of one hash are in one bucket."""
-    hashed = scratch[1]
-    bucket = scratch[2]
-    following = scratch[3]
+def _merge_twins(clique, memory, graph, members, scratch):  # type: ignore[no-untyped-def]
+    """Merge the variables of the pivot's clique that have equal lists; variables of one hash share a bucket."""
+    begin, length, elements, size = graph.begin, graph.length, graph.elements, graph.size
+    hashed, bucket, following = scratch.hashed, scratch.bucket, scratch.following
     for i in clique:
         if size[i] > 0:
             following[i] = bucket[hashed[i]]
@@ -238,8 +292,8 @@ def _merge_twins(clique, memory, begin, length, elements, size, next_member, las
                 if same:
                     size[chosen] += size[i]
                     size[i] = 0
-                    next_member[last_member[chosen]] = i
-                    last_member[chosen] = last_member[i]
+                    members.following[members.last[chosen]] = i
+                    members.last[chosen] = members.last[i]
                     following[previous] = following[i]
                 else:
                     previous = i

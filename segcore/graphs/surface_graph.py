@@ -1,6 +1,6 @@
-"""A weighted graph whose nodes have volumes: what every cut is made on."""
+"""Weighted graphs whose nodes have volumes, their adjacency lists and their connected components."""
 
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 from typing import Any, NamedTuple, TypeAlias
 
 import numpy as np
@@ -10,7 +10,7 @@ from scipy.sparse import csr_matrix
 
 from segcore.arrays import FloatArray, IntArray, group_sums
 
-IndexArray: TypeAlias = NDArray[np.uint32]  # unsigned: compiled loops then need not look for negative indices
+IndexArray: TypeAlias = NDArray[np.uint32]  # unsigned: compiled loops then need no test for negative indices
 
 
 class Rows(NamedTuple):
@@ -18,24 +18,20 @@ class Rows(NamedTuple):
 
     start: IntArray  # (N + 1,)
     neighbour: IntArray  # (2 E,)
-    edge: IntArray  # (2 E,) the edge of the graph that leads there
+    edge: IntArray  # (2 E,) the edge of the graph between the node and this neighbour
 
 
 @dataclass(frozen=True, slots=True, eq=False)
 class SurfaceGraph:
     """An undirected graph without loops, each edge listed once.
 
-    Nodes are vertices of a mesh, its faces, or clusters of faces; the solvers of this package do not care which.
+    The nodes are vertices of a mesh, its faces, or clusters of faces; the solvers do not depend on which.
     """
 
     edges: IntArray  # (E, 2) node pairs, edges[:, 0] < edges[:, 1]
     weight: FloatArray  # (E,) length times affinity, > 0
     volume: FloatArray  # (N,) node volume, > 0
-    length: FloatArray = field(default=None)  # type: ignore[arg-type]  # (E,) of the border of an edge
-
-    def __post_init__(self) -> None:
-        if self.length is None:  # affinity 1 everywhere
-            object.__setattr__(self, "length", self.weight)
+    length: FloatArray  # (E,) length of the common border of the two nodes
 
     @property
     def node_count(self) -> int:
@@ -46,21 +42,21 @@ class SurfaceGraph:
         return float(self.volume.sum())
 
     def rows(self) -> Rows:
-        """The neighbours and the edges of every node, in the order of the edge list. O(N + E)."""
+        """Return the neighbours and the edges of every node, in the order of the edge list. O(N + E)."""
         return rows_of(self.edges, self.node_count)
 
     def adjacency(self) -> "csr_matrix[Any]":
-        """(N, N) symmetric matrix W of the weights, zero diagonal."""
+        """Return the symmetric (N, N) matrix W of the weights, its diagonal zero."""
         rows = self.rows()
         shape = (self.node_count, self.node_count)
         return csr_matrix((self.weight[rows.edge], rows.neighbour, rows.start), shape=shape)
 
     def degrees(self) -> FloatArray:
-        """(N,): the weighted degree of every node, the sum of its row of W."""
+        """(N,) weighted degree of every node, the sum of its row of W."""
         return weighted_degrees(self.edges, self.weight, self.node_count)
 
     def subgraph(self, nodes: IntArray) -> "SurfaceGraph":
-        """The edges inside a set of nodes; the nodes keep their volumes. O(N + E).
+        """Return the graph of the edges inside a set of nodes; the nodes keep their volumes. O(N + E).
 
         Parameters
         ----------
@@ -70,7 +66,13 @@ class SurfaceGraph:
         return SurfaceGraph(edges, self.weight[kept], self.volume[nodes], self.length[kept])
 
     def with_edges(self, pairs: IntArray, weight: FloatArray, length: FloatArray) -> "SurfaceGraph":
-        """More edges (M, 2), weights and lengths (M,), between nodes not joined yet; parallel ones are summed."""
+        """Return the graph with more edges between nodes that have none yet; parallel new edges are summed.
+
+        Parameters
+        ----------
+        pairs : (M, 2) node pairs, in any order.
+        weight, length : (M,)
+        """
         key = pairs.min(axis=1).astype(np.int64) * self.node_count + pairs.max(axis=1)
         different, which = np.unique(key, return_inverse=True)
         added = np.stack([different // self.node_count, different % self.node_count], axis=1).astype(np.int32)
@@ -83,7 +85,7 @@ class SurfaceGraph:
 
 
 def rows_of(edges: IntArray, node_count: int) -> Rows:
-    """The adjacency of an edge list (E, 2); parallel edges are allowed. O(N + E)."""
+    """Return the adjacency lists of an edge list (E, 2); parallel edges are allowed. O(N + E)."""
     return _rows(edges, node_count)
 
 
@@ -93,7 +95,12 @@ def weighted_degrees(edges: IntArray, weight: FloatArray, node_count: int) -> Fl
 
 
 def connected_components(edges: IntArray, node_count: int) -> IntArray:
-    """(N,) int32: the component of every node, numbered 0, 1, ... by the smallest node in each."""
+    """(N,) int32 component of every node, numbered 0, 1, ... by the smallest node of each.
+
+    Parameters
+    ----------
+    edges : (E, 2) node pairs, in any order; loops and parallel edges are allowed.
+    """
     return _components(edges, node_count)
 
 
@@ -119,6 +126,7 @@ def _rows(edges, node_count):  # type: ignore[no-untyped-def]
 
 @njit(cache=True)
 def _induced_edges(edges, nodes, node_count):  # type: ignore[no-untyped-def]
+    """(M, 2) edges inside a set of nodes, numbered as in ``nodes``, and (M,) their indices in ``edges``."""
     local = np.full(node_count, -1, dtype=np.int32)
     for i in range(len(nodes)):
         local[nodes[i]] = i
@@ -139,7 +147,7 @@ def _induced_edges(edges, nodes, node_count):  # type: ignore[no-untyped-def]
 
 @njit(cache=True)
 def _components(edges, node_count):  # type: ignore[no-untyped-def]
-    """Union-find in which the smallest node of a component is its root."""
+    """Union-find with path halving; the root of a component is its smallest node."""
     parent = np.arange(node_count).astype(np.int32)
     for e in range(len(edges)):
         a = edges[e, 0]

@@ -1,1 +1,1 @@
-"""The tree of cuts is carried over to the faces of the mesh, and the boundaries are drawn anew."""
+"""Labels of the faces: the tree of cuts is carried over to the mesh, and its boundaries are refined."""

@@ -1,27 +1,65 @@
-"""Compiled kernels for the band around one boundary: which faces it has, and its network of flows.
+"""Compiled kernels for the band around one boundary: its faces, and its flow network."""
 
-A *place* is the number of a leaf; the leaves of a node have consecutive ones. ``bounds`` are those of a split: the
-lower side has the places low..middle - 1, the upper one middle..high - 1. Scratch arrays are left as they were.
-"""
+from typing import NamedTuple
 
 import numpy as np
 from numba import njit
 
+from segcore.arrays import FloatArray, IntArray
+from segcore.graphs.max_flow import Arcs
+
+
+class Geometry(NamedTuple):
+    """Positions on the surface."""
+
+    edge_vertices: IntArray  # (E_mesh, 2) the ends of the edges of the mesh, the first E_mesh edges of the face graph
+    vertices: FloatArray  # (V, 3)
+    centres: FloatArray  # (F, 3) of the faces
+
+
+class Band(NamedTuple):
+    """The faces near a boundary."""
+
+    faces: IntArray  # (M,)
+    distance: FloatArray  # (M,) from the boundary
+
+
+class BandNetwork(NamedTuple):
+    """The flow network of the free faces of a band; its other faces are sources and sinks."""
+
+    arcs: Arcs  # between the L free faces
+    capacity: FloatArray  # (A,) of the arcs
+    excess: FloatArray  # (L,) capacity from the lower side less that to the upper side
+
+
+class _Queue(NamedTuple):
+    """The faces found so far by a breadth-first search; the arrays have room for more."""
+
+    faces: IntArray
+    source: FloatArray  # (M, 3) the point from which the distance of a face is measured
+    distance: FloatArray
+
 
 @njit(cache=True)
-def grow_band(edges, pairs, place, bounds, rows, edge_vertices, vertices, centres, width, local):  # type: ignore[no-untyped-def]
-    """The faces of both sides whose centres are within a width of the boundary, and their distances from it.
+def grow_band(boundary, graph, geometry, place, bounds, width, local):  # type: ignore[no-untyped-def]
+    """The faces of both sides of a split whose centres are within a distance from its boundary.
 
-    Breadth-first from the boundary; the distance is to the middle of the boundary edge from which a face is reached, or
-    to the centre of the first face where that edge is none of the mesh.
+    Breadth-first from the boundary. Distances are measured from the middle of the boundary edge from which a face is
+    reached, or from the centre of the first face if that edge is a link between components.
+
+    Parameters
+    ----------
+    boundary : (B,) edges, among which are all that cross the split.
+    width : the distance.
+    local : (F,) work array, -1 before and after.
     """
     low, middle, high = bounds
-    start, neighbour, _edge_of = rows
-    faces = np.empty(1024, dtype=np.int32)
-    source = np.empty((1024, 3))
-    distance = np.empty(1024)
+    start, neighbour = graph.rows.start, graph.rows.neighbour
+    pairs = graph.pairs
+    edge_vertices, vertices, centres = geometry
+    found = _Queue(np.empty(1024, dtype=np.int32), np.empty((1024, 3)), np.empty(1024))
     count = 0
-    for e in edges:
+    for e in boundary:
         one, other = place[pairs[e, 0]], place[pairs[e, 1]]
         if min(one, other) < low or max(one, other) >= high or (one < middle) == (other < middle):
             continue
@@ -37,32 +75,32 @@ def grow_band(edges, pairs, place, bounds, rows, edge_vertices, vertices, centre
                 z = 0.5 * (vertices[a, 2] + vertices[b, 2])
             away = _distance(centres, f, x, y, z)
             if away <= width:
-                if count == len(faces):
-                    faces, source, distance = _doubled(faces, source, distance)
+                if count == len(found.faces):
+                    found = _doubled(found)
                 local[f] = count
-                faces[count], distance[count] = f, away
-                source[count, 0], source[count, 1], source[count, 2] = x, y, z
+                found.faces[count], found.distance[count] = f, away
+                found.source[count, 0], found.source[count, 1], found.source[count, 2] = x, y, z
                 count += 1
     k = 0
     while k < count:
-        f = faces[k]
-        x, y, z = source[k, 0], source[k, 1], source[k, 2]
+        f = found.faces[k]
+        x, y, z = found.source[k, 0], found.source[k, 1], found.source[k, 2]
         for entry in range(start[f], start[f + 1]):
             g = neighbour[entry]
             if local[g] >= 0 or place[g] < low or place[g] >= high or (place[g] < middle) != (place[f] < middle):
                 continue
             away = _distance(centres, g, x, y, z)
             if away <= width:
-                if count == len(faces):
-                    faces, source, distance = _doubled(faces, source, distance)
+                if count == len(found.faces):
+                    found = _doubled(found)
                 local[g] = count
-                faces[count], distance[count] = g, away
-                source[count, 0], source[count, 1], source[count, 2] = x, y, z
+                found.faces[count], found.distance[count] = g, away
+                found.source[count, 0], found.source[count, 1], found.source[count, 2] = x, y, z
                 count += 1
         k += 1
     for k in range(count):
-        local[faces[k]] = -1
-    return faces[:count].copy(), distance[:count].copy()
+        local[found.faces[k]] = -1
+    return Band(found.faces[:count].copy(), found.distance[:count].copy())
 
 
 @njit(cache=True)
@@ -71,22 +109,27 @@ def _distance(centres, f, x, y, z):  # type: ignore[no-untyped-def]
 
 
 @njit(cache=True)
-def _doubled(faces, source, distance):  # type: ignore[no-untyped-def]
-    count = len(faces)
-    more_faces = np.empty(2 * count, dtype=np.int32)
-    more_source = np.empty((2 * count, 3))
-    more_distance = np.empty(2 * count)
-    more_faces[:count], more_source[:count], more_distance[:count] = faces, source, distance
-    return more_faces, more_source, more_distance
+def _doubled(found):  # type: ignore[no-untyped-def]
+    """The queue with arrays of twice the size."""
+    count = len(found.faces)
+    larger = _Queue(np.empty(2 * count, dtype=np.int32), np.empty((2 * count, 3)), np.empty(2 * count))
+    larger.faces[:count], larger.source[:count], larger.distance[:count] = found.faces, found.source, found.distance
+    return larger
 
 
 @njit(cache=True)
-def free_faces(faces, distance, place, size, pinned):  # type: ignore[no-untyped-def]
-    """The faces of a band without the cores of its leaves.
+def free_faces(band, place, size, pinned):  # type: ignore[no-untyped-def]
+    """The faces of a band that may change sides: all but the cores of its leaves.
 
-    Where a leaf lies in the band as a whole, its core are the faces that are farther from the boundary than half of the
-    farthest. Where it is pinned, its core is all of it.
+    The core of a leaf that lies in the band as a whole has the faces that are farther from the boundary than half of
+    the farthest. The core of a pinned leaf has all its faces.
+
+    Parameters
+    ----------
+    size : (K,) number of faces of every leaf.
+    pinned : (K,) True for pinned leaves.
     """
+    faces, distance = band
     within = np.zeros(len(size), dtype=np.int32)
     deepest = np.zeros(len(size))
     for k in range(len(faces)):
@@ -105,24 +148,29 @@ def free_faces(faces, distance, place, size, pinned):  # type: ignore[no-untyped
 
 
 @njit(cache=True)
-def band_network(free, place, bounds, rows, weight, local, entry_of):  # type: ignore[no-untyped-def]
-    """The free faces as a network: rows, entries in the other direction, capacities, and the excess of every face.
+def band_network(free, graph, place, bounds, local, arc_of):  # type: ignore[no-untyped-def]
+    """The flow network of the free faces: faces beyond them are sources on the lower side and sinks on the upper one.
 
-    What lies beyond the free faces is a source on the lower side and a sink on the upper one.
+    Parameters
+    ----------
+    free : (L,) faces.
+    local : (F,) work array, -1 before and after.
+    arc_of : (E,) work array, -1 before and after.
     """
     low, middle, high = bounds
-    start, neighbour, edge_of = rows
+    start, neighbour, edge_of = graph.rows
+    weight = graph.weight
     for i in range(len(free)):
         local[free[i]] = i
-    entries = 0
+    arcs = 0
     for f in free:
         for entry in range(start[f], start[f + 1]):
             if local[neighbour[entry]] >= 0:
-                entries += 1
+                arcs += 1
     begin = np.empty(len(free) + 1, dtype=np.uint32)
-    target = np.empty(entries, dtype=np.uint32)
-    reverse = np.empty(entries, dtype=np.uint32)
-    capacity = np.empty(entries)
+    target = np.empty(arcs, dtype=np.uint32)
+    reverse = np.empty(arcs, dtype=np.uint32)
+    capacity = np.empty(arcs)
     excess = np.zeros(len(free))
     count = 0
     for i in range(len(free)):
@@ -133,12 +181,12 @@ def band_network(free, place, bounds, rows, weight, local, entry_of):  # type: i
             if local[g] >= 0:
                 target[count] = local[g]
                 capacity[count] = weight[e]
-                if entry_of[e] < 0:
-                    entry_of[e] = count
+                if arc_of[e] < 0:
+                    arc_of[e] = count
                 else:
-                    reverse[count] = entry_of[e]
-                    reverse[entry_of[e]] = count
-                    entry_of[e] = -1
+                    reverse[count] = arc_of[e]
+                    reverse[arc_of[e]] = count
+                    arc_of[e] = -1
                 count += 1
             elif low <= place[g] < middle:
                 excess[i] += weight[e]
@@ -147,4 +195,4 @@ def band_network(free, place, bounds, rows, weight, local, entry_of):  # type: i
     begin[len(free)] = count
     for f in free:
         local[f] = -1
-    return begin, target, reverse, capacity, excess
+    return BandNetwork(Arcs(begin, target, reverse), capacity, excess)

@@ -1,8 +1,8 @@
-"""The last touch: every boundary becomes a minimum cut of the mesh itself within a narrow band around it.
+"""Boundaries of the parts as minimum cuts of the mesh, each within a narrow band around a cut of clusters.
 
-A cut of clusters follows their jagged outlines. Within the band the cheapest cut runs along concavities where there are
-any and is short elsewhere. Split by split, from the first one on, faces near a boundary may change sides; what lies
-farther away does not, so that every part keeps its core. Only the faces of the bands are visited.
+A cut of clusters follows their jagged outlines. Within the band the cheapest cut runs along concavities if there are
+any and is short otherwise. Split by split, in the order of the tree, faces near a boundary may change sides. Faces
+farther away keep theirs, so that every part keeps its core. Only the faces of the bands are visited.
 """
 
 import numpy as np
@@ -14,22 +14,33 @@ from segcore.coarsen.assembly import CONTACT
 from segcore.coarsen.contacts import Links
 from segcore.graphs.max_flow import push
 from segcore.graphs.mesh_graph import MeshGraph
-from segcore.graphs.surface_graph import SurfaceGraph, rows_of
-from segcore.graphs.tree import Tree, intervals
-from segcore.label.band import band_network, free_faces, grow_band
-from segcore.label.leaves import broken_leaves, changed_places, crossing_edges, edges_around, move
+from segcore.graphs.surface_graph import SurfaceGraph
+from segcore.graphs.tree import Tree
+from segcore.label.band import Band, Geometry, band_network, free_faces, grow_band
+from segcore.label.leaves import (
+    Bounds,
+    FaceGraph,
+    Placement,
+    broken_leaves,
+    changed_places,
+    crossing_edges,
+    edges_around,
+    move,
+)
 
+# The first two are compared with their neighbours in bench/RESULTS.md, "Constants and their neighbours", and their
+# effect is in "Boundaries" there. The others were set by hand.
 BAND = 0.03  # of sqrt(total area), to either side of a boundary
-STIFFNESS = 0.1  # added to the affinity in the cost of a boundary: makes it shorter where concavities say little
-_MOST_FACES = 16384  # in one band: of very fine meshes it is narrower, because flows take longer on wide ones
-_ATTEMPTS = 3  # at a cut that leaves all parts of the hierarchy in one piece
+STIFFNESS = 0.1  # added to the affinity in the cost of a boundary, which makes it short if there are few concavities
+_MOST_FACES = 16384  # in one band: that of a very fine mesh is narrower, because flows take longer on wide bands
+_ATTEMPTS = 3  # at a cut that keeps all parts of the hierarchy connected
 
 
 def draw_boundaries(tree: Tree, nodes: MeshGraph, links: Links, surface: Surface) -> Tree:
     """Move the boundaries of a tree over the faces of a surface to minimum cuts nearby.
 
-    The cost of a boundary is its length times (g + 0.1). Every node of the tree that was connected stays connected, and
-    every leaf keeps half of its faces.
+    The cost of a boundary is its length times (g + 0.1), g being the affinity. Every node of the tree that was
+    connected stays connected, and every leaf keeps at least half of its faces.
 
     Parameters
     ----------
@@ -38,107 +49,124 @@ def draw_boundaries(tree: Tree, nodes: MeshGraph, links: Links, surface: Surface
     """
     if len(tree.split_node) == 0:
         return tree
-    cost = nodes.graph.weight + STIFFNESS * edge_lengths(surface)
+    length = edge_lengths(surface)
     linked = SurfaceGraph(
         np.concatenate([surface.edge_faces, links.faces]),
-        np.concatenate([cost, CONTACT * links.length]),
+        np.concatenate([nodes.graph.weight + STIFFNESS * length, CONTACT * links.length]),
         nodes.graph.volume,
+        np.concatenate([length, links.length]),
     )
-    drawing = _Drawing(tree, linked, surface, nodes.points)
+    drawing = _Drawing(tree, linked, Geometry(surface.edge_vertices, surface.vertices, nodes.points))
     for split in range(len(tree.split_node)):
         drawing.redraw(split)
     return drawing.finished()
 
 
 class _Drawing:
-    """The places of all faces: leaves numbered so that every node has consecutive ones; and what depends on them."""
+    """A tree over faces whose boundaries are moved one by one."""
 
-    def __init__(self, tree: Tree, graph: SurfaceGraph, surface: Surface, centres: FloatArray) -> None:
+    def __init__(self, tree: Tree, graph: SurfaceGraph, geometry: Geometry) -> None:
         splits = len(tree.split_node)
         self._tree = tree
-        self._graph = graph
-        self._geometry = (surface.edge_vertices, surface.vertices, centres)
+        self._volume = graph.volume
+        self._graph = FaceGraph(graph.edges, graph.weight, graph.rows())
+        self._geometry = geometry
         self._width = BAND * float(np.sqrt(graph.total_volume))
-        rows = rows_of(graph.edges, graph.node_count)
-        self._rows = (rows.start, rows.neighbour, rows.edge)
-        self._place_of_node, self._first, self._end = intervals(tree)
-        self._place = self._place_of_node[tree.leaf]
-        self._split_at = np.zeros(splits + 1, dtype=np.int32)  # the split that parts the leaves at places i - 1 and i
-        self._split_at[self._first[2::2]] = np.arange(splits)
-        self._size = np.bincount(self._place, minlength=splits + 1)
-        self._least = (self._size + 1) // 2
-        crossing, split = crossing_edges(graph.edges, self._place, self._split_at)
-        self._crossings = np.bincount(split, minlength=splits)
-        by_split = np.split(crossing[np.argsort(split, kind="stable")], np.cumsum(self._crossings)[:-1])
+        self._intervals = tree.leaf_intervals()
+        place = self._intervals.first[tree.leaf]
+        split_at = np.zeros(splits + 1, dtype=np.int32)
+        split_at[self._intervals.first[2::2]] = np.arange(splits)
+        crossing, split = crossing_edges(graph.edges, place, split_at)
+        crossings = np.bincount(split, minlength=splits)
+        by_split = np.split(crossing[np.argsort(split, kind="stable")], np.cumsum(crossings)[:-1])
         self._edges = [[edges] for edges in by_split]  # of every split, those that crossed it at some time
+        self._placement = Placement(place, np.bincount(place, minlength=splits + 1), crossings, split_at)
+        self._least = (self._placement.size + 1) // 2
         self._local = np.full(graph.node_count, -1, dtype=np.int32)
-        self._entry = np.full(len(graph.edges), -1, dtype=np.int32)
+        self._arc = np.full(len(graph.edges), -1, dtype=np.int32)
         self._visited = np.zeros(graph.node_count, dtype=bool)
 
     def redraw(self, split: int) -> None:
         """Move the boundary of a split, unless every attempt breaks a part."""
-        bounds = (
-            int(self._first[2 * split + 1]),
-            int(self._first[2 * split + 2]),
-            int(self._end[2 * split + 2]),
-        )
-        edges = np.concatenate(self._edges[split])
-        faces, distance = grow_band(
-            edges, self._graph.edges, self._place, bounds, self._rows, *self._geometry, self._width, self._local
-        )
-        if len(faces) > _MOST_FACES:
-            near = distance < np.partition(distance, _MOST_FACES)[_MOST_FACES]
-            faces, distance = faces[near], distance[near]
-        pinned = np.zeros(len(self._size), dtype=bool)
+        bounds = self._bounds(split)
+        band = self._band(split, bounds)
+        place, size = self._placement.place, self._placement.size
+        pinned = np.zeros(len(size), dtype=bool)
         for _ in range(_ATTEMPTS):
-            free = free_faces(faces, distance, self._place, self._size, pinned)
+            free = free_faces(band, place, size, pinned)
             broken = self._cut(free, bounds)
             if not broken.any():
                 return
             pinned |= broken
 
-    def _cut(self, free: IntArray, bounds: tuple[int, int, int]) -> BoolArray:
-        """Make the least cut of the free faces the boundary; where it breaks leaves, say which, and change nothing."""
-        start, neighbour, reverse, capacity, excess = band_network(
-            free, self._place, bounds, self._rows, self._graph.weight, self._local, self._entry
+    def _bounds(self, split: int) -> Bounds:
+        first, end = self._intervals.first, self._intervals.end
+        return Bounds(int(first[2 * split + 1]), int(first[2 * split + 2]), int(end[2 * split + 2]))
+
+    def _band(self, split: int, bounds: Bounds) -> Band:
+        """The nearest faces to the boundary of a split, within the width of a band."""
+        edges = np.concatenate(self._edges[split])
+        band: Band = grow_band(
+            edges, self._graph, self._geometry, self._placement.place, bounds, self._width, self._local
         )
-        if not (excess.max(initial=0.0) > 0.0 > excess.min(initial=0.0)):
-            return np.zeros(len(self._size), dtype=bool)
-        lower = push(start, neighbour, reverse, capacity, excess) == len(free)
-        faces, places = changed_places(free, lower, self._place, bounds, self._rows, self._graph.weight, self._local)
-        before = self._place[faces]
-        whole = self._crossings > 0
+        if len(band.faces) <= _MOST_FACES:
+            return band
+        near = band.distance < np.partition(band.distance, _MOST_FACES)[_MOST_FACES]
+        return Band(band.faces[near], band.distance[near])
+
+    def _cut(self, free: IntArray, bounds: Bounds) -> BoolArray:
+        """Make the minimum cut of the free faces the boundary, or return the leaves that it would break."""
+        place, size = self._placement.place, self._placement.size
+        network = band_network(free, self._graph, place, bounds, self._local, self._arc)
+        if not (network.excess.max(initial=0.0) > 0.0 > network.excess.min(initial=0.0)):
+            return np.zeros(len(size), dtype=bool)
+        lower = push(network.arcs, network.capacity, network.excess) == len(free)
+        faces, places = changed_places(free, lower, self._graph, place, bounds, self._local)
+        before = place[faces]
+        crossed = self._placement.crossings > 0
         self._move(faces, places)
-        broken = broken_leaves(faces, before, self._place, self._size, self._least, self._rows, self._visited)
-        if not broken.any() and (whole & (self._crossings == 0)).any():
+        broken = broken_leaves(faces, before, self._placement, self._least, self._graph.rows, self._visited)
+        if not broken.any() and (crossed & (self._placement.crossings == 0)).any():
             broken[before] = True
         if broken.any():
             self._move(faces[::-1], before[::-1])
         else:
-            self._remember(edges_around(faces, self._rows))
+            self._remember(edges_around(faces, self._graph.rows))
         return broken
 
     def _move(self, faces: IntArray, places: IntArray) -> None:
-        move(faces, places, self._place, self._size, self._crossings, self._split_at, self._rows)
+        move(faces, places, self._placement, self._graph.rows)
 
     def _remember(self, edges: IntArray) -> None:
-        """Enter edges with the splits that they cross now."""
+        """Add edges to the lists of the splits that they cross now."""
         edges = np.unique(edges)
-        crossing, split = crossing_edges(self._graph.edges[edges], self._place, self._split_at)
+        crossing, split = crossing_edges(self._graph.pairs[edges], self._placement.place, self._placement.split_at)
         for crossed in np.unique(split).tolist():
             self._edges[crossed].append(edges[crossing[split == crossed]])
 
     def finished(self) -> Tree:
-        """The tree over the faces, of the two parts of every split the larger one first again."""
+        """The tree over the faces, the larger part of every split first again."""
         tree = self._tree
-        leaf_at = np.empty(len(self._size), dtype=np.int32)
-        leaves = np.setdiff1d(np.arange(len(self._place_of_node), dtype=np.int32), tree.split_node)
-        leaf_at[self._place_of_node[leaves]] = leaves
-        leaf = leaf_at[self._place]
-        volume = group_sums(leaf, self._graph.volume, len(self._place_of_node))
-        number = np.arange(len(volume), dtype=np.int32)
-        for split in reversed(range(len(tree.split_node))):
-            volume[tree.split_node[split]] = volume[2 * split + 1] + volume[2 * split + 2]
-            if volume[2 * split + 1] < volume[2 * split + 2]:
-                number[[2 * split + 1, 2 * split + 2]] = 2 * split + 2, 2 * split + 1
+        place_of_node = self._intervals.first
+        leaf_at = np.empty(len(self._placement.size), dtype=np.int32)
+        leaves = np.setdiff1d(np.arange(len(place_of_node), dtype=np.int32), tree.split_node)
+        leaf_at[place_of_node[leaves]] = leaves
+        leaf = leaf_at[self._placement.place]
+        number = _larger_first(tree, group_sums(leaf, self._volume, len(place_of_node)))
         return Tree(number[tree.split_node], tree.cut_value, number[leaf], tree.automatic_segments)
+
+
+def _larger_first(tree: Tree, volume: FloatArray) -> IntArray:
+    """(2 S + 1,) new numbers of the nodes, such that the larger child of every node comes first.
+
+    Parameters
+    ----------
+    volume : (2 S + 1,) of the leaves, 0 for all other nodes.
+    """
+    volume = volume.copy()
+    number = np.arange(len(volume), dtype=np.int32)
+    for split in reversed(range(len(tree.split_node))):
+        volume[tree.split_node[split]] = volume[2 * split + 1] + volume[2 * split + 2]
+        if volume[2 * split + 1] < volume[2 * split + 2]:
+            number[[2 * split + 1, 2 * split + 2]] = 2 * split + 2, 2 * split + 1
+    return number

@@ -1,16 +1,45 @@
-"""Compiled kernels that keep the places of faces while faces change sides. Arrays in, arrays out.
+"""Compiled kernels for the leaves of a tree over faces, while faces change sides.
 
-A *place* is the number of a leaf; the leaves of a node have consecutive ones. ``bounds`` are those of a split: the
-lower side has the places low..middle - 1, the upper one middle..high - 1. Scratch arrays are left as they were.
+A *place* is the number of a leaf; the leaves of every node of the tree have consecutive places.
 """
+
+from typing import NamedTuple
 
 import numpy as np
 from numba import njit
 
+from segcore.arrays import FloatArray, IntArray, LongArray
+from segcore.graphs.surface_graph import Rows
+
+
+class FaceGraph(NamedTuple):
+    """The dual graph of the faces of a mesh, with the links between its components."""
+
+    pairs: IntArray  # (E, 2) the two faces at every edge; the edges of the mesh come first, then the links
+    weight: FloatArray  # (E,) cost of a boundary along the edge, > 0
+    rows: Rows
+
+
+class Bounds(NamedTuple):
+    """The places of the two sides of a split: low..middle - 1 and middle..high - 1."""
+
+    low: int
+    middle: int
+    high: int
+
+
+class Placement(NamedTuple):
+    """The place of every face, and the counts that depend on it; changed in place."""
+
+    place: IntArray  # (F,)
+    size: LongArray  # (K,) number of faces at every place
+    crossings: LongArray  # (S,) number of edges that cross every split
+    split_at: IntArray  # (K,) the split between the leaves at the places i - 1 and i; constant
+
 
 @njit(cache=True)
 def split_between(one, other, split_at):  # type: ignore[no-untyped-def]
-    """The split that parts two different places: the first one at any gap between them."""
+    """The split between two different places: the first one in the tree of those at the gaps between them."""
     low, high = min(one, other), max(one, other)
     split = split_at[low + 1]
     for gap in range(low + 2, high + 1):
@@ -19,17 +48,17 @@ def split_between(one, other, split_at):  # type: ignore[no-untyped-def]
 
 
 @njit(cache=True)
-def crossing_edges(edges, place, split_at):  # type: ignore[no-untyped-def]
-    """The edges between different places, and the split that each of them crosses."""
+def crossing_edges(pairs, place, split_at):  # type: ignore[no-untyped-def]
+    """(M,) edges between different places, and (M,) the split that each of them crosses."""
     count = 0
-    for e in range(len(edges)):
-        if place[edges[e, 0]] != place[edges[e, 1]]:
+    for e in range(len(pairs)):
+        if place[pairs[e, 0]] != place[pairs[e, 1]]:
             count += 1
     crossing = np.empty(count, dtype=np.int32)
     split = np.empty(count, dtype=np.int32)
     count = 0
-    for e in range(len(edges)):
-        one, other = place[edges[e, 0]], place[edges[e, 1]]
+    for e in range(len(pairs)):
+        one, other = place[pairs[e, 0]], place[pairs[e, 1]]
         if one != other:
             crossing[count] = e
             split[count] = split_between(one, other, split_at)
@@ -38,15 +67,20 @@ def crossing_edges(edges, place, split_at):  # type: ignore[no-untyped-def]
 
 
 @njit(cache=True)
-def changed_places(free, lower, place, bounds, rows, weight, local):  # type: ignore[no-untyped-def]
-    """The faces that change sides, and the place that each gets: that of a neighbour on its new side.
+def changed_places(free, lower, graph, place, bounds, local):  # type: ignore[no-untyped-def]
+    """(M,) faces that change sides, and (M,) the new place of each: that of a neighbour on its new side.
+
+    Faces that no such neighbour can reach stay where they are.
 
     Parameters
     ----------
-    lower : (M,) True for the free faces that belong to the lower side from now on.
+    free : (L,) faces that may change sides.
+    lower : (L,) True for the free faces that belong to the lower side from now on.
+    local : (F,) work array, -1 before and after.
     """
     low, middle, high = bounds
-    start, neighbour, edge_of = rows
+    start, neighbour, edge_of = graph.rows
+    weight = graph.weight
     moved = np.empty(len(free), dtype=np.int32)
     count = 0
     for i in range(len(free)):
@@ -82,15 +116,15 @@ def changed_places(free, lower, place, bounds, rows, weight, local):  # type: ig
                 tail += 1
     for k in range(count):
         local[moved[k]] = -1
-    # Faces that nothing reaches stay where they are.
     reached = new_place[:count] >= 0
     return moved[:count][reached], new_place[reached]
 
 
 @njit(cache=True)
-def move(faces, new_place, place, size, crossings, split_at, rows):  # type: ignore[no-untyped-def]
-    """Give faces other places, and keep count of the faces of every leaf and of the edges that cross every split."""
-    start, neighbour, _edge_of = rows
+def move(faces, new_place, placement, rows):  # type: ignore[no-untyped-def]
+    """Give faces other places, and update the counts of faces and of crossing edges."""
+    start, neighbour = rows.start, rows.neighbour
+    place, size, crossings, split_at = placement
     for k in range(len(faces)):
         f = faces[k]
         for entry in range(start[f], start[f + 1]):
@@ -105,9 +139,17 @@ def move(faces, new_place, place, size, crossings, split_at, rows):  # type: ign
 
 
 @njit(cache=True)
-def broken_leaves(faces, old_place, place, size, least, rows, visited):  # type: ignore[no-untyped-def]
-    """(K,) True for the leaves that have lost some of the faces and have too few now, or are in several pieces."""
-    start, neighbour, _edge_of = rows
+def broken_leaves(faces, old_place, placement, least, rows, visited):  # type: ignore[no-untyped-def]
+    """(K,) True for the leaves that have lost faces and are now too small or not connected.
+
+    Parameters
+    ----------
+    faces, old_place : (M,) the faces that have moved, and their places before.
+    least : (K,) the least number of faces of every leaf.
+    visited : (F,) work array, False before and after.
+    """
+    start, neighbour = rows.start, rows.neighbour
+    place, size = placement.place, placement.size
     broken = np.zeros(len(size), dtype=np.bool_)
     checked = np.zeros(len(size), dtype=np.bool_)
     queue = np.empty(1024, dtype=np.int32)
@@ -146,8 +188,8 @@ def broken_leaves(faces, old_place, place, size, least, rows, visited):  # type:
 
 @njit(cache=True)
 def edges_around(faces, rows):  # type: ignore[no-untyped-def]
-    """The edges of faces, with repetitions."""
-    start, _neighbour, edge_of = rows
+    """The edges of some faces, with repetitions."""
+    start, edge_of = rows.start, rows.edge
     count = 0
     for f in faces:
         count += start[f + 1] - start[f]

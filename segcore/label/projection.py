@@ -1,4 +1,4 @@
-"""From a tree of cuts of the nodes of a mesh graph to a tree of cuts of the faces of the mesh."""
+"""Projection of a tree of cuts of the vertices of a mesh to a tree of cuts of its faces."""
 
 from dataclasses import dataclass
 
@@ -8,27 +8,27 @@ from segcore.arrays import BoolArray, IntArray
 from segcore.graphs.cheeger import cut_of
 from segcore.graphs.connected_sides import with_connected_sides
 from segcore.graphs.surface_graph import SurfaceGraph
-from segcore.graphs.tree import Tree, intervals
+from segcore.graphs.tree import LeafIntervals, Tree
 
 
 def project(tree: Tree, corners: IntArray, faces: SurfaceGraph) -> Tree:
-    """Carry a tree of cuts over to the faces, so that every segment is a connected set of faces.
+    """Carry a tree of cuts over to the faces, such that every segment is a connected set of faces.
 
     Split by split, the faces of a node take the side of most of their corners. Then both sides are made connected. A
-    split that no face follows is left out.
+    split with no faces on one side is left out.
 
     Parameters
     ----------
     tree : a tree over the nodes of a graph.
-    corners : (F, C) the nodes of every face.
+    corners : (F, 3) the nodes at the corners of every face.
     faces : the face dual graph.
 
     Returns
     -------
     The tree over the faces.
     """
-    place, first, end = intervals(tree)
-    corner_place = place[tree.leaf][corners]
+    places = tree.leaf_intervals()
+    corner_place = places.first[tree.leaf][corners]
     parts = {0: _Part(np.arange(len(corners), dtype=np.int32), faces, 0)}
     split_node: list[int] = []
     cut_value: list[float] = []
@@ -38,7 +38,7 @@ def project(tree: Tree, corners: IntArray, faces: SurfaceGraph) -> Tree:
             continue
         part = parts.pop(node)
         one, other = 2 * split + 1, 2 * split + 2
-        side = _votes(corner_place[part.faces], (first[one], end[one]), (first[other], end[other]))
+        side = _votes(corner_place[part.faces], places, one, other)
         if side.all() or not side.any():
             parts[one if side.all() else other] = part
             continue
@@ -60,11 +60,11 @@ def project(tree: Tree, corners: IntArray, faces: SurfaceGraph) -> Tree:
 
 @dataclass(frozen=True, slots=True, eq=False)
 class _Part:
-    """The faces that follow a node, the face dual graph among them, and their node in the tree over the faces."""
+    """The faces of a node of the tree over the nodes."""
 
-    faces: IntArray
-    graph: SurfaceGraph
-    node: int
+    faces: IntArray  # (M,)
+    graph: SurfaceGraph  # the face dual graph of these faces
+    node: int  # their node in the tree over the faces
 
     def half(self, side: BoolArray, node: int) -> "_Part":
         local = np.flatnonzero(side).astype(np.int32)
@@ -72,16 +72,21 @@ class _Part:
 
 
 def _connected(graph: SurfaceGraph, side: BoolArray) -> BoolArray:
-    """Both sides made connected; True stays the side that has most in common with it."""
+    """(M,) the sides made connected; True stays on the side that shares the larger area with it."""
     connected = with_connected_sides(graph, cut_of(graph, side)).side
     kept = graph.volume[connected == side].sum()
     return connected if 2 * kept >= graph.total_volume else ~connected
 
 
-def _votes(place: IntArray, one: tuple[int, int], other: tuple[int, int]) -> BoolArray:
-    """True where more corners lie in one interval than in the other; the first corner with a vote decides a tie."""
-    for_one = (one[0] <= place) & (place < one[1])
-    for_other = (other[0] <= place) & (place < other[1])
+def _votes(place: IntArray, places: LeafIntervals, one: int, other: int) -> BoolArray:
+    """(M,) True for faces with more corners in one node than in the other; the first vote decides a tie.
+
+    Parameters
+    ----------
+    place : (M, 3) places of the corners.
+    """
+    for_one = (places.first[one] <= place) & (place < places.end[one])
+    for_other = (places.first[other] <= place) & (place < places.end[other])
     lead = for_one.sum(axis=1) - for_other.sum(axis=1)
     voting = np.argmax(for_one | for_other, axis=1)
     decided: BoolArray = (lead > 0) | ((lead == 0) & for_one[np.arange(len(place)), voting])

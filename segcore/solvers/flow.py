@@ -1,4 +1,4 @@
-"""Exact improvement of cuts by maximum flows: the default solver."""
+"""Improvement of cuts by maximum flows: the default solver."""
 
 from itertools import islice
 
@@ -9,17 +9,19 @@ from segcore.graphs.surface_graph import SurfaceGraph
 from segcore.solvers.fiedler import eigenvectors
 from segcore.solvers.total_variation import TotalVariationFlow
 
+# Set by hand. The first three are compared with their neighbours in bench/RESULTS.md, "Constants and their neighbours".
 STEPS = 4  # of total variation flow from every eigenvector
 ITERATIONS = 5  # of split Bregman in a step
-HOPELESS = 1.35  # times the best value so far: a cut that is worse is not improved
-LEAST_GAIN = 1e-12  # relative: a smaller one is rounding
+WORST_IMPROVED = 1.35  # times the best value so far: cuts with a larger one are not improved
+LEAST_GAIN = 1e-12  # relative decrease of the value; a smaller one is rounding error
 
 
 def flow_cut(graph: SurfaceGraph, *, count: int = 2) -> Cut:
-    """A small normalized Cheeger cut: the best of several eigenvectors, each improved in two ways.
+    """Return the cut of least normalized Cheeger cut that is reached from several eigenvectors.
 
-    A few steps of total variation flow leave the surroundings of the eigenvector's own cut; the best cut that they pass
-    is then improved by maximum flows, exactly. Never worse than the sweep of the Fiedler vector.
+    From each eigenvector a few steps of total variation flow are made, which leave the neighbourhood of its sweep. The
+    best cut of the steps is then improved by maximum flows. The result is never worse than the sweep of the Fiedler
+    vector.
 
     Parameters
     ----------
@@ -33,7 +35,12 @@ def flow_cut(graph: SurfaceGraph, *, count: int = 2) -> Cut:
     Raises
     ------
     ValueError
-        Where the graph is not connected.
+        If the graph is not connected.
+
+    References
+    ----------
+    Bresson, Laurent, Uminsky and von Brecht, Convergence and energy landscape for Cheeger cut clustering, NIPS 2012;
+    Andersen and Lang, An algorithm for improving graph partitions, SODA 2008.
     """
     network = Network.of(graph)
     vectors = eigenvectors(graph, network.factor, count).T
@@ -42,12 +49,12 @@ def flow_cut(graph: SurfaceGraph, *, count: int = 2) -> Cut:
     different = {cut.key: cut for cut in passed}
     best, *others = sorted(different.values(), key=_ncc)
     best = _improved(network, best)
-    promising = [cut for cut in others if cut.ncc <= HOPELESS * best.ncc]
+    promising = [cut for cut in others if cut.ncc <= WORST_IMPROVED * best.ncc]
     return min([best, *(_improved(network, cut) for cut in promising)], key=_ncc).canonical
 
 
 def sweep_cuts(graph: SurfaceGraph, count: int = 3) -> list[Cut]:
-    """The best of the sweeps of several eigenvectors, improved by maximum flows; then the sweeps as they are.
+    """Return the best of the sweeps of several eigenvectors, improved by maximum flows, then the sweeps unchanged.
 
     Parameters
     ----------
@@ -57,7 +64,7 @@ def sweep_cuts(graph: SurfaceGraph, count: int = 3) -> list[Cut]:
     Raises
     ------
     ValueError
-        Where the graph is not connected.
+        If the graph is not connected.
     """
     network = Network.of(graph)
     sweeps = [sweep(graph, values) for values in eigenvectors(graph, network.factor, count).T]
@@ -65,14 +72,14 @@ def sweep_cuts(graph: SurfaceGraph, count: int = 3) -> list[Cut]:
 
 
 def improve(graph: SurfaceGraph, side: BoolArray) -> Cut:
-    """Lower the normalized Cheeger cut of a bipartition by maximum flows until none of them lowers it any more.
+    """Lower the normalized Cheeger cut of a bipartition by maximum flows until no flow lowers it any further.
 
-    With S the smaller side, r = vol(S) / vol(T) and q = NCC(S), a flow finds the set A of least
+    With S the smaller side, r = vol(S) / vol(T) and q = NCC(S), a maximum flow finds the set A of least
 
         cut(A) - q (vol(A and S) - r vol(A without S)).
 
-    What is subtracted is at most q min(vol(A), vol(rest)), so that a negative value means that NCC(A) < q, and A takes
-    the place of S. In the end no set is better in this sense; in particular no subset of S is.
+    The subtracted term is at most q min(vol(A), vol(rest)). A negative value therefore implies NCC(A) < q, and A
+    replaces S. At the end no set has a negative value; in particular no subset of S has a lower NCC.
 
     Parameters
     ----------

@@ -9,28 +9,29 @@ from segcore.graphs.surface_graph import SurfaceGraph
 from segcore.solvers.inner_problem import InnerProblem
 from segcore.solvers.starts import start_functions
 
-FIRST_ITERATIONS = 50  # before the first sweep; the second one comes after as many again, and so on
-WORTHWHILE_GAIN = 0.02  # relative: a start is given up once the duality gap leaves less to gain over the best cut
-LEAST_GAIN = 1e-12  # relative: a smaller one is rounding
+# Set by hand. The first two are compared with their neighbours in bench/RESULTS.md, "Constants and their neighbours".
+FIRST_ITERATIONS = 50  # of FISTA before the first sweep; each further sweep comes when the total has doubled
+WORTHWHILE_GAIN = 0.02  # a start ends if the duality gap allows a smaller relative gain over the best cut
+LEAST_GAIN = 1e-12  # relative decrease of the value; a smaller one is rounding error
 
 
 def inverse_power_cut(graph: SurfaceGraph, *, starts: int = 6, iterations: int = 800, rng: np.random.Generator) -> Cut:
-    """The best normalized Cheeger cut that the inverse power method finds from several starts.
+    """Return the best normalized Cheeger cut that the inverse power method finds from several starts.
 
-    It minimises F(f) = R(f) / B(f), R(f) = sum of w[i, j] |f[i] - f[j]|, B(f) = min over c of sum vol[i] |f[i] - c|,
-    whose value at the indicator of a set is the normalized Cheeger cut. A step from f, with v a subgradient of B at f,
-    solves the inner problem
+    The method minimises F(f) = R(f) / B(f), R(f) = sum of w[i, j] |f[i] - f[j]|, B(f) = min over c of the sum of
+    vol[i] |f[i] - c|, whose value at the indicator of a set is the normalized Cheeger cut. A step from f, with v a
+    subgradient of B at f, solves the inner problem
 
         minimise R(g) - F(f) <g, v> over the unit ball, for which sum vol[i] g[i]^2 <= 1,
 
-    and thresholds the solution g at its best value. F falls with every step; the method ends where it cannot fall.
+    and thresholds the solution g at its best value. F falls in every step; the method ends when it cannot fall further.
 
     Parameters
     ----------
     graph : connected, at least two nodes.
     starts : at least 1. The first one is the Fiedler vector, so that the result is never worse than its sweep; the
         others are random smooth functions.
-    iterations : the most of FISTA in one inner problem; the duality gap ends most of them earlier.
+    iterations : limit of the FISTA iterations in one inner problem; the duality gap ends most of them earlier.
 
     Returns
     -------
@@ -39,7 +40,7 @@ def inverse_power_cut(graph: SurfaceGraph, *, starts: int = 6, iterations: int =
     Raises
     ------
     ValueError
-        Where the graph is not connected.
+        If the graph is not connected.
 
     References
     ----------
@@ -56,7 +57,7 @@ def inverse_power_cut(graph: SurfaceGraph, *, starts: int = 6, iterations: int =
 
 
 def _descend(problem: InnerProblem, cut: Cut, best: float, iterations: int, seen: set[bytes]) -> Cut:
-    """Steps of the method until one fails, cannot better the best cut by much, or has been made before."""
+    """Make steps until one fails, cannot improve on the best cut by much, or repeats an earlier one."""
     while cut.key not in seen:
         seen.add(cut.key)
         problem.aim(cut.ncc * balance_subgradient(problem.graph, cut))
@@ -65,7 +66,7 @@ def _descend(problem: InnerProblem, cut: Cut, best: float, iterations: int, seen
 
 
 def _step(problem: InnerProblem, cut: Cut, best: float, iterations: int) -> Cut:
-    """A better cut from the inner problem, however far it is solved; the same one where there is none."""
+    """Return a better cut from the inner problem, solved only as far as needed, or the same cut if there is none."""
     done = 0
     while done < iterations:
         more = min(max(FIRST_ITERATIONS, done), iterations - done)

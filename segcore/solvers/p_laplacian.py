@@ -1,4 +1,4 @@
-"""The second eigenvector of the graph p-Laplacian, 1 < p < 2: between the Fiedler vector and the best cut."""
+"""The second eigenvector of the graph p-Laplacian for 1 < p < 2."""
 
 from collections import deque
 from collections.abc import Iterator
@@ -9,15 +9,18 @@ from numba import njit
 from segcore.arrays import FloatArray
 from segcore.errors import InvalidParameters
 from segcore.graphs.cheeger import Cut, sweep
-from segcore.graphs.laplacian import LaplacianFactor, factorise
+from segcore.graphs.laplacian import LaplacianFactor, factorise, factorise_edges
 from segcore.graphs.surface_graph import SurfaceGraph
 from segcore.solvers.starts import start_functions
 
+# MEMORY and SUFFICIENT_DECREASE are the usual values of L-BFGS and of the Armijo rule (Nocedal and Wright, Numerical
+# optimization, 2006); the others were set by hand. CONTINUATION and LEAST_DECREASE are compared with their neighbours
+# in bench/RESULTS.md, "Constants and their neighbours".
 CONTINUATION = 0.7  # p - 1 of a stage, relative to that of the stage before
 MEMORY = 10  # pairs of L-BFGS
-SUFFICIENT_DECREASE = 1e-4  # of a step, relative to the first order (Armijo)
-SHORTEST_STEP = 1e-6
-LEAST_DECREASE = 1e-6  # relative: a stage ends where a step gains less
+SUFFICIENT_DECREASE = 1e-4  # of a step, relative to the first order
+SHORTEST_STEP = 1e-6  # of the line search, relative to the Newton step
+LEAST_DECREASE = 1e-6  # relative decrease of the quotient below which a stage ends
 BALANCED = 1e-10  # relative imbalance of the pulls on the center c
 SMALLEST_JUMP = 1e-5  # along an edge, relative to the largest, for the first Hessian
 
@@ -25,14 +28,14 @@ SMALLEST_JUMP = 1e-5  # along an edge, relative to the largest, for the first He
 def p_laplacian_cut(
     graph: SurfaceGraph, *, p: float = 1.2, starts: int = 1, iterations: int = 100, rng: np.random.Generator
 ) -> Cut:
-    """The best threshold of the second eigenvector of the p-Laplacian.
+    """Return the best threshold of the second eigenvector of the p-Laplacian.
 
-    It minimises F(f) = R(f) / B(f),
+    The eigenvector minimises F(f) = R(f) / B(f),
 
         R(f) = sum of w[i, j] |f[i] - f[j]|^p, B(f) = min over c of sum vol[i] |f[i] - c|^p,
 
-    at smaller and smaller exponents from 2 down to p, every time from the last minimum. The smaller the exponent, the
-    closer the best threshold is to the best normalized Cheeger cut, and the more local minima there are.
+    and is followed through decreasing exponents from 2 down to p, each one starting at the minimum of the last. With a
+    smaller exponent the best threshold is closer to the best normalized Cheeger cut, and there are more local minima.
 
     Parameters
     ----------
@@ -40,7 +43,7 @@ def p_laplacian_cut(
     p : above 1 and below 2.
     starts : at least 1. The first one is the Fiedler vector, so that the result is never worse than its sweep; the
         others are random smooth functions.
-    iterations : the most of L-BFGS at one exponent.
+    iterations : limit of the L-BFGS iterations at one exponent.
 
     Returns
     -------
@@ -49,9 +52,9 @@ def p_laplacian_cut(
     Raises
     ------
     InvalidParameters
-        Where p is not between 1 and 2.
+        If p is not between 1 and 2.
     ValueError
-        Where the graph is not connected.
+        If the graph is not connected.
 
     References
     ----------
@@ -65,13 +68,14 @@ def p_laplacian_cut(
 
 
 def rayleigh_quotient(graph: SurfaceGraph, values: FloatArray, p: float) -> tuple[float, FloatArray]:
-    """F(f) and its gradient (N,), for f that is not constant."""
+    """Return F(f) and its gradient (N,) for a function that is not constant."""
     gradient = np.empty(graph.node_count)
     center = _center(values, graph.volume, p, BALANCED)
     return _quotient(graph.edges.view(np.uint32), graph.weight, graph.volume, values, center, p, gradient), gradient
 
 
 def _continuation(graph: SurfaceGraph, values: FloatArray, p: float, iterations: int) -> Iterator[Cut]:
+    """Yield the sweep of the start, then that of the minimum at every exponent."""
     yield sweep(graph, values)
     exponent = 2.0
     while exponent > p:
@@ -81,16 +85,16 @@ def _continuation(graph: SurfaceGraph, values: FloatArray, p: float, iterations:
 
 
 def minimise(graph: SurfaceGraph, values: FloatArray, p: float, iterations: int) -> FloatArray:
-    """(N,): a local minimum of F by L-BFGS, from a function that is not constant.
+    """(N,) a local minimum of F by L-BFGS, from a function that is not constant.
 
-    The first Hessian is the Laplacian whose weights make R quadratic at the start, w |f[i] - f[j]|^(p - 2).
+    The first Hessian is the Laplacian with the weights w |f[i] - f[j]|^(p - 2), with which R is quadratic at the start.
 
     References
     ----------
     Liu and Nocedal, On the limited memory BFGS method for large scale optimization, Mathematical Programming 45, 1989.
     """
     f = values / np.abs(values).max()
-    factor = factorise(_reweighted(graph, f, p))
+    factor = factorise_edges(graph.edges, _quadratic_weights(graph, f, p), graph.node_count)
     value, gradient = rayleigh_quotient(graph, f, p)
     pairs: deque[tuple[FloatArray, FloatArray]] = deque(maxlen=MEMORY)
     for _ in range(iterations):
@@ -113,7 +117,7 @@ def minimise(graph: SurfaceGraph, values: FloatArray, p: float, iterations: int)
 def _newton_direction(
     factor: LaplacianFactor, gradient: FloatArray, pairs: deque[tuple[FloatArray, FloatArray]]
 ) -> FloatArray:
-    """Minus the gradient times the inverse Hessian that the pairs of steps and changes of the gradient make of L^+."""
+    """(N,) minus the gradient times the inverse Hessian, which is L^+ updated by pairs of a step and its change."""
     rest = gradient.copy()
     shares = []
     for step, change in reversed(pairs):
@@ -128,18 +132,20 @@ def _newton_direction(
     return -direction
 
 
-def _reweighted(graph: SurfaceGraph, f: FloatArray, p: float) -> SurfaceGraph:
+def _quadratic_weights(graph: SurfaceGraph, f: FloatArray, p: float) -> FloatArray:
+    """(E,) the weights of the first Hessian."""
     jump = np.abs(f[graph.edges[:, 0]] - f[graph.edges[:, 1]])
     stiffness = np.maximum(jump / jump.max(), SMALLEST_JUMP) ** (p - 2)
-    return SurfaceGraph(graph.edges, graph.weight * stiffness, graph.volume)
+    weights: FloatArray = graph.weight * stiffness
+    return weights
 
 
 @njit(cache=True)
 def _center(f, volume, p, balanced):  # type: ignore[no-untyped-def]
     """The c that minimises sum vol[i] |f[i] - c|^p: there the pulls of the values above and below c are equal.
 
-    Newton's method, and bisection wherever it leaves the bracket or does not halve the imbalance: beside a value it
-    hardly moves. It ends where the imbalance is at most ``balanced`` times all pulls, or with the bracket used up.
+    Newton's method, replaced by bisection if it leaves the bracket or does not halve the imbalance, as near a value,
+    where its steps vanish. It ends if the imbalance is at most ``balanced`` times all pulls, or the bracket is empty.
     """
     low = f.min()
     high = f.max()
@@ -174,10 +180,10 @@ def _center(f, volume, p, balanced):  # type: ignore[no-untyped-def]
 
 @njit(cache=True)
 def _quotient(edges, weight, volume, f, center, p, gradient):  # type: ignore[no-untyped-def]
-    """R / B; the gradient of B is that at a fixed c, for c is optimal.
+    """Return R / B and fill its gradient (N,); the gradient of B is that at a fixed c, because c is optimal.
 
-    The pulls on c are in balance, but as p falls towards 1 a node next to c may have any pull within the rounding of c:
-    that node's is taken to be what the others leave.
+    The pulls on c are in balance. For p near 1 the pull of the node nearest to c depends on the rounding of c; it is
+    therefore set to minus the sum of the others.
     """
     balance = 0.0
     nearest = 0

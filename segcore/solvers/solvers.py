@@ -1,4 +1,4 @@
-"""The solvers by their names: each finds a small normalized Cheeger cut of a connected graph."""
+"""The solvers by name: each finds a small normalized Cheeger cut of a connected graph."""
 
 from collections.abc import Callable
 
@@ -17,7 +17,7 @@ Solver = Callable[[SurfaceGraph, SegmentationParameters, np.random.Generator], C
 
 
 def flow(graph: SurfaceGraph, _: SegmentationParameters, _rng: np.random.Generator) -> Cut:
-    """Eigenvectors, total variation flow, and exact improvement by maximum flows."""
+    """Eigenvectors, total variation flow, and improvement by maximum flows."""
     return flow_cut(graph)
 
 
@@ -32,7 +32,7 @@ def inverse_power(graph: SurfaceGraph, parameters: SegmentationParameters, rng: 
 
 
 def split_bregman(graph: SurfaceGraph, parameters: SegmentationParameters, rng: np.random.Generator) -> Cut:
-    """p = 1, the paper's second solver: the total variation of Szlam and Bresson."""
+    """p = 1, the paper's second solver: the total variation flow of Szlam and Bresson."""
     return split_bregman_cut(graph, starts=parameters.starts, rng=rng, **_iterations(parameters))
 
 
@@ -55,5 +55,5 @@ SOLVERS: dict[str, Solver] = {
 
 
 def candidate_cuts(graph: SurfaceGraph, parameters: SegmentationParameters, rng: np.random.Generator) -> list[Cut]:
-    """Different cuts to choose from: what the solver ``flow`` meets on its way, or the one cut of another solver."""
+    """Return cuts to choose from: the sweeps of several eigenvectors for ``flow``, the cut of any other solver."""
     return sweep_cuts(graph) if parameters.solver == "flow" else [SOLVERS[parameters.solver](graph, parameters, rng)]

@@ -11,22 +11,23 @@ from segcore.graphs.surface_graph import SurfaceGraph
 from segcore.solvers.starts import start_functions
 from segcore.solvers.total_variation import TotalVariationFlow
 
+# Set by hand, and compared with their neighbours in bench/RESULTS.md, "Constants and their neighbours".
 ITERATIONS_PER_STEP = 10  # of the flow
-PATIENCE = 5  # steps without a better cut
+STEPS_WITHOUT_GAIN = 5  # after which a start ends
 
 
 def split_bregman_cut(graph: SurfaceGraph, *, starts: int = 6, iterations: int = 1000, rng: np.random.Generator) -> Cut:
-    """The best normalized Cheeger cut that total variation flow passes from several starts.
+    """Return the best normalized Cheeger cut on the way of total variation flow from several starts.
 
-    Every step of the flow is thresholded at its best value. Nothing makes the values fall in every step; a start ends
-    when the cut was not bettered for some steps, or when the iterations are used up.
+    Every step of the flow is thresholded at its best value. The values need not fall in every step; a start ends after
+    some steps without a better cut, or at the limit of the iterations.
 
     Parameters
     ----------
     graph : connected, at least two nodes.
     starts : at least 1. The first one is the Fiedler vector, so that the result is never worse than its sweep; the
         others are random smooth functions.
-    iterations : the most split Bregman iterations from one start.
+    iterations : limit of the split Bregman iterations from one start.
 
     Returns
     -------
@@ -35,7 +36,7 @@ def split_bregman_cut(graph: SurfaceGraph, *, starts: int = 6, iterations: int =
     Raises
     ------
     ValueError
-        Where the graph is not connected.
+        If the graph is not connected.
 
     References
     ----------
@@ -54,6 +55,6 @@ def _best_passed(flow: TotalVariationFlow, values: FloatArray, steps: int) -> Cu
     for cut in islice(cuts, steps):
         since = 0 if cut.ncc < best.ncc else since + 1
         best = min(best, cut, key=lambda cut: cut.ncc)
-        if since == PATIENCE:
+        if since == STEPS_WITHOUT_GAIN:
             break
     return best

@@ -1,4 +1,4 @@
-"""Functions on a graph from which the solvers for p < 2 descend."""
+"""Initial functions on a graph for the solvers with p < 2."""
 
 from collections.abc import Iterator
 
@@ -9,13 +9,15 @@ from segcore.graphs.laplacian import LaplacianFactor
 from segcore.graphs.surface_graph import SurfaceGraph
 from segcore.solvers.fiedler import eigenvectors
 
-SMOOTHING_STEPS = 2  # of noise, by the linear inverse power method: what is left are its large features
+# Steps of the linear inverse power method on noise, which leave the low frequencies. Set by hand, and compared with its
+# neighbours in bench/RESULTS.md, "Constants and their neighbours".
+SMOOTHING_STEPS = 2
 
 
 def start_functions(
     graph: SurfaceGraph, factor: LaplacianFactor, starts: int, rng: np.random.Generator
 ) -> Iterator[FloatArray]:
-    """The Fiedler vector, then random smooth functions. (N,) each.
+    """Yield the Fiedler vector, then random smooth functions, (N,) each.
 
     Parameters
     ----------
@@ -26,7 +28,7 @@ def start_functions(
     Raises
     ------
     ValueError
-        Where the graph is not connected.
+        If the graph is not connected.
     """
     yield eigenvectors(graph, factor, 1)[:, 0]
     for _ in range(starts - 1):

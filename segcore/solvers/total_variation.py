@@ -2,31 +2,48 @@
 
 from collections.abc import Iterator
 from dataclasses import dataclass
+from typing import NamedTuple
 
 import numpy as np
 from numba import njit
 
 from segcore.arrays import FloatArray
 from segcore.graphs.cheeger import Cut, sweep
-from segcore.graphs.laplacian import LaplacianFactor, factorise, substitute
+from segcore.graphs.laplacian import LaplacianFactor, factorise_edges, substitute
 from segcore.graphs.surface_graph import IndexArray, SurfaceGraph
 
+# Set by hand, and compared with their neighbours in bench/RESULTS.md, "Constants and their neighbours".
 TIME_STEP = 30.0  # of the flow, for functions of mean magnitude 1
 FIRST_THRESHOLD = 0.3  # of the shrinkage, for the same
 
 
+class SplitSystem(NamedTuple):
+    """The linear system of the split Bregman iterations, the same in all steps."""
+
+    edges: IndexArray  # (E, 2)
+    conductance: FloatArray  # (E,) penalty k times weight
+    factor: LaplacianFactor  # of the matrix D / c + k L, as the Laplacian of a graph with one more node
+
+
+class SplitVariables(NamedTuple):
+    """The state of the split Bregman iterations, changed in place."""
+
+    jump: FloatArray  # (E,) the free differences along the edges
+    multiplier: FloatArray  # (E,) their multipliers
+
+
 @dataclass(frozen=True, slots=True, eq=False)
 class TotalVariationFlow:
-    """The flow that lowers E(f) = R(f) / B(f), prepared for a graph.
+    """The flow that decreases E(f) = R(f) / B(f), prepared for a graph.
 
     R(f) = sum of w[i, j] |f[i] - f[j]|, B(f) = sum vol[i] |f[i]| for functions of weighted median 0; the least E is the
     least normalized Cheeger cut, at the indicator of its side. A step, implicit in R and explicit in B, is
 
         minimise R(u) - E(f) <u, v> + E(f) / (2 c) sum of vol[i] (u[i] - f[i])^2, v = vol sign(f),
 
-    by some split Bregman iterations, then back to median 0 and mean magnitude 1. In an iteration the differences along
-    the edges are free, at a penalty k E(f): a linear system with the matrix D / c + k L, the same for all steps, takes
-    turns with a shrinkage of the differences.
+    approximated by some split Bregman iterations and followed by a shift to median 0 and a scaling to mean magnitude 1.
+    The iterations replace the differences along the edges by free variables with the penalty k E(f). They alternate a
+    linear system with the matrix D / c + k L, the same for all steps, with a shrinkage of the differences.
 
     References
     ----------
@@ -36,50 +53,43 @@ class TotalVariationFlow:
     """
 
     graph: SurfaceGraph
-    edges: IndexArray  # (E, 2)
     penalty: float  # k
-    factor: LaplacianFactor  # of the matrix, as the Laplacian of a graph with one more node
+    system: SplitSystem
 
     @classmethod
     def of(cls, graph: SurfaceGraph, values: FloatArray) -> "TotalVariationFlow":
-        """The penalty is such that ``FIRST_THRESHOLD`` is the threshold of the shrinkage at this function."""
+        """Choose the penalty for which ``FIRST_THRESHOLD`` is the threshold of the shrinkage at this function."""
         penalty = 1 / (FIRST_THRESHOLD * _energy(graph, _centred(graph, values)))
-        return cls(graph, graph.edges.view(np.uint32), penalty, factorise(_grounded(graph, penalty)))
+        conductance = penalty * graph.weight
+        factor = _grounded_factor(graph, conductance)
+        return cls(graph, penalty, SplitSystem(graph.edges.view(np.uint32), conductance, factor))
 
     def cuts(self, values: FloatArray, iterations: int) -> Iterator[Cut]:
-        """The sweep of a function, then that of the function after every step, for ever.
+        """Yield the sweep of a function, then that of the function after every step, without end.
 
         Parameters
         ----------
         values : (N,) not constant.
-        iterations : of split Bregman in a step.
+        iterations : split Bregman iterations in a step.
         """
         graph = self.graph
         yield sweep(graph, values)
         f = _centred(graph, values)
         f *= _scale(graph, f)
         jump = f[graph.edges[:, 0]] - f[graph.edges[:, 1]]
-        bregman = np.zeros_like(jump)
+        variables = SplitVariables(jump, np.zeros_like(jump))
         while True:
             source = graph.volume * f / TIME_STEP + _subgradient(graph, f)
             threshold = 1 / (self.penalty * _energy(graph, f))
-            f = _centred(graph, self._iterate(source, threshold, jump, bregman, iterations))
+            f = _centred(graph, split_bregman_steps(self.system, source, threshold, variables, iterations))
             scale = _scale(graph, f)
             f *= scale
             jump *= scale
             yield sweep(graph, f)
 
-    def _iterate(
-        self, source: FloatArray, threshold: float, jump: FloatArray, bregman: FloatArray, iterations: int
-    ) -> FloatArray:
-        factor = self.factor
-        conductance = self.penalty * self.graph.weight
-        arrays = (factor.order, factor.start, factor.row, factor.share, factor.pivot)
-        return _split_bregman(self.edges, conductance, *arrays, source, threshold, jump, bregman, iterations)
-
 
 def _centred(graph: SurfaceGraph, values: FloatArray) -> FloatArray:
-    """Less the weighted median."""
+    """(N,) values minus their weighted median."""
     order = np.argsort(values)
     below = np.cumsum(graph.volume[order])
     return values - values[order[np.searchsorted(below, 0.5 * below[-1])]]
@@ -91,37 +101,42 @@ def _scale(graph: SurfaceGraph, f: FloatArray) -> float:
 
 
 def _energy(graph: SurfaceGraph, f: FloatArray) -> float:
-    """E(f) = R(f) / B(f) of a function of median 0."""
+    """E(f) = R(f) / B(f) of a function with median 0."""
     variation = graph.weight @ np.abs(f[graph.edges[:, 0]] - f[graph.edges[:, 1]])
     return float(variation / (graph.volume @ np.abs(f)))
 
 
 def _subgradient(graph: SurfaceGraph, f: FloatArray) -> FloatArray:
-    """(N,): vol sign(f), and where f = 0 what makes the sum 0."""
+    """(N,) vol sign(f), and at the zeros of f the values that make the sum 0."""
     subgradient = graph.volume * np.sign(f)
     zero = f == 0
     subgradient[zero] = -graph.volume[zero] * (subgradient.sum() / graph.volume[zero].sum())
     return subgradient
 
 
-def _grounded(graph: SurfaceGraph, penalty: float) -> SurfaceGraph:
-    """The graph whose Laplacian is D / c + penalty L but for the last row, that of one more node next to all."""
+def _grounded_factor(graph: SurfaceGraph, conductance: FloatArray) -> LaplacianFactor:
+    """Factorise D / c + k L as a Laplacian of which the last row and column belong to one more node next to all."""
     nodes = np.arange(graph.node_count, dtype=np.int32)
     spokes = np.stack([nodes, np.full_like(nodes, graph.node_count)], axis=1)
     edges = np.concatenate([graph.edges, spokes])
-    weight = np.concatenate([penalty * graph.weight, graph.volume / TIME_STEP])
-    return SurfaceGraph(edges, weight, np.ones(graph.node_count + 1))
+    return factorise_edges(edges, np.concatenate([conductance, graph.volume / TIME_STEP]), graph.node_count + 1)
 
 
 @njit(cache=True)
-def _split_bregman(  # type: ignore[no-untyped-def]
-    edges, conductance, order, start, row, share, pivot, source, threshold, jump, bregman, iterations
-):
-    """u after some iterations; ``jump`` and ``bregman``, the free differences and their multipliers, go on from there.
+def split_bregman_steps(system, source, threshold, variables, iterations):  # type: ignore[no-untyped-def]
+    """(N,) u after some split Bregman iterations from the state in ``variables``, which they change.
 
-    The linear system is (D / c + k L) u = source + div k w (jump - bregman); the last node takes up the sum, at 0.
-    Then x, the difference of u plus the multiplier, is shrunk to the jump, and the multiplier is what is left of it.
+    An iteration solves (D / c + k L) u = source + div k w (jump - multiplier); the right-hand side of the extra node
+    makes the sum 0, and u is 0 there. Then x, the difference of u plus the multiplier, is shrunk to the jump, and the
+    multiplier becomes the remainder.
+
+    Parameters
+    ----------
+    source : (N,) right-hand side of the step.
+    threshold : of the shrinkage, > 0.
     """
+    edges, conductance = system.edges, system.conductance
+    jump, multiplier = variables.jump, variables.multiplier
     node_count = len(source)
     u = np.zeros(node_count)
     b = np.empty(node_count + 1)
@@ -132,14 +147,14 @@ def _split_bregman(  # type: ignore[no-untyped-def]
             total += source[i]
         b[node_count] = -total
         for e in range(len(edges)):
-            flow = conductance[e] * (jump[e] - bregman[e])
+            flow = conductance[e] * (jump[e] - multiplier[e])
             b[edges[e, 0]] += flow
             b[edges[e, 1]] -= flow
-        potential = substitute(order, start, row, share, pivot, b)
+        potential = substitute(system.factor, b)
         for i in range(node_count):
             u[i] = potential[i] - potential[node_count]
         for e in range(len(edges)):
-            x = u[edges[e, 0]] - u[edges[e, 1]] + bregman[e]
-            bregman[e] = min(max(x, -threshold), threshold)
-            jump[e] = x - bregman[e]
+            x = u[edges[e, 0]] - u[edges[e, 1]] + multiplier[e]
+            multiplier[e] = min(max(x, -threshold), threshold)
+            jump[e] = x - multiplier[e]
     return u

@@ -1,23 +1,27 @@
-"""Small graphs for the tests of the solvers: random ones, ones with a known best cut, and brute force over all cuts."""
+"""Small graphs for the tests of the solvers: random ones, some with a known best cut, and brute force."""
 
 from itertools import combinations
 
 import numpy as np
 from hypothesis import strategies as st
 
-from segcore.arrays import BoolArray, FloatArray
-from segcore.graphs.surface_graph import SurfaceGraph
+from segcore.arrays import BoolArray, FloatArray, IntArray
+from segcore.graphs.surface_graph import SurfaceGraph, connected_components, weighted_degrees
+
+
+def weighted_graph(edges: IntArray, weight: FloatArray, volume: FloatArray) -> SurfaceGraph:
+    """A graph of affinity 1: the lengths are the weights."""
+    return SurfaceGraph(edges, weight, volume, length=weight)
 
 
 def graph_of(
     pairs: list[tuple[int, int]], weight: list[float] | None = None, volume: FloatArray | None = None
 ) -> SurfaceGraph:
-    """A graph from any list of pairs, by default with weights 1 and the degrees as volumes."""
+    """A graph from any list of pairs; by default of weights 1, the volumes being the degrees."""
     edges = np.sort(np.array(pairs, dtype=np.int32).reshape(-1, 2), axis=1)
     weights = np.ones(len(edges)) if weight is None else np.array(weight, dtype=np.float64)
-    node_count = len(volume) if volume is not None else int(edges.max()) + 1
-    graph = SurfaceGraph(edges, weights, np.ones(node_count))
-    return SurfaceGraph(edges, weights, graph.degrees() if volume is None else volume)
+    degrees = weighted_degrees(edges, weights, int(edges.max()) + 1) if volume is None else volume
+    return weighted_graph(edges, weights, degrees)
 
 
 def path(node_count: int) -> SurfaceGraph:
@@ -43,12 +47,12 @@ def grid(rows: int, columns: int) -> SurfaceGraph:
     across = np.stack([node[:, :-1].ravel(), node[:, 1:].ravel()], axis=1)
     down = np.stack([node[:-1].ravel(), node[1:].ravel()], axis=1)
     edges = np.concatenate([across, down])
-    return SurfaceGraph(edges, np.ones(len(edges)), np.ones(rows * columns))
+    return weighted_graph(edges, np.ones(len(edges)), np.ones(rows * columns))
 
 
 @st.composite
 def graphs(draw: st.DrawFn, most_nodes: int = 9, decades: float = 1.0, connected: bool = True) -> SurfaceGraph:
-    """Any graph without loops, with weights and volumes over some decades; in half of them volumes are degrees."""
+    """Any graph without loops, with weights and volumes over some decades; volumes are degrees in half of the cases."""
     node_count = draw(st.integers(2, most_nodes))
     pairs = list(combinations(range(node_count), 2))
     chosen = set(draw(st.lists(st.sampled_from(pairs), min_size=1)))
@@ -59,8 +63,14 @@ def graphs(draw: st.DrawFn, most_nodes: int = 9, decades: float = 1.0, connected
     volume = np.array(draw(st.lists(values, min_size=node_count, max_size=node_count)))
     graph = graph_of(sorted(chosen), weight, volume)
     if connected and draw(st.booleans()):
-        return SurfaceGraph(graph.edges, graph.weight, graph.degrees())
+        return weighted_graph(graph.edges, graph.weight, graph.degrees())
     return graph
+
+
+def is_connected(graph: SurfaceGraph, nodes: BoolArray) -> bool:
+    """Whether a set of nodes, at least one, is connected by the edges inside it."""
+    part = graph.subgraph(np.flatnonzero(nodes).astype(np.int32))
+    return bool(connected_components(part.edges, part.node_count).max() == 0)
 
 
 def laplacian(graph: SurfaceGraph) -> FloatArray:
@@ -95,9 +105,9 @@ def best_ncc(graph: SurfaceGraph) -> float:
 
 
 def mesh_like(seed: int, rows: int = 20, columns: int = 30) -> SurfaceGraph:
-    """A grid with random weights over two decades and random volumes: without symmetry, its best cut unknown."""
+    """A grid with random weights over two decades and random volumes: without symmetry, the best cut unknown."""
     rng = np.random.default_rng(seed)
     graph = grid(rows, columns)
-    return SurfaceGraph(
+    return weighted_graph(
         graph.edges, 10.0 ** rng.uniform(-2, 0, len(graph.edges)), rng.uniform(0.5, 2, graph.node_count)
     )

@@ -2,18 +2,18 @@ import numpy as np
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
+from helpers.graphs import is_connected, weighted_graph
+from helpers.trees import members
 from segcore.cut.bisection import bisect
 from segcore.cut.rules import AUTOMATIC_NCUT, RatioRule
-from segcore.graphs.cheeger import cut_of
-from segcore.graphs.connected_sides import with_connected_sides
-from segcore.graphs.surface_graph import SurfaceGraph, connected_components
+from segcore.graphs.surface_graph import connected_components
 from segcore.parameters import SegmentationParameters
 
 
 def graph_of(pairs, count, weights=None, volume=None):
     edges = np.array(sorted({(min(p), max(p)) for p in pairs}), np.int32).reshape(-1, 2)
     weight = np.ones(len(edges)) if weights is None else weights
-    return SurfaceGraph(edges, weight, np.ones(count) if volume is None else volume)
+    return weighted_graph(edges, weight, np.ones(count) if volume is None else volume)
 
 
 @st.composite
@@ -23,7 +23,7 @@ def graphs(draw):
     pairs = [p for p in draw(st.lists(st.tuples(node, node), max_size=60)) if p[0] != p[1]]
     graph = graph_of(pairs, count)
     rng = np.random.default_rng(draw(st.integers(0, 1000)))
-    return SurfaceGraph(graph.edges, rng.uniform(0.1, 2, len(graph.edges)), rng.uniform(0.2, 2, count))
+    return weighted_graph(graph.edges, rng.uniform(0.1, 2, len(graph.edges)), rng.uniform(0.2, 2, count))
 
 
 def grown(graph, max_segments):
@@ -32,21 +32,13 @@ def grown(graph, max_segments):
     return bisect(graph, rng.random((graph.node_count, 3)), rule, max_segments)
 
 
-def is_connected(graph, nodes):
-    return connected_components(graph.subgraph(np.flatnonzero(nodes).astype(np.int32))).max() == 0
-
-
 @settings(max_examples=80)
 @given(graphs())
 def test_every_segment_of_every_level_is_connected_within_its_component(graph):
     tree = grown(graph, 50)
-    components = int(connected_components(graph).max()) + 1
-    nodes = 2 * len(tree.split_node) + 1
-    below = {node: {node} for node in range(nodes)}
-    for split in reversed(range(len(tree.split_node))):
-        below[int(tree.split_node[split])] |= below[2 * split + 1] | below[2 * split + 2]
-    for node in range(2 * (components - 1) + 1, nodes):
-        assert is_connected(graph, np.isin(tree.leaf, list(below[node])))
+    components = int(connected_components(graph.edges, graph.node_count).max()) + 1
+    for nodes in members(tree)[2 * (components - 1) + 1 :]:
+        assert is_connected(graph, nodes)
 
 
 @settings(max_examples=80)
@@ -57,25 +49,13 @@ def test_splitting_ends_when_every_segment_is_one_node(graph):
     assert len(set(tree.leaf)) == graph.node_count
 
 
-@settings(max_examples=80)
-@given(graphs(), st.data())
-def test_both_sides_of_a_cut_become_connected(graph, data):
-    graph = graph.subgraph(np.flatnonzero(connected_components(graph) == 0).astype(np.int32))
-    side = np.array(data.draw(st.lists(st.booleans(), min_size=graph.node_count, max_size=graph.node_count)))
-    if side.all() or not side.any():
-        return
-    cut = with_connected_sides(graph, cut_of(graph, side))
-    assert is_connected(graph, cut.side)
-    assert is_connected(graph, ~cut.side)
-
-
 def test_the_least_normalized_cut_is_made_first():
     """Three cliques in a row, the second bridge stronger than the first."""
     cliques = [(5 * c + i, 5 * c + j) for c in range(3) for i in range(5) for j in range(i)]
     graph = graph_of([*cliques, (4, 5), (9, 10)], 15)
     weight = np.where((graph.edges == [9, 10]).all(axis=1), 0.5, graph.weight)
     weight[(graph.edges == [4, 5]).all(axis=1)] = 0.1
-    tree = grown(SurfaceGraph(graph.edges, weight, graph.volume), 3)
+    tree = grown(weighted_graph(graph.edges, weight, graph.volume), 3)
     np.testing.assert_array_equal(tree.split_node, [0, 1])
     np.testing.assert_array_equal(tree.leaf, np.repeat([2, 3, 4], 5))
     np.testing.assert_allclose(tree.cut_value, np.sqrt(15) * np.array([0.1 * (1 / 5 + 1 / 10), 0.5 * (1 / 5 + 1 / 5)]))
@@ -91,7 +71,7 @@ def test_the_automatic_number_counts_the_cuts_below_the_threshold():
 
 
 def test_a_side_of_less_than_a_five_hundredth_waits_for_all_others():
-    """A tiny node on a thread beside two halves joined by a band: the thread is by far the better cut."""
+    """Two halves joined by a strong edge and a tiny node at a weak one: the weak edge is by far the better cut."""
     graph = graph_of([(0, 1), (1, 2)], 3, np.array([0.5, 1e-9]), np.array([1.0, 1.0, 0.001]))
     tree = grown(graph, 3)
     assert tree.leaf[1] != tree.leaf[2]

@@ -3,7 +3,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from helpers.graphs import graphs, laplacian
+from helpers.graphs import graph_of, graphs, laplacian
 from segcore.graphs.cheeger import Criterion, cut_of, cut_weight, ncc, ncut, sweep
 from segcore.graphs.surface_graph import SurfaceGraph
 
@@ -43,7 +43,7 @@ def test_the_sweep_never_parts_equal_values(graph: SurfaceGraph, data: st.DataOb
 
 def test_the_criteria_differ() -> None:
     """Volumes 1, 1, 2 on a path: cutting the first node off costs 1 / 1 or 1 + 1/3, the last one 1.9 / 2 or 1.9."""
-    graph = SurfaceGraph(np.array([[0, 1], [1, 2]], dtype=np.int32), np.array([1.0, 1.9]), np.array([1.0, 1.0, 2.0]))
+    graph = graph_of([(0, 1), (1, 2)], [1.0, 1.9], np.array([1.0, 1.0, 2.0]))
     values = np.array([0.0, 1.0, 2.0])
     assert sweep(graph, values, "ncc").side.tolist() == [False, False, True]
     assert sweep(graph, values, "ncut").side.tolist() == [False, True, True]

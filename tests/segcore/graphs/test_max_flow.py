@@ -20,7 +20,7 @@ def test_no_set_has_a_smaller_cut_less_its_supply(graph: SurfaceGraph, data: st.
 
 @given(st.integers(0, 1000))
 def test_the_cut_of_a_large_graph_is_a_local_minimum_too(seed: int) -> None:
-    """Against an independent bound: the value that the sets of single nodes and random threshold sets reach."""
+    """Compare with independent bounds: the set with any one node flipped, and the set of the positive supplies."""
     graph = mesh_like(seed)
     rng = np.random.default_rng(seed)
     supply = np.repeat(rng.standard_normal(graph.node_count // 20), 20)

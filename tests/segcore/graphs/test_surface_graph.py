@@ -34,7 +34,7 @@ def test_a_subgraph_is_a_submatrix_in_the_order_of_its_nodes(graph: SurfaceGraph
 
 @given(graphs(connected=False))
 def test_components_are_those_of_scipy_numbered_by_their_smallest_nodes(graph: SurfaceGraph) -> None:
-    component = connected_components(graph)
+    component = connected_components(graph.edges, graph.node_count)
     _, expected = scipy_components(graph.adjacency(), directed=False)
     assert component.dtype == np.int32
     np.testing.assert_array_equal(component, expected)

@@ -5,14 +5,15 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
+from helpers.graphs import is_connected
 from helpers.meshes import agreement, areas, rotation
+from helpers.trees import grown_tree, members, two_sides
 from segcore import shapes
 from segcore.affinity.mesh_graphs import mesh_graph
 from segcore.clean.edge_geometry import edge_lengths
 from segcore.clean.surface import build_surface
 from segcore.coarsen.contacts import Links
 from segcore.graphs.surface_graph import connected_components
-from segcore.graphs.tree import Tree
 from segcore.label.boundary import BAND, draw_boundaries
 from segcore.mesh import Mesh
 from segcore.parameters import SegmentationParameters
@@ -24,48 +25,14 @@ def plain(mesh):
     return surface, mesh_graph(surface, SegmentationParameters(affinity="adjacency"))
 
 
-def two_sides(side):
-    return Tree(np.zeros(1, np.int32), np.ones(1), np.where(side, 1, 2).astype(np.int32), 2)
+def pieces(graph, faces):
+    part = graph.subgraph(np.flatnonzero(faces).astype(np.int32))
+    return connected_components(part.edges, part.node_count).max() + 1
 
 
 def length_of_cut(surface, leaf):
     ends = leaf[surface.edge_faces]
     return edge_lengths(surface)[ends[:, 0] != ends[:, 1]].sum()
-
-
-def grown_tree(graph, leaves, seed):
-    """A tree whose leaves are grown from random faces and merged with neighbours at random: all nodes are connected."""
-    rng = np.random.default_rng(seed)
-    rows = graph.rows()
-    leaf_of = np.full(graph.node_count, -1)
-    fringe = list(rng.choice(graph.node_count, leaves, replace=False))
-    leaf_of[fringe] = np.arange(leaves)
-    while fringe:
-        f = fringe.pop(rng.integers(len(fringe)))
-        for g in rows.neighbour[rows.start[f] : rows.start[f + 1]]:
-            if leaf_of[g] < 0:
-                leaf_of[g] = leaf_of[f]
-                fringe.append(g)
-    group, merges = np.arange(leaves), []
-    while len(set(group)) > 1:
-        ends = group[leaf_of[graph.edges]]
-        ends = ends[ends[:, 0] != ends[:, 1]]
-        a, b = ends[rng.integers(len(ends))]
-        merges.append((a, b, leaves + len(merges)))
-        group[(group == a) | (group == b)] = merges[-1][2]
-    number, split_node = {merges[-1][2] if merges else 0: 0}, []
-    for a, b, into in reversed(merges):
-        split_node.append(number[into])
-        number[a], number[b] = 2 * len(split_node) - 1, 2 * len(split_node)
-    leaf = np.array([number[i] for i in range(leaves)], np.int32)[leaf_of]
-    return Tree(np.array(split_node, np.int32), np.ones(len(split_node)), leaf, 1)
-
-
-def nodes_of(tree):
-    below = {node: {node} for node in range(2 * len(tree.split_node) + 1)}
-    for split in reversed(range(len(tree.split_node))):
-        below[int(tree.split_node[split])] |= below[2 * split + 1] | below[2 * split + 2]
-    return [np.isin(tree.leaf, list(leaves)) for leaves in below.values()]
 
 
 SPHERE, SPHERE_FACES = plain(shapes.icosphere(3))
@@ -79,11 +46,10 @@ def test_every_part_stays_connected_and_none_vanishes(leaves, seed, band):
         patch.setattr("segcore.label.boundary.BAND", band)
         drawn = draw_boundaries(tree, SPHERE_FACES, Links.none(), SPHERE)
     assert len(drawn.split_node) == len(tree.split_node)
-    for members in nodes_of(drawn):
-        part = SPHERE_FACES.graph.subgraph(np.flatnonzero(members).astype(np.int32))
-        assert part.node_count > 0
-        assert connected_components(part).max() == 0
-    volume = [SPHERE.areas[members].sum() for members in nodes_of(drawn)]
+    for faces in members(drawn):
+        assert faces.any()
+        assert is_connected(SPHERE_FACES.graph, faces)
+    volume = [SPHERE.areas[faces].sum() for faces in members(drawn)]
     assert all(one >= other * (1 - 1e-9) for one, other in zip(volume[1::2], volume[2::2], strict=True))
 
 
@@ -153,6 +119,5 @@ def test_parts_in_several_components_stay_linked():
     tree = two_sides(nodes.points[:, 0] > 0.01)
     drawn = draw_boundaries(replace(tree), nodes, Links(link, np.ones(1)), surface)
     linked = nodes.graph.with_edges(link, np.ones(1), np.ones(1))
-    whole = [connected_components(linked.subgraph(np.flatnonzero(leaf == k).astype(np.int32))).max()
-             for leaf in (tree.leaf, drawn.leaf) for k in (1, 2)]  # fmt: skip
-    assert whole[2:] <= whole[:2]
+    before, after = ([pieces(linked, leaf == k) for k in (1, 2)] for leaf in (tree.leaf, drawn.leaf))
+    assert after <= before

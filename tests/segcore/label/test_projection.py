@@ -2,9 +2,10 @@ import numpy as np
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
+from helpers.graphs import is_connected
+from helpers.trees import members, two_sides
 from segcore import shapes
 from segcore.clean.surface import build_surface
-from segcore.graphs.surface_graph import connected_components
 from segcore.graphs.tree import Tree
 from segcore.label.projection import _connected, project
 
@@ -14,7 +15,7 @@ FACES = SURFACE.face_graph()
 
 @st.composite
 def trees(draw):
-    """Random trees over the 42 vertices of a sphere, as scattered as a tree can be."""
+    """Random trees over the 42 vertices of a sphere, with leaves that are not connected."""
     splits = draw(st.integers(0, 8))
     leaves, split_node = [0], []
     for s in range(splits):
@@ -29,20 +30,15 @@ def trees(draw):
 @given(trees())
 def test_every_node_of_the_tree_over_the_faces_is_a_connected_set_of_faces(tree):
     projected = project(tree, SURFACE.faces, FACES)
-    nodes = 2 * len(projected.split_node) + 1
-    below = {node: {node} for node in range(nodes)}
-    for split in reversed(range(len(projected.split_node))):
-        below[int(projected.split_node[split])] |= below[2 * split + 1] | below[2 * split + 2]
-    for node in range(nodes):
-        members = np.flatnonzero(np.isin(projected.leaf, list(below[node]))).astype(np.int32)
-        assert len(members) > 0
-        assert connected_components(FACES.subgraph(members)).max() == 0
+    for faces in members(projected):
+        assert faces.any()
+        assert is_connected(FACES, faces)
     assert 1 <= projected.automatic_segments <= min(tree.automatic_segments, len(projected.split_node) + 1)
 
 
 def test_a_clean_cut_of_the_vertices_is_kept():
     upper = SURFACE.vertices[:, 2] > 0.01
-    tree = Tree(np.zeros(1, np.int32), np.ones(1), np.where(upper, 1, 2).astype(np.int32), 2)
+    tree = two_sides(upper)
     projected = project(tree, SURFACE.faces, FACES)
     votes = upper[SURFACE.faces].sum(axis=1) >= 2
     assert len(set(projected.leaf[votes])) == len(set(projected.leaf[~votes])) == 1
@@ -56,14 +52,12 @@ def test_each_side_of_a_cut_keeps_most_of_its_faces_when_it_is_made_connected(se
     side = np.random.default_rng(seed).random(len(SURFACE.faces)) < 0.5
     connected = _connected(FACES, side)
     assert 2 * FACES.volume[connected == side].sum() >= FACES.total_volume
-    for part in (connected, ~connected):
-        assert connected_components(FACES.subgraph(np.flatnonzero(part).astype(np.int32))).max() == 0
+    assert is_connected(FACES, connected)
+    assert is_connected(FACES, ~connected)
 
 
 def test_a_split_that_no_face_follows_is_left_out():
-    leaf = np.ones(42, np.int32)
-    leaf[7] = 2
-    tree = Tree(np.zeros(1, np.int32), np.ones(1), leaf, 2)
+    tree = two_sides(np.arange(42) != 7)
     projected = project(tree, SURFACE.faces, FACES)
     assert len(projected.split_node) == 0
     assert projected.automatic_segments == 1

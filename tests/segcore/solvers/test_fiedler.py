@@ -63,7 +63,7 @@ def test_closed_forms() -> None:
     )
 
 
-def test_a_hair_between_two_cliques_is_found_at_any_thinness() -> None:
+def test_a_weak_edge_between_two_cliques_is_found_at_any_weight() -> None:
     for bridge in (1e-3, 1e-9, 1e-15):
         vector = fiedler_vectors(two_cliques(20, bridge))[:, 0]
         assert len(set(np.sign(vector[:20]))) == len(set(np.sign(vector[20:]))) == 1
@@ -78,7 +78,7 @@ def test_the_largest_entry_is_positive_and_the_result_always_the_same() -> None:
 
 
 def test_graphs_of_one_and_two_nodes() -> None:
-    assert fiedler_vectors(SurfaceGraph(np.empty((0, 2), np.int32), np.empty(0), np.ones(1))).shape == (1, 0)
+    assert fiedler_vectors(graph_of([], [], np.ones(1))).shape == (1, 0)
     np.testing.assert_allclose(np.abs(fiedler_vectors(path(2))), np.sqrt(0.5) * np.ones((2, 1)))
 
 
@@ -88,6 +88,6 @@ def test_every_eigenvector_of_a_star_is_found_though_one_eigenvalue_repeats() ->
     np.testing.assert_allclose(eigenvalues, [1, 1, 1, 1, 1, 1, 1, 2], rtol=1e-9)
 
 
-def test_a_graph_in_pieces_is_refused() -> None:
+def test_a_graph_that_is_not_connected_is_refused() -> None:
     with pytest.raises(ValueError, match="not connected"):
         fiedler_vectors(graph_of([(0, 1), (2, 3)]))

@@ -3,7 +3,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from helpers.graphs import all_sides, best_ncc, cuts, cycle, graphs, grid, mesh_like, path, two_cliques
+from helpers.graphs import all_sides, best_ncc, cuts, cycle, graphs, grid, mesh_like, path, two_cliques, weighted_graph
 from segcore.graphs.cheeger import cut_of, ncc, sweep
 from segcore.graphs.surface_graph import SurfaceGraph
 from segcore.solvers.fiedler import fiedler_vectors
@@ -57,7 +57,7 @@ def test_weights_and_volumes_over_twelve_decades_do_no_harm(graph: SurfaceGraph)
 
 
 @pytest.mark.parametrize("bridge", [1e-3, 1e-9, 1e-15])
-def test_a_hair_between_two_cliques_is_cut(bridge: float) -> None:
+def test_a_weak_edge_between_two_cliques_is_cut(bridge: float) -> None:
     assert flow_cut(two_cliques(12, bridge)).weight == bridge
 
 
@@ -94,11 +94,11 @@ def test_sides_may_be_given_either_way_round() -> None:
 
 def test_nothing_changes_with_the_units_of_weights_and_volumes() -> None:
     graph = mesh_like(5)
-    scaled = SurfaceGraph(graph.edges, 2.0**-40 * graph.weight, 2.0**30 * graph.volume)
+    scaled = weighted_graph(graph.edges, 2.0**-40 * graph.weight, 2.0**30 * graph.volume)
     assert (flow_cut(graph).side == flow_cut(scaled).side).all()
 
 
-def test_a_graph_in_pieces_is_refused() -> None:
+def test_a_graph_that_is_not_connected_is_refused() -> None:
     graph = grid(2, 2)
     with pytest.raises(ValueError, match="not connected"):
-        flow_cut(SurfaceGraph(graph.edges[:1], graph.weight[:1], graph.volume))
+        flow_cut(weighted_graph(graph.edges[:1], graph.weight[:1], graph.volume))

@@ -28,7 +28,7 @@ def test_a_step_never_raises_the_functional(seed: int) -> None:
     problem = InnerProblem.of(graph)
     problem.aim(cut.ncc * balance_subgradient(graph, cut))
     problem.advance(3000)
-    assume(problem.gap > 1e-3 * cut.weight)  # the solution is 0, and its direction rounding, where no step lowers F
+    assume(problem.gap > 1e-3 * cut.weight)  # if no step lowers F, the solution is 0 up to rounding
     after = functional(graph, problem.solution)
     assert after <= cut.ncc * (1 + 1e-9)
     assert functional(graph, sweep(graph, problem.solution).side.astype(float)) <= after * (1 + 1e-9)

@@ -10,7 +10,7 @@ from segcore.arrays import FloatArray
 from segcore.graphs.cheeger import sweep
 from segcore.graphs.surface_graph import SurfaceGraph
 from segcore.solvers.fiedler import fiedler_vectors
-from segcore.solvers.total_variation import TIME_STEP, TotalVariationFlow
+from segcore.solvers.total_variation import TIME_STEP, SplitVariables, TotalVariationFlow, split_bregman_steps
 
 
 @st.composite
@@ -25,8 +25,32 @@ def test_the_matrix_of_the_linear_systems_is_the_one_of_the_formula(case: tuple[
     flow = TotalVariationFlow.of(graph, values)
     matrix = np.diag(graph.volume) / TIME_STEP + flow.penalty * laplacian(graph)
     source = graph.volume * values
-    potential = flow.factor.solve(np.append(source, -source.sum()))
+    potential = flow.system.factor.solve(np.append(source, -source.sum()))
     np.testing.assert_allclose(matrix @ (potential[:-1] - potential[-1]), source, atol=1e-8 * np.abs(source).max())
+
+
+@given(functions(), st.integers(1, 12))
+def test_the_iterations_are_those_of_the_formulas(case: tuple[SurfaceGraph, FloatArray], iterations: int) -> None:
+    """Solve (D / c + k L) u = source + div k w (jump - multiplier) densely, then shrink the differences."""
+    graph, values = case
+    flow = TotalVariationFlow.of(graph, values)
+    source, threshold = graph.volume * values, 0.3
+    gradient = np.zeros((len(graph.edges), graph.node_count))
+    gradient[np.arange(len(graph.edges)), graph.edges[:, 0]] = 1
+    gradient[np.arange(len(graph.edges)), graph.edges[:, 1]] = -1
+    jump, multiplier = gradient @ values, np.zeros(len(graph.edges))
+    variables = SplitVariables(jump.copy(), multiplier.copy())
+    found = split_bregman_steps(flow.system, source, threshold, variables, iterations)
+    matrix = np.diag(graph.volume) / TIME_STEP + flow.penalty * laplacian(graph)
+    for _ in range(iterations):
+        u = np.linalg.solve(matrix, source + gradient.T @ (flow.penalty * graph.weight * (jump - multiplier)))
+        x = gradient @ u + multiplier
+        jump = np.sign(x) * np.maximum(np.abs(x) - threshold, 0)
+        multiplier = x - jump
+    scale = 1 + np.abs(u).max()
+    np.testing.assert_allclose(found, u, atol=1e-8 * scale)
+    np.testing.assert_allclose(variables.jump, jump, atol=1e-8 * scale)
+    np.testing.assert_allclose(variables.multiplier, multiplier, atol=1e-8 * scale)
 
 
 @given(functions(), st.integers(1, 12))

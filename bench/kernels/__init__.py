@@ -1,0 +1,1 @@
+"""Cleave's own kernels beside those of libraries, on the same inputs."""

@@ -1,0 +1,39 @@
+import numpy as np
+from hypothesis import given
+from hypothesis import strategies as st
+
+from helpers.graphs import grid
+from helpers.trees import grown_tree, leaves_below, members
+from segcore.graphs.tree import Tree
+
+GRID = grid(6, 8)
+trees = st.builds(grown_tree, st.just(GRID), st.integers(1, 20), st.integers(0, 1000))
+
+
+@given(trees)
+def test_the_leaves_of_every_node_have_consecutive_places(tree: Tree) -> None:
+    places = tree.leaf_intervals()
+    for node, leaves in enumerate(leaves_below(tree)):
+        assert sorted(places.first[list(leaves)]) == list(range(places.first[node], places.end[node]))
+
+
+@given(trees)
+def test_the_places_of_the_first_child_come_first(tree: Tree) -> None:
+    places = tree.leaf_intervals()
+    for split, node in enumerate(tree.split_node):
+        assert places.first[node] == places.first[2 * split + 1]
+        assert places.end[2 * split + 1] == places.first[2 * split + 2]
+
+
+@given(trees)
+def test_reordering_keeps_the_parts(tree: Tree) -> None:
+    """Depth first in place of the given order: a parent still comes before its children."""
+    order, waiting = [], [0] if len(tree.split_node) else []
+    split_of = {int(node): split for split, node in enumerate(tree.split_node)}
+    while waiting:
+        split = split_of[waiting.pop()]
+        order.append(split)
+        waiting += [child for child in (2 * split + 1, 2 * split + 2) if child in split_of]
+    reordered = tree.reordered(order, 1)
+    assert {part.tobytes() for part in members(reordered)} == {part.tobytes() for part in members(tree)}
+    assert (reordered.split_node <= 2 * np.arange(len(order))).all()
