@@ -9,10 +9,10 @@ import httpx
 import pytest
 from playwright.sync_api import Browser, sync_playwright
 
-from helpers.browser_meshes import small_burr
+from helpers.browser.meshes import small_burr
+from helpers.browser.visit import MAX_UPLOAD_BYTES, NewVisit, Visit
 from helpers.installation import Installation
 from helpers.node import programs
-from helpers.visit import MAX_UPLOAD_BYTES, NewVisit, Visit
 from helpers.waiting import wait_until
 
 _CHROMIUM = Path("/usr/bin/chromium")

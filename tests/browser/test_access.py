@@ -2,7 +2,7 @@
 
 import pytest
 
-from helpers.visit import NewVisit, Visit
+from helpers.browser.visit import NewVisit, Visit
 
 PHONE = {"viewport": {"width": 390, "height": 844}, "has_touch": True, "is_mobile": True}
 RULES = ["wcag2a", "wcag2aa", "wcag21a", "wcag21aa", "wcag22aa", "best-practice"]

@@ -1,6 +1,6 @@
 """<cleave-viewer> in another page, as docs/reference/viewer.md describes it."""
 
-from helpers.visit import Visit
+from helpers.browser.visit import Visit
 
 PAGE = """<!doctype html><html lang="en"><title>Another page</title>
 <script type="module" src="viewer/cleave-viewer.js"></script>

@@ -6,9 +6,9 @@ import signal
 import pytest
 from playwright.sync_api import Route
 
-from helpers.browser_meshes import small_burr
+from helpers.browser.meshes import small_burr
+from helpers.browser.visit import MAX_UPLOAD_BYTES, Visit
 from helpers.installation import Installation
-from helpers.visit import MAX_UPLOAD_BYTES, Visit
 from helpers.waiting import wait_until
 
 

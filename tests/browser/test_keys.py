@@ -6,8 +6,8 @@ import httpx
 import pytest
 
 from browser.test_access import violations
+from helpers.browser.visit import NewVisit, Visit
 from helpers.installation import Installation
-from helpers.visit import NewVisit, Visit
 from service.keys import key_digest
 
 ANNA, BERTA = "cleave_anna", "cleave_berta"

@@ -1,6 +1,6 @@
 """Parts are selected, hidden, split, merged and named; undo, a reload and a link keep their state."""
 
-from helpers.visit import Visit
+from helpers.browser.visit import Visit
 
 
 def test_selection_is_the_same_in_the_picture_and_in_the_tree(visit: Visit, job: str) -> None:

@@ -1,6 +1,6 @@
 """The picture: colours of the parts at every level, draw calls, and memory that is freed with the model."""
 
-from helpers.visit import Visit
+from helpers.browser.visit import Visit
 
 
 def test_moving_the_slider_recolours_only_split_parts_and_sends_no_request(visit: Visit, job: str) -> None:

@@ -5,10 +5,10 @@ from pathlib import Path
 import httpx
 
 from cleave.settings import Settings
-from helpers.browser_meshes import small_burr
+from helpers.browser.meshes import small_burr
+from helpers.browser.visit import Visit
 from helpers.installation import Installation
 from helpers.jobs import accepted
-from helpers.visit import Visit
 from worker.jobs.store.opening import open_store
 from worker.process.perform import perform
 

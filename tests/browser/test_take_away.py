@@ -10,9 +10,9 @@ from pathlib import Path
 import pytest
 import trimesh
 
-from helpers.browser_meshes import small_burr
+from helpers.browser.meshes import small_burr
+from helpers.browser.visit import Visit
 from helpers.installation import Installation
-from helpers.visit import Visit
 
 
 def download_as(visit: Visit, form: str) -> tuple[str, bytes]:

@@ -1,0 +1,1 @@
+"""A visitor of the viewer page, and mesh files for it."""
