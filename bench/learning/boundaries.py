@@ -17,7 +17,7 @@ if TYPE_CHECKING:
     from segcore.arrays import FloatArray, IntArray, LongArray
     from segcore.clean.surface import Surface
 
-# Set by hand; docs/learned-model.md describes the rows and how well the model does.
+# Set by hand; docs/explanation/learned-models.md describes the rows and how well the model does.
 ROWS = 1500  # sampled edges of a model
 _TOLERANCE = 0.012  # greatest distance between an edge and a cut that runs along it, in sqrt(total area)
 _SPACING = 0.004  # of the points by which a cut is represented, in sqrt(total area): a third of the tolerance

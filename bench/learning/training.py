@@ -26,7 +26,7 @@ if TYPE_CHECKING:
 
 Grouping = Literal["category", "fifth"]
 
-# Set by hand; the quality with these values is in docs/learned-model.md.
+# Set by hand; the quality with these values is in docs/explanation/learned-models.md.
 _BOUNDARY_RIDGE = 1e-4
 _SPLIT_RIDGE = 1e-2
 _ROUNDS = 2  # of growing trees and fitting to them, because the fitted rule grows other trees

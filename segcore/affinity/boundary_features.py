@@ -16,7 +16,8 @@ from segcore.clean.surface import Surface
 from segcore.learned.logistic import signed_log
 from segcore.learned.models import learned_models
 
-# Radii of smoothing in sqrt(total area), set by hand. The model is trained with them: docs/learned-model.md.
+# Radii of smoothing in sqrt(total area), set by hand. The model is trained with them; its card is
+# docs/explanation/learned-models.md.
 TENSOR_RADII = (0.0, 0.03, 0.06, 0.12)
 THICKNESS_RADII = (0.03, THICKNESS_RADIUS, 0.12)
 

@@ -14,7 +14,7 @@ from segcore.learned.logistic import LogisticModel
 
 @dataclass(frozen=True, slots=True, eq=False)
 class LearnedModels:
-    """The models that ``python -m bench train`` fits; see docs/learned-model.md."""
+    """The models that ``python -m bench train`` fits; see docs/explanation/learned-models.md."""
 
     boundary: LogisticModel  # probability of a cut along an edge, see segcore.affinity.boundary_features
     split: LogisticModel  # share of the pairs across a cut that people keep together, see segcore.cut.features

@@ -35,12 +35,12 @@ def page_lists_text() -> str:
 
 
 def main() -> None:
-    """Write docs/openapi.json, docs/api.md and viewer/src/page/lists.json."""
+    """Write docs/openapi.json, docs/reference/api.md and viewer/src/page/lists.json."""
     from service.openapi.reference import markdown
 
     document = contract()
     (DOCS / "openapi.json").write_text(contract_text(document))
-    (DOCS / "api.md").write_text(markdown(document))
+    (DOCS / "reference" / "api.md").write_text(markdown(document))
     PAGE_LISTS.write_text(page_lists_text())
 
 

@@ -1,4 +1,4 @@
-"""The API reference, made from the OpenAPI document: Markdown for docs/api.md, HTML for /docs."""
+"""The API reference, made from the OpenAPI document: Markdown for docs/reference/api.md, HTML for /docs."""
 
 from collections.abc import Iterator
 from dataclasses import dataclass

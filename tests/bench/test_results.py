@@ -10,7 +10,7 @@ from bench.__main__ import command_names, parser_of
 
 ROOT = Path(__file__).parents[2]
 RESULTS = (ROOT / "bench" / "RESULTS.md").read_text(encoding="utf-8")
-MODEL_CARD = (ROOT / "docs" / "learned-model.md").read_text(encoding="utf-8")
+MODEL_CARD = (ROOT / "docs" / "explanation" / "learned-models.md").read_text(encoding="utf-8")
 
 
 def commands(text: str) -> list[str]:

@@ -53,7 +53,7 @@ def test_the_document_is_compatible_with_the_committed_one() -> None:
 def test_the_committed_documents_are_current() -> None:
     document = contract()
     assert (DOCS / "openapi.json").read_text() == contract_text(document), RENEW
-    assert (DOCS / "api.md").read_text() == markdown(document), RENEW
+    assert (DOCS / "reference" / "api.md").read_text() == markdown(document), RENEW
     assert PAGE_LISTS.read_text() == page_lists_text(), RENEW
 
 
