@@ -171,7 +171,7 @@ def test_progress_runs_from_0_to_1():
 
 @settings(max_examples=60, deadline=None)
 @given(npst.arrays(np.int32, st.tuples(st.integers(1, 20), st.just(3)), elements=st.integers(0, 7)), st.data())
-def test_every_one_of_any_faces_gets_a_label(faces, data):
+def test_whatever_the_faces_every_one_gets_a_label(faces, data):
     coordinate = st.sampled_from([0.0, 1.0, -1.0, 0.5, 1e-20, 1e20])
     mesh = Mesh(data.draw(npst.arrays(np.float64, (8, 3), elements=coordinate)), faces)
     hierarchy = segment(mesh)
