@@ -12,6 +12,7 @@ from scipy.sparse.linalg import splu
 from segcore.arrays import FloatArray, IntArray, at_least, group_sums
 from segcore.clean.surface import Surface
 from segcore.coarsen.matching import coarsen
+from segcore.graphs.laplacian import factorise_edges
 from segcore.graphs.surface_graph import SurfaceGraph
 from segcore.mesh import face_centroids
 
@@ -52,9 +53,29 @@ class Patches:
         entries = np.concatenate([diagonal, -exchange, -exchange])
         places = (np.concatenate([patches, a, b]), np.concatenate([patches, b, a]))
         matrix = csc_matrix((entries, places), shape=(count, count))
-        factor = splu(matrix, permc_spec="MMD_AT_PLUS_A", diag_pivot_thresh=0.0, options={"SymmetricMode": True})
+        try:
+            factor = splu(matrix, permc_spec="MMD_AT_PLUS_A", diag_pivot_thresh=0.0, options={"SymmetricMode": True})
+        except RuntimeError:  # singular: the masses of a component are lost in the rounding of the diagonal
+            return self._smoothed_by_elimination(values, exchange, mass)
         smooth: FloatArray = factor.solve((values.T * mass).T)
         return smooth
+
+    def _smoothed_by_elimination(self, values: FloatArray, exchange: FloatArray, mass: FloatArray) -> FloatArray:
+        """The same values from the Laplacian with one more node, to which every patch is joined with its mass.
+
+        The elimination subtracts nothing, so that it loses no mass, however small. Patches of a component without mass
+        get 0. See decision 13.
+        """
+        count = len(mass)
+        held = np.flatnonzero(mass > 0.0).astype(np.int32)
+        spokes = np.stack([held, np.full(len(held), count, dtype=np.int32)], axis=1)
+        flowing = exchange > 0.0
+        factor = factorise_edges(
+            np.concatenate([self.pairs[flowing], spokes]), np.concatenate([exchange[flowing], mass[held]]), count + 1
+        )
+        sources = (values.T * mass).T.reshape(count, -1)
+        solved = [factor.solve(np.append(source, -source.sum())) for source in sources.T]
+        return np.stack([x[:-1] - x[-1] for x in solved], axis=-1).reshape(values.shape)
 
     def gradients(self, values: FloatArray) -> FloatArray:
         """(P, 3) the gradient of values (P,) in the tangent plane of every patch, by least squares over neighbours."""

@@ -179,3 +179,13 @@ def test_whatever_the_faces_every_one_gets_a_label(faces, data):
         labels = hierarchy.labels(k)
         assert labels.shape == (len(faces),)
         np.testing.assert_array_equal(np.unique(labels), np.arange(k))
+
+
+@pytest.mark.filterwarnings("ignore:overflow encountered in dot:RuntimeWarning")
+def test_vertices_that_are_all_but_equal_give_every_face_a_label():
+    """Masses of patches are lost in rounding here, so that the matrix of the smoothing is singular."""
+    vertices = np.array(
+        [[0, -1, -1], [1e-20, -1, -1], *[[-1, -1, -1]] * 2, [-1, 0, -1], [1, -1, -1], *[[-1, -1, -1]] * 2]
+    )
+    faces = np.array([[3, 7, 4], [6, 5, 0], [1, 0, 4], [5, 3, 3], [7, 5, 6], [3, 5, 1]])
+    assert len(segment(Mesh(vertices.astype(float), faces)).labels()) == len(faces)

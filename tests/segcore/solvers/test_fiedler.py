@@ -36,6 +36,7 @@ def test_the_vectors_are_eigenvectors_and_the_first_belongs_to_the_second_eigenv
     np.testing.assert_allclose(graph.volume @ vectors, 0, atol=1e-9 * graph.volume.sum())
 
 
+@pytest.mark.slow
 @given(st.integers(0, 1000))
 def test_the_first_eigenvalues_are_those_of_the_dense_solver(seed: int) -> None:
     graph = mesh_like(seed, 12, 17)
