@@ -23,13 +23,31 @@ from worker.jobs.store.store import JobStore
 
 # No deadline: the first call of a kernel compiles it. Nothing is left in the folder where the tests run.
 settings.register_profile("repeatable", derandomize=True, deadline=None, database=None)
-settings.load_profile("repeatable")
+settings.register_profile("everyday", settings.get_profile("repeatable"), max_examples=20)
 _HYPOTHESIS = tempfile.TemporaryDirectory(prefix="hypothesis-")
 set_hypothesis_home_dir(_HYPOTHESIS.name)
 
-_TESTS = Path(__file__).parent
 _BROWSER = "tests/browser/"
-_SLOW_FOLDERS = {"end_to_end", "browser", "fuzz"}
+_EVERYDAY = "not slow"  # the marker expression of the everyday run
+_SLOW = (
+    "tests/end_to_end/*",
+    "tests/browser/*",
+    "tests/fuzz/*",
+    "bench/commands/test_digests.py",
+    "bench/commands/test_paper.py",
+    "bench/commands/test_princeton.py",
+    "bench/commands/test_scale.py",
+    "bench/commands/test_train.py",
+    "bench/paper/*",
+    "bench/princeton/test_evaluation.py",
+    "segcore/test_laws.py",
+    "segcore/io/test_memory.py",
+    "segcore/io/test_round_trips.py",
+    "service/openapi/test_contract.py",
+    "worker/process/test_outage.py",
+    "worker/process/test_process.py",
+    "worker/process/test_process_store.py",
+)
 # Measured with --durations=0; the order only shortens the run.
 _LONGEST = (
     "end_to_end/test_soak.py",
@@ -37,9 +55,9 @@ _LONGEST = (
     "end_to_end/test_faults.py",
     "worker/process/test_process.py",
     "end_to_end/*",
-    "bench/test_train_command.py",
+    "bench/commands/test_train.py",
     "worker/*",
-    "service/test_contract.py",
+    "service/openapi/test_contract.py",
     "segcore/test_laws.py",
 )
 
@@ -76,8 +94,22 @@ def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
     """Start the files that take longest first, and mark the tests that are left out with ``-m "not slow"``."""
     items.sort(key=lambda item: _order(item.path))
     for item in items:
-        if _SLOW_FOLDERS & set(item.path.relative_to(_TESTS).parts):
+        if _is_slow(item.path):
             item.add_marker("slow")
+
+
+def pytest_configure(config: pytest.Config) -> None:
+    """Draw fewer examples in the everyday run."""
+    settings.load_profile("everyday" if config.option.markexpr == _EVERYDAY else "repeatable")
+
+
+def pytest_ignore_collect(collection_path: Path, config: pytest.Config) -> bool | None:
+    """Import no slow file in the everyday run."""
+    return (config.option.markexpr == _EVERYDAY and _is_slow(collection_path)) or None
+
+
+def _is_slow(path: Path) -> bool:
+    return path.suffix == ".py" and any(path.match(pattern) for pattern in _SLOW)
 
 
 def _order(path: Path) -> int:

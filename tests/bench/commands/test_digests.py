@@ -7,8 +7,6 @@ import pytest
 
 from bench.__main__ import main
 
-pytestmark = pytest.mark.slow
-
 
 @pytest.fixture
 def recorded(strips: Path, assets: Path, tmp_path: Path) -> Path:

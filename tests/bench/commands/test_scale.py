@@ -6,8 +6,6 @@ from bench.__main__ import main
 from bench.commands.scale import render, render_crowds
 from bench.scale.cost import STAGES, Cost
 
-pytestmark = pytest.mark.slow
-
 
 def test_costs_are_per_face_and_add_up():
     cost = Cost("ball", 1000, dict.fromkeys(STAGES, 0.01), 500_000)

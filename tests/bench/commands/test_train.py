@@ -9,8 +9,6 @@ from bench.__main__ import main
 from bench.learning.folds import read_folds
 from segcore.learned.models import LearnedModels
 
-pytestmark = pytest.mark.slow
-
 
 def test_training_twice_writes_the_same_bytes_and_folds_for_an_evaluation(
     shapes_folder: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]

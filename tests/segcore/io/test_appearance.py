@@ -79,7 +79,7 @@ def test_an_appearance_of_another_mesh_is_refused() -> None:
         Appearance(face_group=np.zeros(3, np.int32), group_names=("a",)),
         Appearance(uvs=np.zeros((11, 2), np.float32), extra_vertex=np.array([99], np.int32), corners=mesh.faces),
     ):
-        with pytest.raises(InvalidMesh, match="another mesh"):
+        with pytest.raises(InvalidMesh, match="do not match the numbers of vertices and faces"):
             Mesh(mesh.vertices, mesh.faces, None, look)
     with pytest.raises(InvalidMesh, match="list of names"):
         Appearance(face_group=np.array([1], np.int32), group_names=("a",))

@@ -16,8 +16,6 @@ from worker.jobs.queue.connection import QueueError, connect
 from worker.jobs.queue.queue import JobQueue
 from worker.jobs.store.store import JobStore
 
-pytestmark = pytest.mark.slow
-
 
 class Server:
     """A queue server that a test can kill and replace by an empty one."""

@@ -19,8 +19,6 @@ from worker.jobs.queue.queue import JobQueue
 from worker.jobs.queue.workers import worker_counts
 from worker.jobs.store.store import JobStore
 
-pytestmark = pytest.mark.slow
-
 
 def outcome_of(store: JobStore, job: Job, within_s: float = 60.0) -> Outcome:
     wait_until(lambda: store.records.outcome(job.id), within_s)

@@ -5,8 +5,6 @@ import signal
 import time
 from pathlib import Path
 
-import pytest
-
 from helpers.buckets import s3_server
 from helpers.jobs import LONG, accepted, sphere
 from helpers.processes import StartWorker, children_of
@@ -17,8 +15,6 @@ from worker.jobs.queue.workers import worker_counts
 from worker.jobs.size_class import SizeClass
 from worker.jobs.store.opening import open_folder, open_url
 from worker.jobs.store.store import JobStore
-
-pytestmark = pytest.mark.slow
 
 
 def submitted(store: JobStore, queue: JobQueue, mesh: bytes, **parameters: object) -> str:
