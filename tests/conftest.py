@@ -2,6 +2,7 @@
 
 import os
 import subprocess
+import sys
 import tempfile
 from collections.abc import Iterator
 from pathlib import Path
@@ -20,6 +21,10 @@ from worker.jobs.queue.connection import connect
 from worker.jobs.queue.queue import JobQueue
 from worker.jobs.store.opening import open_folder
 from worker.jobs.store.store import JobStore
+
+# Hundreds of processes import the packages, which are compiled only once if bytecode may be written.
+os.environ.pop("PYTHONDONTWRITEBYTECODE", None)
+sys.dont_write_bytecode = False
 
 # No deadline: the first call of a kernel compiles it. Nothing is left in the folder where the tests run.
 settings.register_profile("repeatable", derandomize=True, deadline=None, database=None)
@@ -43,6 +48,8 @@ _SLOW = (
     "segcore/test_laws.py",
     "segcore/io/test_memory.py",
     "segcore/io/test_round_trips.py",
+    "service/commands/test_outputs.py",
+    "service/commands/test_segment.py",
     "service/openapi/test_contract.py",
     "worker/process/test_outage.py",
     "worker/process/test_process.py",

@@ -54,6 +54,7 @@ def test_a_job_can_be_stored_in_a_bucket(bucket_client: httpx.Client, in_a_bucke
     assert list((in_a_bucket.data_dir / "cache").iterdir()) == []
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("fault", [signal.SIGSTOP, signal.SIGKILL])
 def test_an_unavailable_store_is_reported_within_two_seconds(
     settings: Settings, s3_url: str, fault: signal.Signals

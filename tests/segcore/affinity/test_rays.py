@@ -1,4 +1,5 @@
 import numpy as np
+import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
@@ -22,6 +23,7 @@ def nearest_exit(vertices, faces, origin, direction):
     return best if inside else np.inf
 
 
+@pytest.mark.slow
 @settings(max_examples=60)
 @given(st.integers(0, 2**32 - 1), st.integers(1, 60))
 def test_the_nearest_face_is_the_one_that_a_search_through_all_finds(seed, count):

@@ -8,6 +8,8 @@ import sys
 from contextlib import suppress
 from pathlib import Path
 
+import pytest
+
 from service.commands.console import ProgressBar, ProgressBoard
 
 
@@ -26,6 +28,7 @@ def read_terminal(reader: int) -> str:
     return written.decode()
 
 
+@pytest.mark.slow
 def test_a_command_draws_a_progress_bar_on_a_terminal(mesh: Path) -> None:
     reader, terminal = pty.openpty()
     command = [sys.executable, "-m", "service.commands", "segment", str(mesh)]

@@ -232,6 +232,7 @@ def validator(tmp_path_factory: pytest.TempPathFactory) -> Path:
     return install("gltf_validator", tmp_path_factory.mktemp("gltf_validator")) / "validate.js"
 
 
+@pytest.mark.slow
 def test_the_khronos_validator_finds_no_errors_and_no_warnings(validator: Path, tmp_path: Path) -> None:
     cases: list[Segmented] = []
     for offset, size in ((0.0, 1.0), (1e7, 1.0), (0.0, 1e-30), (0.0, 1e30)):

@@ -42,6 +42,7 @@ def test_every_other_entry_is_invalid(
     assert not is_valid(queue.entries[SMALL].fetch_job(entry.id))
 
 
+@pytest.mark.slow
 def test_a_job_that_an_earlier_version_has_enqueued_is_dropped_unrun_and_then_finished(
     start_worker: StartWorker,
     start_janitor: Callable[[], None],
