@@ -37,7 +37,7 @@ class LaplacianFactor(NamedTuple):
         ----------
         b : (N,) with sum 0 over every component.
         """
-        return substitute(self, b)
+        return substitute(*self, b)
 
 
 def factorise(graph: SurfaceGraph) -> LaplacianFactor:
@@ -62,9 +62,13 @@ def factorise_edges(edges: IntArray, weight: FloatArray, node_count: int) -> Lap
     Research 33, 1985; George and Liu, Computer solution of large sparse positive definite systems, 1981, ch. 5.
     """
     rows = rows_of(edges, node_count)
-    order = minimum_degree(rows)
+    return _factor(rows, weight[rows.edge], minimum_degree(rows))
+
+
+@njit(cache=True)
+def _factor(rows, weight, order):  # type: ignore[no-untyped-def]
     start, row = _structure(rows, order)
-    share, pivot = _eliminate(rows, weight[rows.edge], order, start, row)
+    share, pivot = _eliminate(rows, weight, order, start, row)
     return LaplacianFactor(order, start, row, share, pivot)
 
 
@@ -156,9 +160,11 @@ def _eliminate(rows, weight, order, start, row):  # type: ignore[no-untyped-def]
 
 
 @njit(cache=True)
-def substitute(factor, b):  # type: ignore[no-untyped-def]
-    """Forward and backward substitution: ``LaplacianFactor.solve`` for use in other kernels."""
-    order, start, row, share, pivot = factor.order, factor.start, factor.row, factor.share, factor.pivot
+def substitute(order, start, row, share, pivot, b):  # type: ignore[no-untyped-def]
+    """Forward and backward substitution: ``LaplacianFactor.solve`` for use in other kernels.
+
+    It takes the arrays of the factor one by one, because it is called so often that a named tuple would cost time.
+    """
     node_count = len(order)
     y = np.empty(node_count)
     for k in range(node_count):

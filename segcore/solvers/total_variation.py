@@ -53,6 +53,7 @@ class TotalVariationFlow:
     """
 
     graph: SurfaceGraph
+    total_volume: float
     penalty: float  # k
     system: SplitSystem
 
@@ -62,7 +63,7 @@ class TotalVariationFlow:
         penalty = 1 / (FIRST_THRESHOLD * _energy(graph, _centred(graph, values)))
         conductance = penalty * graph.weight
         factor = _grounded_factor(graph, conductance)
-        return cls(graph, penalty, SplitSystem(graph.edges.view(np.uint32), conductance, factor))
+        return cls(graph, graph.total_volume, penalty, SplitSystem(graph.edges.view(np.uint32), conductance, factor))
 
     def cuts(self, values: FloatArray, iterations: int) -> Iterator[Cut]:
         """Yield the sweep of a function, then that of the function after every step, without end.
@@ -75,17 +76,21 @@ class TotalVariationFlow:
         graph = self.graph
         yield sweep(graph, values)
         f = _centred(graph, values)
-        f *= _scale(graph, f)
+        f *= self._scale(f)
         jump = f[graph.edges[:, 0]] - f[graph.edges[:, 1]]
         variables = SplitVariables(jump, np.zeros_like(jump))
         while True:
             source = graph.volume * f / TIME_STEP + _subgradient(graph, f)
             threshold = 1 / (self.penalty * _energy(graph, f))
             f = _centred(graph, split_bregman_steps(self.system, source, threshold, variables, iterations))
-            scale = _scale(graph, f)
+            scale = self._scale(f)
             f *= scale
             jump *= scale
             yield sweep(graph, f)
+
+    def _scale(self, f: FloatArray) -> float:
+        """The factor that makes the mean magnitude 1."""
+        return float(self.total_volume / (self.graph.volume @ np.abs(f)))
 
 
 def _centred(graph: SurfaceGraph, values: FloatArray) -> FloatArray:
@@ -93,11 +98,6 @@ def _centred(graph: SurfaceGraph, values: FloatArray) -> FloatArray:
     order = np.argsort(values)
     below = np.cumsum(graph.volume[order])
     return values - values[order[np.searchsorted(below, 0.5 * below[-1])]]
-
-
-def _scale(graph: SurfaceGraph, f: FloatArray) -> float:
-    """The factor that makes the mean magnitude 1."""
-    return float(graph.total_volume / (graph.volume @ np.abs(f)))
 
 
 def _energy(graph: SurfaceGraph, f: FloatArray) -> float:
@@ -136,6 +136,7 @@ def split_bregman_steps(system, source, threshold, variables, iterations):  # ty
     threshold : of the shrinkage, > 0.
     """
     edges, conductance = system.edges, system.conductance
+    order, start, row, share, pivot = system.factor
     jump, multiplier = variables.jump, variables.multiplier
     node_count = len(source)
     u = np.zeros(node_count)
@@ -150,7 +151,7 @@ def split_bregman_steps(system, source, threshold, variables, iterations):  # ty
             flow = conductance[e] * (jump[e] - multiplier[e])
             b[edges[e, 0]] += flow
             b[edges[e, 1]] -= flow
-        potential = substitute(system.factor, b)
+        potential = substitute(order, start, row, share, pivot, b)
         for i in range(node_count):
             u[i] = potential[i] - potential[node_count]
         for e in range(len(edges)):
