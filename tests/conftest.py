@@ -22,6 +22,11 @@ from worker.jobs.queue.queue import JobQueue
 from worker.jobs.store.opening import open_folder
 from worker.jobs.store.store import JobStore
 
+# One thread per process, like the workers of an installation: threads of BLAS that wait for each other use up the
+# processors that the other processes of the tests need.
+for _name in ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS"):
+    os.environ.setdefault(_name, "1")
+
 # Hundreds of processes import the packages, which are compiled only once if bytecode may be written.
 os.environ.pop("PYTHONDONTWRITEBYTECODE", None)
 sys.dont_write_bytecode = False
