@@ -50,12 +50,15 @@ _SLOW = (
     "bench/commands/test_train.py",
     "bench/paper/*",
     "bench/princeton/test_evaluation.py",
+    "house/test_language.py",
     "segcore/test_laws.py",
     "segcore/io/test_memory.py",
     "segcore/io/test_round_trips.py",
     "service/commands/test_outputs.py",
     "service/commands/test_segment.py",
+    "service/host/test_http_protocol.py",
     "service/openapi/test_contract.py",
+    "worker/jobs/store/test_crashes.py",
     "worker/process/test_outage.py",
     "worker/process/test_process.py",
     "worker/process/test_process_store.py",
@@ -84,10 +87,10 @@ def pytest_addoption(parser: pytest.Parser) -> None:
 
 
 def pytest_xdist_auto_num_workers(config: pytest.Config) -> int:
-    """One process more than there are processors, because many tests wait; this process alone for a single file."""
+    """Two processes more than there are processors, because many tests wait; this process alone for a single file."""
     if len(config.args) == 1 and config.args[0].partition("::")[0].endswith(".py"):
         return 0
-    return len(os.sched_getaffinity(0)) + 1 if hasattr(os, "sched_getaffinity") else (os.cpu_count() or 1) + 1
+    return 2 + (len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1)
 
 
 def pytest_xdist_make_scheduler(config: pytest.Config, log: Producer) -> LoadScopeScheduling:
