@@ -63,6 +63,11 @@ _SLOW = (
     "worker/process/test_process.py",
     "worker/process/test_process_store.py",
 )
+# The second one compiles what the first one needs late, and what only some tests need.
+_COMPILERS = (
+    "import segcore; segcore.warm_up()",
+    "from bench.cheeger import measurements; from segcore.solvers import solvers; measurements.warm_up(solvers.SOLVERS)",
+)
 # Measured with --durations=0; the order only shortens the run.
 _LONGEST = (
     "end_to_end/test_soak.py",
@@ -116,6 +121,15 @@ def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
 def pytest_configure(config: pytest.Config) -> None:
     """Draw fewer examples in the everyday run."""
     settings.load_profile("everyday" if config.option.markexpr == _EVERYDAY else "repeatable")
+
+
+def pytest_sessionstart(session: pytest.Session) -> None:
+    """Compile the kernels once, in two processes at a time, before the processes of the tests start."""
+    if session.config.getoption("numprocesses", None):
+        compiling = [
+            subprocess.Popen([sys.executable, "-c", program], cwd=session.config.rootpath) for program in _COMPILERS
+        ]
+        assert [process.wait() for process in compiling] == [0] * len(_COMPILERS)
 
 
 def pytest_ignore_collect(collection_path: Path, config: pytest.Config) -> bool | None:
