@@ -38,6 +38,7 @@ _HYPOTHESIS = tempfile.TemporaryDirectory(prefix="hypothesis-")
 set_hypothesis_home_dir(_HYPOTHESIS.name)
 
 _BROWSER = "tests/browser/"
+_SEPARATE = {"tests/end_to_end/test_faults.py", "tests/worker/process/test_process.py"}
 _EVERYDAY = "not slow"  # the marker expression of the everyday run
 _SLOW = (
     "tests/end_to_end/*",
@@ -66,7 +67,7 @@ _SLOW = (
 # The second one compiles what the first one needs late, and what only some tests need.
 _COMPILERS = (
     "import segcore; segcore.warm_up()",
-    "from bench.cheeger import measurements; from segcore.solvers import solvers; measurements.warm_up(solvers.SOLVERS)",
+    "from bench.cheeger.measurements import warm_up; from segcore.solvers.solvers import SOLVERS as all; warm_up(all)",
 )
 # Measured with --durations=0; the order only shortens the run.
 _LONGEST = (
@@ -92,10 +93,10 @@ def pytest_addoption(parser: pytest.Parser) -> None:
 
 
 def pytest_xdist_auto_num_workers(config: pytest.Config) -> int:
-    """Two processes more than there are processors, because many tests wait; this process alone for a single file."""
+    """Three processes more than there are processors, because many tests wait; this process alone for a single file."""
     if len(config.args) == 1 and config.args[0].partition("::")[0].endswith(".py"):
         return 0
-    return 2 + (len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1)
+    return 3 + (len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1)
 
 
 def pytest_xdist_make_scheduler(config: pytest.Config, log: Producer) -> LoadScopeScheduling:
@@ -103,10 +104,12 @@ def pytest_xdist_make_scheduler(config: pytest.Config, log: Producer) -> LoadSco
 
 
 class _FileByFile(LoadScopeScheduling):
-    """All tests of a file run in one process, and so do all tests of the browser, which share one installation."""
+    """All tests of a file run in one process, except in files whose tests share nothing; so do the browser tests."""
 
     def _split_scope(self, nodeid: str) -> str:
         path = nodeid.partition("::")[0]
+        if path in _SEPARATE:
+            return nodeid
         return _BROWSER if path.startswith(_BROWSER) else path
 
 
