@@ -23,6 +23,9 @@ _AMBIENT, _HEADLIGHT, _KEY_LIGHT = 0.30, 0.28, 0.52  # shares of the brightness;
 _LINE = 0.35  # brightness of the lines between segments
 
 _BACKGROUND = -1  # in place of a label
+_SHORTEST = 1e-12  # length of a mean normal, below which it has no direction and is not normalized
+_CLEAREST = 1e-6  # opacity of a pixel without samples, whose colour does not matter
+_PNG_LEVEL = 9  # pictures are small: the best compression of zlib
 
 
 def draw(mesh: Mesh, labels: IntArray, size: int = 512, azimuth: float = 30.0, elevation: float = 20.0) -> ByteArray:
@@ -30,7 +33,7 @@ def draw(mesh: Mesh, labels: IntArray, size: int = 512, azimuth: float = 30.0, e
 
     Parameters
     ----------
-    labels : (F,) the segment of every face.
+    labels : (F,) the segment of each face.
     size : width and height in pixels.
     azimuth, elevation : direction to the viewer in degrees: about the y axis from +z to +x, and above the xz plane.
 
@@ -71,7 +74,7 @@ def _shaded(label: IntArray, light: FloatArray, size: int) -> ByteArray:
         [np.minimum(colors * shade[..., None], 1.0) * covered[..., None], covered[..., None]], axis=2
     )
     image = image.reshape(size, _SAMPLES, size, _SAMPLES, 4).mean(axis=(1, 3))
-    image[..., :3] /= np.maximum(image[..., 3:], 1e-6)
+    image[..., :3] /= np.maximum(image[..., 3:], _CLEAREST)
     pixels: ByteArray = np.rint(255 * image).astype(np.uint8)
     return pixels
 
@@ -101,7 +104,7 @@ def _corner_normals(faces: IntArray, normals: FloatArray, vertex_count: int) -> 
                 m = normals[around[p]]
                 if n[0] * m[0] + n[1] * m[1] + n[2] * m[2] > _CREASE:
                     x, y, z = x + m[0], y + m[1], z + m[2]
-            length = max(np.sqrt(x * x + y * y + z * z), 1e-12)
+            length = max(np.sqrt(x * x + y * y + z * z), _SHORTEST)
             result[f, k, 0], result[f, k, 1], result[f, k, 2] = x / length, y / length, z / length
     return result
 
@@ -137,7 +140,7 @@ def _rasterize(
                 depth[row, column] = z
                 label[row, column] = labels[f]
                 n = u * normals[f, 0] + v * normals[f, 1] + w * normals[f, 2]
-                length = max(np.sqrt(n[0] * n[0] + n[1] * n[1] + n[2] * n[2]), 1e-12)
+                length = max(np.sqrt(n[0] * n[0] + n[1] * n[1] + n[2] * n[2]), _SHORTEST)
                 # A face seen from behind is lit as its other side is.
                 side = 1.0 if n[2] >= 0.0 else -1.0
                 key = max(0.0, side * (_KEY[0] * n[0] + _KEY[1] * n[1] + _KEY[2] * n[2]) / length)
@@ -152,7 +155,7 @@ def write_png(target: BinaryIO, pixels: NDArray[np.uint8]) -> None:
     unfiltered[:, 1:] = pixels.reshape(height, -1)
     target.write(b"\x89PNG\r\n\x1a\n")
     _write_chunk(target, b"IHDR", struct.pack(">IIBBBBB", width, height, 8, 6, 0, 0, 0))
-    _write_chunk(target, b"IDAT", zlib.compress(unfiltered.tobytes(), 9))
+    _write_chunk(target, b"IDAT", zlib.compress(unfiltered.tobytes(), _PNG_LEVEL))
     _write_chunk(target, b"IEND", b"")
 
 

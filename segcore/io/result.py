@@ -40,7 +40,7 @@ from segcore.mesh import Mesh
 
 _FORMAT, _VERSION = "cleave-result", 1
 _HEADER = "header.json"
-_LARGEST_HEADER = 4096  # bytes; the header has about 80
+_LARGEST_HEADER = 4096  # bytes; the header has about 70
 _NPY_HEADER = re.compile(
     rb"\x93NUMPY\x01\x00.."
     rb"\{'descr': '(?P<dtype>...)', 'fortran_order': False, 'shape': \((?P<shape>\d{1,12},(?: \d{1,12})?)\), \} *\n",

@@ -16,6 +16,7 @@ from segcore.io.threemf.writer import write_3mf
 
 WriteOption: TypeAlias = Literal["names", "all_levels", "features", "capped", "part_format"]
 
+# What each option of a writer does, in the order of the command line.
 WRITE_OPTIONS: dict[WriteOption, str] = {
     "names": "the name of each segment, by its label",
     "all_levels": "every number of segments in one file",
@@ -97,4 +98,4 @@ def writer_for(name: str) -> Writer:
         if writer.extension == extension:
             return writer
     known = ", ".join(writer.extension for writer in WRITERS.values())
-    raise UnsupportedFormat(f"{name!r} names no format that is written here: end it in one of {known}.")
+    raise UnsupportedFormat(f"{name!r} does not end in the extension of an output format: use one of {known}.")

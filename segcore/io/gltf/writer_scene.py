@@ -27,15 +27,14 @@ class Drawing:
     nodes: IntArray  # (D,) the nodes that have geometry; nodes[k] has label k
     of_face: IntArray  # (F,) the entry of ``nodes`` of each face
     material: IntArray  # (D,) at the level that is shown
-    variants: IntArray  # (L, D) the material at each level; (0, D) for a drawing of one level
+    variants: IntArray | None = None  # (L, D) the material at each level; None for a drawing of one level
 
 
 def level_drawing(hierarchy: Hierarchy, segments: int | None) -> Drawing:
     """Return the drawing of the segments of one level."""
     nodes = hierarchy.segment_nodes(segments)
     count = len(nodes)
-    one_level = np.zeros((0, count), dtype=np.int32)
-    return Drawing(count, nodes, hierarchy.labels(segments), np.arange(count, dtype=np.int32), one_level)
+    return Drawing(count, nodes, hierarchy.labels(segments), np.arange(count, dtype=np.int32))
 
 
 def all_levels_drawing(hierarchy: Hierarchy, segments: int | None) -> Drawing:
@@ -78,7 +77,7 @@ def scene_document(
         ],
         "buffers": [{"byteLength": sum(sizes)}],
     }
-    return document | (_variants(len(drawing.variants)) if len(drawing.variants) else {})
+    return document | ({} if drawing.variants is None else _variants(len(drawing.variants)))
 
 
 def _scene_extras(hierarchy: Hierarchy, drawing: Drawing) -> dict[str, Any]:
@@ -105,7 +104,7 @@ def _nodes(
         if (k := part_of.get(entry["id"])) is None:
             nodes.append({"name": f"group {entry['id']}", "children": entry["children"], "extras": extras})
         else:
-            extras |= {"first_face": int(slices.start[k])} | ({} if len(drawing.variants) else {"segment": k})
+            extras |= {"first_face": int(slices.start[k])} | ({"segment": k} if drawing.variants is None else {})
             nodes.append({"name": names[k], "mesh": k, "extras": extras})
     if any(placement.translation):
         nodes[0]["translation"] = placement.translation
@@ -116,7 +115,7 @@ def _nodes(
 
 def _mesh(drawing: Drawing, k: int, name: str) -> dict[str, Any]:
     primitive = {"attributes": {"POSITION": 0}, "indices": k + 1, "material": int(drawing.material[k])}
-    if len(drawing.variants):
+    if drawing.variants is not None:
         primitive["extensions"] = {_VARIANTS: {"mappings": _mappings(drawing.variants[:, k])}}
     return {"name": name, "primitives": [primitive]}
 

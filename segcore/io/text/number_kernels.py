@@ -1,7 +1,5 @@
 """Compiled kernels that parse the words of a text as numbers, correctly rounded."""
 
-from fractions import Fraction
-
 import numpy as np
 from numba import njit
 
@@ -17,9 +15,16 @@ _LARGEST_EXPONENT = 1000  # in the text; float64 ends at 10**308
 _SPLIT = 134217729.0  # 2**27 + 1, splits a float64 into two halves (Dekker 1971)
 _DOUBT = 2.0**-98  # bound of the relative error of a product of two double-doubles
 
-_POWERS = [Fraction(10) ** k for k in range(-_LARGEST_POWER, _LARGEST_POWER + 1)]
-_POWER = np.array([float(power) for power in _POWERS])
-_POWER_REST = np.array([float(power - Fraction(float(power))) for power in _POWERS])
+
+def _power_of_ten(power: int) -> tuple[float, float]:
+    """The float nearest to 10**power, and the float nearest to the rest: divisions of int are correctly rounded."""
+    numerator, denominator = 10 ** max(power, 0), 10 ** max(-power, 0)
+    nearest = numerator / denominator
+    a, b = nearest.as_integer_ratio()
+    return nearest, (numerator * b - a * denominator) / (denominator * b)
+
+
+_POWER, _POWER_REST = np.array([_power_of_ten(k) for k in range(-_LARGEST_POWER, _LARGEST_POWER + 1)]).T.copy()
 
 
 @njit(cache=True)

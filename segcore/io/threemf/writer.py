@@ -2,7 +2,6 @@
 
 import zipfile
 from collections.abc import Iterator
-from html import escape
 from typing import BinaryIO
 
 from segcore.appearance import Appearance
@@ -76,14 +75,18 @@ def _descriptions(look: Appearance, slices: Slices) -> list[str]:
     result = []
     for label in range(len(slices)):
         groups = ", ".join(map(one_line, look.groups_of(slices[label])))
-        text = f'<metadata name="Description">groups of the input: {escape(groups, quote=False)}</metadata>'
+        text = f'<metadata name="Description">groups of the input: {_escaped(groups)}</metadata>'
         result.append(f"<metadatagroup>{text}</metadatagroup>\n" if groups else "")
     return result
 
 
+def _escaped(text: str) -> str:
+    return text.replace("&", "&amp;").replace("<", "&lt;").replace(">", "&gt;")
+
+
 def _quoted(text: str) -> str:
     """An attribute value in quotation marks, or in apostrophes if it contains quotation marks and no apostrophes."""
-    value = escape(text, quote=False)
+    value = _escaped(text)
     if '"' in value and "'" not in value:
         return f"'{value}'"
     return '"' + value.replace('"', "&quot;") + '"'
