@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+import csv
+from collections.abc import Callable, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, TypeVar
 
@@ -15,6 +16,31 @@ if TYPE_CHECKING:
     from segcore.mesh import Mesh
 
 Item = TypeVar("Item")
+
+
+def read_table(path: Path, data: str, columns: str, model: Callable[[dict[str, str]], Item]) -> list[Item]:
+    """Read the table of the models of a data set, tab-separated, with a header.
+
+    Parameters
+    ----------
+    data, columns : the name of the data set and the names of the columns, for messages.
+    model : makes a model from a row.
+
+    Raises
+    ------
+    BenchmarkError
+        If the table is missing, empty or malformed.
+    """
+    try:
+        with path.open(newline="", encoding="utf-8") as lines:
+            models = [model(row) for row in csv.DictReader(lines, delimiter="\t")]
+    except OSError as error:
+        raise BenchmarkError(f"{path.parent} is not the folder of the {data}: {path.name} cannot be read.") from error
+    except (KeyError, TypeError, ValueError) as error:
+        raise BenchmarkError(f"{path} must be a table with the columns {columns}: {error}.") from error
+    if not models:
+        raise BenchmarkError(f"{path} lists no model.")
+    return models
 
 
 def spread_evenly(models: Sequence[Item], limit: int | None) -> list[Item]:

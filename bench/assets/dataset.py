@@ -2,13 +2,12 @@
 
 from __future__ import annotations
 
-import csv
 from dataclasses import dataclass
+from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from bench.datasets import read_labels, read_mesh, spread_evenly
-from bench.errors import BenchmarkError
+from bench.datasets import read_labels, read_mesh, read_table, spread_evenly
 
 if TYPE_CHECKING:
     from segcore.arrays import LongArray
@@ -65,17 +64,7 @@ def read_assets(folder: Path, limit: int | None = None) -> list[Asset]:
 
 
 def _listed_assets(folder: Path) -> list[Asset]:
-    path = folder / "models.tsv"
-    try:
-        with path.open(newline="", encoding="utf-8") as lines:
-            assets = [_asset(folder, row) for row in csv.DictReader(lines, delimiter="\t")]
-    except OSError as error:
-        raise BenchmarkError(f"{folder} is not the folder of the assets: models.tsv cannot be read.") from error
-    except (KeyError, TypeError, ValueError) as error:
-        raise BenchmarkError(f"{path} must be a table with the columns set, name, parts: {error}.") from error
-    if not assets:
-        raise BenchmarkError(f"{path} lists no model.")
-    return assets
+    return read_table(folder / "models.tsv", "assets", "set, name, parts", partial(_asset, folder))
 
 
 def _asset(folder: Path, row: dict[str, str]) -> Asset:

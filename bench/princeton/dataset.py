@@ -2,12 +2,12 @@
 
 from __future__ import annotations
 
-import csv
 from dataclasses import dataclass
+from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from bench.datasets import read_labels, read_mesh, spread_evenly
+from bench.datasets import read_labels, read_mesh, read_table, spread_evenly
 from bench.errors import BenchmarkError
 
 if TYPE_CHECKING:
@@ -81,17 +81,7 @@ def find_models(folder: Path, numbers: list[int]) -> list[Model]:
 
 
 def _listed_models(folder: Path) -> list[Model]:
-    path = folder / "segments.tsv"
-    try:
-        with path.open(newline="", encoding="utf-8") as lines:
-            models = [_model(folder, row) for row in csv.DictReader(lines, delimiter="\t")]
-    except OSError as error:
-        raise BenchmarkError(f"{folder} is not the folder of the benchmark: segments.tsv cannot be read.") from error
-    except (KeyError, TypeError, ValueError) as error:
-        raise BenchmarkError(f"{path} must be a table with the columns model, category, segments: {error}.") from error
-    if not models:
-        raise BenchmarkError(f"{path} lists no model.")
-    return models
+    return read_table(folder / "segments.tsv", "benchmark", "model, category, segments", partial(_model, folder))
 
 
 def _model(folder: Path, row: dict[str, str]) -> Model:
