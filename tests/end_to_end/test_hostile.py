@@ -82,7 +82,7 @@ def submit(installation: LoggingInstallation, name: str, content: bytes) -> str:
         headers={"Cache-Control": "no-cache"},
         timeout=60,
     )
-    assert answer.status_code == 202, (name, answer.text)
+    assert answer.status_code in (200, 202), (name, answer.text)  # 200: the job has ended already
     assert "PWNED" not in answer.headers["Location"]
     return str(answer.headers["Location"])
 

@@ -117,7 +117,7 @@ def test_a_large_upload_is_not_held_in_memory(installation: Installation) -> Non
     before = peak_bytes(service)
     content_type = {"Content-Type": "multipart/form-data; boundary=b"}
     answer = httpx.post(f"{installation.url}/v1/jobs", content=megabytes(), headers=content_type, timeout=120)
-    assert answer.status_code == 202, answer.text
+    assert answer.status_code in (200, 202), answer.text  # 200: the job has ended already
     assert peak_bytes(service) - before < 32 * 2**20
     assert httpx.delete(installation.url + answer.headers["Location"]).status_code == 204
 
