@@ -7,10 +7,10 @@ segmentations by people seg/Benchmark/N/N_j.seg. The last row is that of the peo
 from __future__ import annotations
 
 import argparse
-import json
 from pathlib import Path
 from typing import get_args
 
+from bench.arguments import parameter
 from bench.errors import BenchmarkError
 from bench.learning.folds import read_folds
 from bench.princeton.dataset import read_models
@@ -41,7 +41,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("--output", type=Path, metavar="FILE", help="write the scores of every model to this JSON file")
     parser.add_argument(
         "--parameters",
-        type=_parameter,
+        type=parameter,
         nargs="+",
         default=[],
         metavar="KEY=VALUE",
@@ -80,14 +80,3 @@ def _seeds(text: str) -> tuple[int, ...]:
     if len(set(seeds)) < len(seeds):
         raise argparse.ArgumentTypeError(f"each seed may appear once only, not as in {text!r}")
     return seeds
-
-
-def _parameter(text: str) -> tuple[str, object]:
-    """Return a name and a value, which is parsed as JSON if possible (numbers, true, null) and a word otherwise."""
-    name, equals, value = text.partition("=")
-    if not name or not equals:
-        raise argparse.ArgumentTypeError(f"a parameter is KEY=VALUE, not {text!r}")
-    try:
-        return name, json.loads(value)
-    except ValueError:
-        return name, value

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import sys
 from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -15,28 +16,34 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Fold:
-    """A group of models of the benchmark, and what was learned without them."""
+    """A group of models, and what was learned without them."""
 
     name: str
-    left_out: frozenset[int]
+    left_out: frozenset[int | str]  # numbers of models of the benchmark, SET/NAME of authored assets
     models: LearnedModels
 
 
 def save_fold(folder: Path, fold: Fold) -> None:
     """Write a fold to a file of the folder, with the name of the fold in lower case."""
-    document = {"left_out": sorted(fold.left_out), "models": fold.models.document()}
+    document = {"left_out": sorted(fold.left_out, key=_numbers_first), "models": fold.models.document()}
     (folder / f"{fold.name.lower()}.json").write_text(json.dumps(document), encoding="utf-8")
 
 
-def read_folds(folder: Path) -> dict[int, dict[str, Any]]:
+def _numbers_first(model: int | str) -> tuple[int, str]:
+    return (model, "") if isinstance(model, int) else (sys.maxsize, model)
+
+
+def read_folds(folder: Path) -> dict[int | str, dict[str, Any]]:
     """Return, for every model that a file of the folder leaves out, the document of the learned models in this file.
+
+    A model of the benchmark is its number, an authored asset the string SET/NAME.
 
     Raises
     ------
     BenchmarkError
         If the folder has no such file, or one cannot be read.
     """
-    found: dict[int, dict[str, Any]] = {}
+    found: dict[int | str, dict[str, Any]] = {}
     for path in sorted(folder.glob("*.json")):
         try:
             document = json.loads(path.read_text(encoding="utf-8"))

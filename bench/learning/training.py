@@ -72,13 +72,13 @@ def _groups(models: Sequence[Model], grouping: Grouping) -> dict[str, frozenset[
     return {name: frozenset(numbers) for name, numbers in groups.items()}
 
 
-def _grow(models_of: dict[int, dict[str, object]], model: Model) -> Rows:
+def _grow(models_of: dict[int | str, dict[str, object]], model: Model) -> Rows:
     with using(LearnedModels.from_document(models_of[model.number])):
         return cut_rows(model)
 
 
 def _fit(
-    names: tuple[str, ...], models: Sequence[Model], rows: Sequence[Rows], left_out: frozenset[int], ridge: float
+    names: tuple[str, ...], models: Sequence[Model], rows: Sequence[Rows], left_out: frozenset[int | str], ridge: float
 ) -> LogisticModel:
     seen = [row for model, row in zip(models, rows, strict=True) if model.number not in left_out]
     return fit(names, concatenated(seen), ridge)

@@ -18,7 +18,7 @@ def evaluate_models(
     seeds: tuple[int, ...],
     choice: SegmentChoice,
     jobs: int,
-    learned: Mapping[int, Mapping[str, Any]] | None = None,
+    learned: Mapping[int | str, Mapping[str, Any]] | None = None,
 ) -> list[ModelResult]:
     """Return the results of all models, in their order, computed in ``jobs`` processes of one thread each.
 
@@ -41,7 +41,7 @@ def evaluate_models(
 
 
 def _evaluate_unseen(
-    learned: Mapping[int, Mapping[str, Any]], evaluate: Callable[[Model], ModelResult], model: Model
+    learned: Mapping[int | str, Mapping[str, Any]], evaluate: Callable[[Model], ModelResult], model: Model
 ) -> ModelResult:
     from segcore.learned.models import LearnedModels, using
 

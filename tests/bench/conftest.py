@@ -44,11 +44,11 @@ def assets(tmp_path: Path) -> Path:
     dumbbell = shapes.dumbbell(24, 16)
     made = {("props", "crate"): (shapes.box(), np.zeros(12, dtype=np.int64))}
     made[("robots", "bell")] = (dumbbell.mesh, np.where(np.arange(len(dumbbell.parts)) == 0, -1, dumbbell.parts))
-    rows = ["set\tname\tfaces\tparts\tcomponents"]
+    rows = ["set\tname\tfaces\tparts\tcomponents_1rand\tkmeans_1rand"]
     for (collection, name), (mesh, parts) in made.items():
         (folder / collection).mkdir(parents=True)
         trimesh.Trimesh(mesh.vertices, mesh.faces, process=False).export(folder / collection / f"{name}.ply")
         np.savetxt(folder / collection / f"{name}.seg", parts, fmt="%d")
-        rows.append(f"{collection}\t{name}\t{len(mesh.faces)}\t{parts.max() + 1}\t1")
+        rows.append(f"{collection}\t{name}\t{len(mesh.faces)}\t{parts.max() + 1}\t0.5\t0.25")
     (folder / "models.tsv").write_text("\n".join(rows) + "\n")
     return folder

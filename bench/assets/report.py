@@ -1,0 +1,101 @@
+"""The printed report of a run on the authored assets, and the same as JSON."""
+
+from __future__ import annotations
+
+import json
+import math
+from collections.abc import Mapping, Sequence
+from dataclasses import asdict
+from pathlib import Path
+from typing import Any
+
+from bench.assets.evaluation import AssetResult
+from bench.assets.summary import Means, by_set, over_sets
+from bench.errors import BenchmarkError
+from bench.text import format_table, number
+
+FORMAT = "cleave-assets-1"
+_WEIGHTING = (
+    "given, automatic, best level, components, k-means: 1-Rand by area; IoU: mean over the parts after matching.\n"
+    "Every figure is the mean over the models of a set; the last row is the mean over the sets."
+)
+_HEADER = [
+    "set",
+    "models",
+    "parts",
+    "found",
+    "halved",
+    "given",
+    "automatic",
+    "given IoU",
+    "autom. IoU",
+    "best level",
+    "components",
+    "k-means",
+    "flat",
+    "mirror",
+    "CPU s",
+]
+
+
+def render(results: Sequence[AssetResult]) -> str:
+    """Return the table and the lines below it as text."""
+    sets = by_set(results)
+    mean = over_sets(sets)
+    halved = sum(one.halved for one in sets)
+    rows = [_row(one.collection, one.models, one.halved, one.means) for one in sets]
+    rows.append(_row("mean over sets", len(results), halved, mean))
+    worse = [one.collection for one in sets if one.means.worse_than_trivial]
+    return "\n".join(
+        [
+            f"Authored assets: {len(results)} models of {len(sets)} sets.",
+            _WEIGHTING,
+            "",
+            format_table(_HEADER, rows, rules=(len(sets),)),
+            "",
+            f"Half or fewer of the parts found: {halved} of {len(results)} models.",
+            f"Sets with an automatic result worse than components or k-means by more than 0.005: {len(worse)} of "
+            f"{len(sets)}{': ' if worse else ''}{', '.join(worse)}.",
+        ]
+    )
+
+
+def save(path: Path, results: Sequence[AssetResult], settings: Mapping[str, object]) -> None:
+    """Write the settings, the means and the results of all models as JSON; an undefined value is null.
+
+    Raises
+    ------
+    BenchmarkError
+        If the file cannot be written.
+    """
+    sets = by_set(results)
+    document = {
+        "format": FORMAT,
+        **settings,
+        "mean": _defined(asdict(over_sets(sets))),
+        "sets": [_defined(asdict(one)) for one in sets],
+        "models": [_defined(asdict(result)) for result in results],
+    }
+    try:
+        path.write_text(json.dumps(document, indent=1, allow_nan=False) + "\n", encoding="utf-8")
+    except OSError as error:
+        raise BenchmarkError(f"The results cannot be written to {path}: {error.strerror}.") from error
+
+
+def _row(name: str, models: int, halved: int, means: Means) -> list[str]:
+    scores = [means.given, means.automatic, means.given_iou, means.automatic_iou]
+    scores += [means.best, means.components, means.kmeans, means.flat, means.mirror]
+    counts = [str(models), number(means.parts, 1), number(means.found, 1), str(halved)]
+    return [name, *counts, *map(number, scores), number(means.cpu_s, 2)]
+
+
+def _defined(values: dict[str, Any]) -> dict[str, Any]:
+    """Return values in which nan is replaced by None, at every depth."""
+    return {
+        name: _defined(value)
+        if isinstance(value, dict)
+        else None
+        if isinstance(value, float) and math.isnan(value)
+        else value
+        for name, value in values.items()
+    }

@@ -1,0 +1,65 @@
+"""Quality on authored assets: one hierarchy of every mesh against the parts that its author made.
+
+The folder given with --data contains models.tsv (columns set, name, parts, kmeans_1rand), the meshes SET/NAME.ply and
+the parts SET/NAME.seg. Every mesh is segmented once; the number of parts given and the automatic number are levels of
+the same hierarchy, and the best level is the one with the least 1-Rand of all. 1-Rand and IoU are weighted by area,
+over the faces that belong to a part.
+
+components and k-means are trivial methods: the connected components after welding, and k-means of the face centroids
+with the true number (from models.tsv). flat is the share of the automatic cut's length that runs between faces
+coplanar to within a degree. mirror is 1-Rand of the automatic labels against their own mirror image, for the set
+bodies. halved counts the models of which half or fewer of the parts are found.
+"""
+
+from __future__ import annotations
+
+import argparse
+from pathlib import Path
+
+from bench.arguments import parameter
+from bench.assets.dataset import read_assets
+from bench.assets.parallel import evaluate_assets
+from bench.assets.report import render, save
+from bench.errors import BenchmarkError
+from bench.learning.folds import read_folds
+from bench.segmenter import CleaveSegmenter
+
+
+def add_arguments(parser: argparse.ArgumentParser) -> None:
+    parser.add_argument("--data", type=Path, required=True, metavar="DIR", help="the folder of the assets")
+    parser.add_argument("--limit", type=int, metavar="N", help="only N models, spread evenly over the list")
+    parser.add_argument("--set", nargs="+", metavar="NAME", help="only the models of these sets")
+    parser.add_argument("--seed", type=int, default=0, metavar="N", help="the seed of the segmentation (default 0)")
+    parser.add_argument("--jobs", type=int, default=1, metavar="N", help="processes (default 1)")
+    parser.add_argument("--output", type=Path, metavar="FILE", help="write the results of every model to this file")
+    parser.add_argument(
+        "--parameters",
+        type=parameter,
+        nargs="+",
+        default=[],
+        metavar="KEY=VALUE",
+        help="parameters of the segmentation, with the names in segcore.SegmentationParameters",
+    )
+    parser.add_argument(
+        "--folds",
+        type=Path,
+        metavar="FOLDER",
+        help="segment every model with what was learned without it (by python -m bench train --folds FOLDER)",
+    )
+
+
+def run(arguments: argparse.Namespace) -> None:
+    parameters = dict(arguments.parameters)
+    if "seed" in parameters:
+        raise BenchmarkError("The seed is not one of --parameters: give it with --seed.")
+    if arguments.jobs < 1:
+        raise BenchmarkError(f"--jobs must be at least 1, not {arguments.jobs}.")
+    if arguments.output is not None and not arguments.output.parent.is_dir():
+        raise BenchmarkError(f"The folder of {arguments.output} does not exist: create it first.")
+    segmenter = CleaveSegmenter(parameters)
+    assets = read_assets(arguments.data, arguments.limit, arguments.set)
+    learned = None if arguments.folds is None else read_folds(arguments.folds)
+    results = evaluate_assets(assets, segmenter, arguments.seed, arguments.jobs, learned)
+    if arguments.output is not None:
+        save(arguments.output, results, {"seed": arguments.seed, "parameters": parameters})
+    print(render(results))
