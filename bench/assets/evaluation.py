@@ -11,11 +11,15 @@ import numpy as np
 
 from bench.assets.dataset import Asset
 from bench.assets.metrics import Reference, mean_iou, one_minus_rand, rand_of_levels
+from bench.assets.sheet import draw_tile, upright
 from bench.errors import BenchmarkError
 from bench.segmenter import CleaveSegmenter
 
 if TYPE_CHECKING:
+    from bench.paper.pictures import Pixels
     from segcore.arrays import IntArray
+    from segcore.hierarchy import Hierarchy
+    from segcore.mesh import Mesh
 
 SYMMETRIC = frozenset({"bodies"})  # the sets whose meshes are mirror-symmetric
 
@@ -58,16 +62,26 @@ class AssetResult:
         return 2 * self.automatic.segments <= self.parts
 
 
-def evaluate_asset(asset: Asset, segmenter: CleaveSegmenter, seed: int) -> AssetResult:
+@dataclass(frozen=True, slots=True, eq=False)
+class Evaluation:
+    """The measurements on one asset, and a picture of it."""
+
+    result: AssetResult
+    pixels: Pixels | None  # (H, 2 H, 4) from draw_tile; None if no picture was asked for
+
+
+def evaluate_asset(asset: Asset, segmenter: CleaveSegmenter, seed: int, drawn: bool = False) -> Evaluation:
     """Segment an asset once and measure the result.
+
+    Parameters
+    ----------
+    drawn : also draw the automatic segments beside the parts.
 
     Raises
     ------
     BenchmarkError
         If a file of the asset cannot be used, or the segmentation fails.
     """
-    from bench.assets.shape import component_labels, flat_share, mirror_disagreement
-    from segcore.clean.surface import build_surface
     from segcore.mesh import face_normals_and_areas
 
     mesh = asset.read_mesh()
@@ -78,10 +92,20 @@ def evaluate_asset(asset: Asset, segmenter: CleaveSegmenter, seed: int) -> Asset
     except BenchmarkError as error:
         raise BenchmarkError(f"Model {asset.key}: {error}") from error
     cpu_s = time.process_time() - start
+    pixels = draw_tile(upright(asset, mesh), hierarchy.labels(), reference.part) if drawn else None
+    return Evaluation(_measured(asset, mesh, reference, hierarchy, cpu_s), pixels)
+
+
+def _measured(asset: Asset, mesh: Mesh, reference: Reference, hierarchy: Hierarchy, cpu_s: float) -> AssetResult:
+    # Imported here so that the other commands do not load the compiled kernels.
+    from bench.assets.shape import component_labels, flat_share, mirror_disagreement
+    from segcore.clean.surface import build_surface
+
     levels = rand_of_levels(hierarchy, reference)
     automatic = hierarchy.labels()
     surface = build_surface(mesh)
     centres = mesh.corners.mean(axis=1)
+    symmetric = asset.collection in SYMMETRIC
     return AssetResult(
         collection=asset.collection,
         name=asset.name,
@@ -94,6 +118,6 @@ def evaluate_asset(asset: Asset, segmenter: CleaveSegmenter, seed: int) -> Asset
         components=one_minus_rand(reference.shared_areas(component_labels(surface))),
         kmeans=asset.kmeans,
         flat=flat_share(surface, automatic),
-        mirror=mirror_disagreement(centres, reference.area, automatic) if asset.collection in SYMMETRIC else math.nan,
+        mirror=mirror_disagreement(centres, reference.area, automatic) if symmetric else math.nan,
         cpu_s=cpu_s,
     )

@@ -7,7 +7,7 @@ from functools import partial
 from typing import Any
 
 from bench.assets.dataset import Asset
-from bench.assets.evaluation import AssetResult, evaluate_asset
+from bench.assets.evaluation import Evaluation, evaluate_asset
 from bench.errors import BenchmarkError
 from bench.pool import map_in_processes
 from bench.segmenter import CleaveSegmenter
@@ -16,20 +16,26 @@ Documents = Mapping[int | str, Mapping[str, Any]]  # learned models by the mesh 
 
 
 def evaluate_assets(
-    assets: Sequence[Asset], segmenter: CleaveSegmenter, seed: int, jobs: int, learned: Documents | None = None
-) -> list[AssetResult]:
+    assets: Sequence[Asset],
+    segmenter: CleaveSegmenter,
+    seed: int,
+    jobs: int,
+    learned: Documents | None = None,
+    drawn: bool = False,
+) -> list[Evaluation]:
     """Return the results of all assets, in their order, computed in ``jobs`` processes of one thread each.
 
     Parameters
     ----------
     learned : for every asset, by SET/NAME, the learned models to use; None for the ones that ship.
+    drawn : also draw every asset.
 
     Raises
     ------
     BenchmarkError
         If ``learned`` lacks an asset, an asset fails, or a process dies.
     """
-    evaluate = partial(_evaluate, segmenter, seed)
+    evaluate = partial(_evaluate, segmenter, seed, drawn)
     return map_in_processes(evaluate, with_unseen(assets, learned), jobs, segmenter.warm_up)
 
 
@@ -53,12 +59,12 @@ def with_unseen(assets: Sequence[Asset], learned: Documents | None) -> list[tupl
 
 
 def _evaluate(
-    segmenter: CleaveSegmenter, seed: int, asset_and_models: tuple[Asset, Mapping[str, Any] | None]
-) -> AssetResult:
+    segmenter: CleaveSegmenter, seed: int, drawn: bool, asset_and_models: tuple[Asset, Mapping[str, Any] | None]
+) -> Evaluation:
     from segcore.learned.models import LearnedModels, using
 
     asset, document = asset_and_models
     if document is None:
-        return evaluate_asset(asset, segmenter, seed)
+        return evaluate_asset(asset, segmenter, seed, drawn)
     with using(LearnedModels.from_document(document)):
-        return evaluate_asset(asset, segmenter, seed)
+        return evaluate_asset(asset, segmenter, seed, drawn)

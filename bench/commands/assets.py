@@ -9,6 +9,9 @@ components and k-means are trivial methods: the connected components after weldi
 with the true number (from models.tsv). flat is the share of the automatic cut's length that runs between faces
 coplanar to within a degree. mirror is 1-Rand of the automatic labels against their own mirror image, for the set
 bodies. halved counts the models of which half or fewer of the parts are found.
+
+--sheet draws a contact sheet of every set: the automatic segments of every model, then the parts of its author. A
+segment has the colour of the part that it is matched to; faces without a part are grey.
 """
 
 from __future__ import annotations
@@ -20,8 +23,10 @@ from bench.arguments import parameter
 from bench.assets.dataset import read_assets
 from bench.assets.parallel import evaluate_assets
 from bench.assets.report import render, save
+from bench.assets.sheet import save_sheets
 from bench.errors import BenchmarkError
 from bench.learning.folds import read_folds
+from bench.paper.charts import require_matplotlib
 from bench.segmenter import CleaveSegmenter
 
 
@@ -46,6 +51,9 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         metavar="FOLDER",
         help="segment every model with what was learned without it (by python -m bench train --folds FOLDER)",
     )
+    parser.add_argument(
+        "--sheet", type=Path, metavar="FOLDER", help="write a picture SET.png of every set to this folder"
+    )
 
 
 def run(arguments: argparse.Namespace) -> None:
@@ -56,10 +64,16 @@ def run(arguments: argparse.Namespace) -> None:
         raise BenchmarkError(f"--jobs must be at least 1, not {arguments.jobs}.")
     if arguments.output is not None and not arguments.output.parent.is_dir():
         raise BenchmarkError(f"The folder of {arguments.output} does not exist: create it first.")
+    if arguments.sheet is not None:
+        require_matplotlib("--sheet")
     segmenter = CleaveSegmenter(parameters)
     assets = read_assets(arguments.data, arguments.limit, arguments.set)
     learned = None if arguments.folds is None else read_folds(arguments.folds)
-    results = evaluate_assets(assets, segmenter, arguments.seed, arguments.jobs, learned)
+    drawn = arguments.sheet is not None
+    evaluations = evaluate_assets(assets, segmenter, arguments.seed, arguments.jobs, learned, drawn)
+    results = [evaluation.result for evaluation in evaluations]
     if arguments.output is not None:
         save(arguments.output, results, {"seed": arguments.seed, "parameters": parameters})
     print(render(results))
+    if drawn:
+        print(f"Drawn: {', '.join(map(str, save_sheets(arguments.sheet, evaluations)))}.")

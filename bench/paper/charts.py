@@ -39,10 +39,15 @@ class Bar:
     group: int  # bars of one group have the same colour
 
 
-def require_matplotlib() -> None:
-    """Raise BenchmarkError if matplotlib is not installed; called before the long computations."""
+def require_matplotlib(option: str = "--output") -> None:
+    """Raise BenchmarkError if matplotlib is not installed; called before the long computations.
+
+    Parameters
+    ----------
+    option : the option that asks for a picture, for the message.
+    """
     if find_spec("matplotlib") is None:
-        raise BenchmarkError("Charts need matplotlib: pip install matplotlib, or leave --output out.")
+        raise BenchmarkError(f"Charts need matplotlib: pip install matplotlib, or leave {option} out.")
 
 
 def metric_chart(title: str, bars: Sequence[Bar], people: Scores) -> Figure:

@@ -36,7 +36,7 @@ def side_by_side(mesh: Mesh, segmentations: Sequence[IntArray]) -> Pixels:
     azimuth, elevation = broad_view(mesh)
     alike = [matched(labels, segmentations[0]) for labels in segmentations]
     pictures = [draw(mesh, labels, _SIZE, azimuth, elevation) for labels in alike]
-    return _on_white(np.concatenate(pictures, axis=1))
+    return on_white(np.concatenate(pictures, axis=1))
 
 
 def broad_view(mesh: Mesh) -> tuple[float, float]:
@@ -79,7 +79,13 @@ def save_picture(path: Path, rows: Sequence[Pixels]) -> None:
         raise BenchmarkError(f"The picture cannot be written to {path}: {error.strerror}.") from error
 
 
-def _on_white(pixels: Pixels) -> Pixels:
+def on_white(pixels: Pixels) -> Pixels:
+    """(H, W, 4) opaque pixels in front of white."""
+    return over(pixels, np.full((1, 1, 3), 255, dtype=np.uint8))
+
+
+def over(pixels: Pixels, ground: Pixels) -> Pixels:
+    """(H, W, 4) opaque pixels in front of a ground (H, W, 3), or (1, 1, 3) if it has one colour."""
     opacity = pixels[..., 3:].astype(np.float64) / 255
-    color = pixels[..., :3] * opacity + 255 * (1 - opacity)
+    color = pixels[..., :3] * opacity + ground * (1 - opacity)
     return np.concatenate([np.rint(color), np.full(opacity.shape, 255.0)], axis=2).astype(np.uint8)
