@@ -1,8 +1,9 @@
-"""Type aliases of arrays, and two reductions that several stages share."""
+"""Type aliases of arrays, and a few operations that several stages share."""
 
 from typing import TypeAlias
 
 import numpy as np
+from numba import njit
 from numpy.typing import NDArray
 
 FloatArray: TypeAlias = NDArray[np.float64]
@@ -24,3 +25,33 @@ def group_sums(group: NDArray[np.integer], values: FloatArray, count: int = 0) -
     """(max(count, groups),) the sum of the values of each group 0, 1, ...; 0 for empty groups."""
     sums: FloatArray = np.bincount(group, values, minlength=count).astype(np.float64, copy=False)
     return sums
+
+
+@njit(cache=True)
+def dot(x: FloatArray, y: FloatArray) -> float:
+    """The inner product of two vectors (N,), added in an order that depends on N alone.
+
+    ``numpy.dot`` and ``@`` leave the order to BLAS, whose result for more than 10,000 numbers depends on the number of
+    its threads. The eight sums are independent, so that they are added in parallel by vector instructions.
+    """
+    count = len(x)
+    whole = count - count % 8
+    a = b = c = d = e = f = g = h = 0.0
+    for i in range(0, whole, 8):
+        a += x[i] * y[i]
+        b += x[i + 1] * y[i + 1]
+        c += x[i + 2] * y[i + 2]
+        d += x[i + 3] * y[i + 3]
+        e += x[i + 4] * y[i + 4]
+        f += x[i + 5] * y[i + 5]
+        g += x[i + 6] * y[i + 6]
+        h += x[i + 7] * y[i + 7]
+    for i in range(whole, count):
+        a += x[i] * y[i]
+    return ((a + b) + (c + d)) + ((e + f) + (g + h))
+
+
+def transformed(points: FloatArray, matrix: FloatArray) -> FloatArray:
+    """(..., K) the images M p of points p (..., 3) under a matrix M (K, 3), without the threads of BLAS."""
+    images: FloatArray = np.einsum("...j,kj->...k", points, matrix)
+    return images

@@ -4,7 +4,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from segcore.arrays import FloatArray, IntArray
+from segcore.arrays import FloatArray, IntArray, transformed
 from segcore.mesh import Mesh
 
 
@@ -77,9 +77,9 @@ def burr(subdivisions: int = 5, arms: int = 6) -> Shape:
     """A ball with up to six round arms along the axes: part 0 is the ball, parts 1 to ``arms`` are the arms."""
     direction = np.array([sign * np.eye(3)[i] for i in range(3) for sign in (1, -1)][:arms])
     sphere = icosphere(subdivisions)
-    reach = 1.6 / (1 + np.exp(60 * (0.93 - sphere.vertices @ direction.T)))
+    reach = 1.6 / (1 + np.exp(60 * (0.93 - transformed(sphere.vertices, direction))))
     vertices = sphere.vertices * (1 + reach.sum(axis=1, keepdims=True))
-    towards = sphere.corners.mean(axis=1) @ direction.T
+    towards = transformed(sphere.corners.mean(axis=1), direction)
     parts = np.where(towards.max(axis=1) > 0.86, 1 + towards.argmax(axis=1), 0)
     return Shape(Mesh(vertices, sphere.faces), parts.astype(np.int32))
 

@@ -6,13 +6,11 @@ The number of patches does not grow with the mesh, and with it the cost of rays,
 from dataclasses import dataclass
 
 import numpy as np
-from scipy.sparse import csc_matrix
-from scipy.sparse.linalg import splu
 
 from segcore.arrays import FloatArray, IntArray, at_least, group_sums
 from segcore.clean.surface import Surface
 from segcore.coarsen.matching import coarsen
-from segcore.graphs.laplacian import factorise_edges
+from segcore.graphs.laplacian import Elimination
 from segcore.graphs.surface_graph import SurfaceGraph
 from segcore.mesh import face_centroids
 
@@ -34,48 +32,27 @@ class Patches:
     pairs: IntArray  # (Q, 2) neighbouring patches
     border: FloatArray  # (Q,) length of their common border
     distance: FloatArray  # (Q,) between their centres
+    smoothing: Elimination  # of the patches and one more node, to which every patch is joined
 
     def smoothed(self, values: FloatArray, radius: float, mass: FloatArray) -> FloatArray:
         """Values after an implicit step of diffusion, (I - radius^2 / 6 Laplace) x = values.
+
+        The matrix is a Laplacian without the row of one more node, to which every patch is joined with its mass. The
+        elimination of that graph subtracts nothing and so loses no mass, however small.
 
         Parameters
         ----------
         values : (P,) or (P, C) means over the patches.
         radius : in units of the surface.
-        mass : (P,) weight of each value, at most the area. Patches of little mass take the values of their neighbours;
-            with the areas as mass the smoothing keeps the mean.
+        mass : (P,) > 0, weight of each value, at most the area. Patches of little mass take the values of their
+            neighbours; with the areas as mass the smoothing keeps the mean.
         """
-        count = len(self.area)
-        a, b = self.pairs.T
         exchange = radius**2 / 6 * self.border / self.distance
-        diagonal = mass + group_sums(a, exchange, count) + group_sums(b, exchange, count)
-        patches = np.arange(count, dtype=np.int32)
-        entries = np.concatenate([diagonal, -exchange, -exchange])
-        places = (np.concatenate([patches, a, b]), np.concatenate([patches, b, a]))
-        matrix = csc_matrix((entries, places), shape=(count, count))
-        try:
-            factor = splu(matrix, permc_spec="MMD_AT_PLUS_A", diag_pivot_thresh=0.0, options={"SymmetricMode": True})
-        except RuntimeError:  # singular: the masses of a component are lost in the rounding of the diagonal
-            return self._smoothed_by_elimination(values, exchange, mass)
-        smooth: FloatArray = factor.solve((values.T * mass).T)
+        factor = self.smoothing.factorise(np.concatenate([exchange, mass]))
+        sources = (values.T * mass).reshape(-1, len(mass))
+        solved = np.stack([factor.solve(np.append(source, -source.sum())) for source in sources], axis=-1)
+        smooth: FloatArray = (solved[:-1] - solved[-1]).reshape(values.shape)
         return smooth
-
-    def _smoothed_by_elimination(self, values: FloatArray, exchange: FloatArray, mass: FloatArray) -> FloatArray:
-        """The same values from the Laplacian with one more node, to which every patch is joined with its mass.
-
-        The elimination subtracts nothing, so that it loses no mass, however small. Patches of a component without mass
-        get 0. See decision 13.
-        """
-        count = len(mass)
-        held = np.flatnonzero(mass > 0.0).astype(np.int32)
-        spokes = np.stack([held, np.full(len(held), count, dtype=np.int32)], axis=1)
-        flowing = exchange > 0.0
-        factor = factorise_edges(
-            np.concatenate([self.pairs[flowing], spokes]), np.concatenate([exchange[flowing], mass[held]]), count + 1
-        )
-        sources = (values.T * mass).T.reshape(count, -1)
-        solved = [factor.solve(np.append(source, -source.sum())) for source in sources.T]
-        return np.stack([x[:-1] - x[-1] for x in solved], axis=-1).reshape(values.shape)
 
     def gradients(self, values: FloatArray) -> FloatArray:
         """(P, 3) the gradient of values (P,) in the tangent plane of every patch, by least squares over neighbours."""
@@ -119,7 +96,15 @@ def patches_of(surface: Surface, affinity: FloatArray, length: FloatArray, rng: 
     normal = np.divide(normal, size, out=np.zeros_like(normal), where=size > 0)
     distance = np.linalg.norm(centre[coarse.edges[:, 1]] - centre[coarse.edges[:, 0]], axis=1)
     least = _SHORTEST_STEP * np.sqrt(coarse.total_volume / count)
-    return Patches(of_face, coarse.volume, centre, normal, coarse.edges, coarse.length, np.maximum(distance, least))
+    distance = np.maximum(distance, least)
+    smoothing = _smoothing(coarse.edges, count)
+    return Patches(of_face, coarse.volume, centre, normal, coarse.edges, coarse.length, distance, smoothing)
+
+
+def _smoothing(pairs: IntArray, count: int) -> Elimination:
+    """The elimination of the graph of patches with one more node next to all of them."""
+    spokes = np.stack([np.arange(count), np.full(count, count)], axis=1).astype(np.int32)
+    return Elimination.of(np.concatenate([pairs, spokes]), count + 1)
 
 
 def _sums(group: IntArray, weight: FloatArray, values: FloatArray, count: int) -> FloatArray:

@@ -5,7 +5,7 @@ from dataclasses import dataclass
 import numpy as np
 from numba import njit
 
-from segcore.arrays import FloatArray, IntArray, at_least
+from segcore.arrays import FloatArray, IntArray, at_least, dot
 from segcore.clean.surface import Surface
 
 _TINY = float(np.finfo(float).tiny)
@@ -25,7 +25,7 @@ class EdgeGeometry:
     def of(cls, surface: Surface) -> "EdgeGeometry":
         """The geometry of all edges of a surface. O(E)."""
         length, dihedral = edge_lengths(surface), dihedral_angles(surface)
-        typical = float(np.dot(length, np.abs(dihedral)) / max(length.sum(), _TINY))
+        typical = float(dot(length, np.abs(dihedral)) / max(length.sum(), _TINY))
         return cls(length, dihedral, max(typical, _TINY), across_edges(surface))
 
     @property

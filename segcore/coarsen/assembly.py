@@ -17,6 +17,9 @@ from segcore.graphs.surface_graph import connected_components
 # values do better on models of several bodies: see docs/algorithm.md, "Constants" of section 3.
 CONTACT = 0.1
 NEGLIGIBLE = 0.002  # share of the total area below which an assembly is attached to its neighbour, as cut/rules.py has
+_SHORTEST = (
+    1e-9  # least length of a contact, in the extent: eigenvectors see no weights below 1e-16 of others; set by hand
+)
 _SMALLEST_SIZE = 1e-4  # least size of a surface, in extents of its bounding box, in the search for contacts
 
 
@@ -64,7 +67,7 @@ def link_components(surface: Surface, component: IntArray, most: int) -> Links:
     length = np.sqrt(group_sums(assembly, points.area)[assembly[attached[:, 0]]])
     return Links(
         np.concatenate([contacts.faces, points.face[attached]]),
-        np.concatenate([contacts.length, np.maximum(length, np.finfo(float).tiny)]),
+        np.concatenate([contacts.length, np.maximum(length, _SHORTEST)]),
     )
 
 

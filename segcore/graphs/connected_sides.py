@@ -38,7 +38,8 @@ def _best_piece(graph: SurfaceGraph, pieces: IntArray, excluded: int | None = No
     crossing = ends[:, 0] != ends[:, 1]
     border = group_sums(ends[crossing].ravel(), np.repeat(graph.weight[crossing], 2), count)
     volume = group_sums(pieces, graph.volume, count)
-    ncc = border / np.minimum(volume, graph.total_volume - volume)
+    smaller = np.minimum(volume, graph.total_volume - volume)
+    ncc = np.divide(border, smaller, out=np.full(count, np.inf), where=smaller > 0)
     if excluded is not None:
         ncc[excluded] = np.inf
     return cut_of(graph, pieces == int(np.argmin(ncc)))

@@ -7,7 +7,7 @@ from numba import njit
 
 from segcore.arrays import FloatArray, IntArray, LongArray
 from segcore.graphs.ordering import minimum_degree
-from segcore.graphs.surface_graph import IndexArray, SurfaceGraph, rows_of
+from segcore.graphs.surface_graph import IndexArray, Rows, SurfaceGraph, rows_of
 
 
 class LaplacianFactor(NamedTuple):
@@ -40,6 +40,27 @@ class LaplacianFactor(NamedTuple):
         return substitute(*self, b)
 
 
+class Elimination(NamedTuple):
+    """The part of a factorisation that does not depend on the weights: an order and the places of the entries."""
+
+    rows: Rows
+    order: IntArray  # (N,) as in ``LaplacianFactor``, likewise the next two
+    start: LongArray  # (N + 1,)
+    row: IndexArray  # (nnz,)
+
+    @classmethod
+    def of(cls, edges: IntArray, node_count: int) -> "Elimination":
+        """Order the elimination of an edge list (E, 2), each node pair listed once, without loops."""
+        rows = rows_of(edges, node_count)
+        order = minimum_degree(rows)
+        return cls(rows, order, *_structure(rows, order))
+
+    def factorise(self, weight: FloatArray) -> LaplacianFactor:
+        """Factorise the Laplacian for weights (E,) > 0 of the edges."""
+        share, pivot = _eliminate(self.rows, weight[self.rows.edge], self.order, self.start, self.row)
+        return LaplacianFactor(self.order, self.start, self.row, share, pivot)
+
+
 def factorise(graph: SurfaceGraph) -> LaplacianFactor:
     """Factorise L = diag(degree) - W by Gaussian elimination."""
     return factorise_edges(graph.edges, graph.weight, graph.node_count)
@@ -61,15 +82,7 @@ def factorise_edges(edges: IntArray, weight: FloatArray, node_count: int) -> Lap
     Grassmann, Taksar and Heyman, Regenerative analysis and steady state distributions for Markov chains, Operations
     Research 33, 1985; George and Liu, Computer solution of large sparse positive definite systems, 1981, ch. 5.
     """
-    rows = rows_of(edges, node_count)
-    return _factor(rows, weight[rows.edge], minimum_degree(rows))
-
-
-@njit(cache=True)
-def _factor(rows, weight, order):  # type: ignore[no-untyped-def]
-    start, row = _structure(rows, order)
-    share, pivot = _eliminate(rows, weight, order, start, row)
-    return LaplacianFactor(order, start, row, share, pivot)
+    return Elimination.of(edges, node_count).factorise(weight)
 
 
 @njit(cache=True)

@@ -94,5 +94,6 @@ def _candidates() -> FloatArray:
 def _appearance(srgb: FloatArray) -> FloatArray:
     """(4, N, 3) OKLab coordinates of the colours for each kind of colour vision."""
     light = np.clip(np.einsum("vij,nj->vni", _VISIONS, linear_rgb(srgb)), 0, 1)
-    oklab: FloatArray = np.cbrt(light @ _RGB_TO_LMS.T) @ _LMS_TO_OKLAB.T
+    lms = np.cbrt(np.einsum("vni,ji->vnj", light, _RGB_TO_LMS))
+    oklab: FloatArray = np.einsum("vni,ji->vnj", lms, _LMS_TO_OKLAB)
     return oklab

@@ -8,7 +8,7 @@ import numpy as np
 from numba import njit
 from numpy.typing import NDArray
 
-from segcore.arrays import FloatArray, IntArray
+from segcore.arrays import FloatArray, IntArray, transformed
 from segcore.io.palette import segment_colors
 from segcore.mesh import Mesh, face_normals_and_areas
 
@@ -42,14 +42,14 @@ def draw(mesh: Mesh, labels: IntArray, size: int = 512, azimuth: float = 30.0, e
     (size, size, 4) uint8, red, green, blue and opacity: an orthographic view of the whole mesh, y up.
     """
     view = _view(azimuth, elevation)
-    seen = mesh.vertices @ view.T
+    seen = transformed(mesh.vertices, view)
     low, high = seen.min(axis=0), seen.max(axis=0)
     resolution = size * _SAMPLES
     scale = resolution * (1 - 2 * _MARGIN) / max(float((high - low)[:2].max()), float(np.finfo(float).tiny))
     screen = (seen - 0.5 * (low + high)) * scale
     screen[:, :2] = screen[:, :2] * [1, -1] + 0.5 * resolution
-    normals = _corner_normals(mesh.faces, face_normals_and_areas(mesh.corners)[0], len(mesh.vertices)) @ view.T
-    label, light = _rasterize(screen, mesh.faces, labels, normals, resolution)
+    normals = _corner_normals(mesh.faces, face_normals_and_areas(mesh.corners)[0], len(mesh.vertices))
+    label, light = _rasterize(screen, mesh.faces, labels, transformed(normals, view), resolution)
     return _shaded(label, light, size)
 
 

@@ -6,7 +6,7 @@ from typing import NamedTuple
 import numpy as np
 from numba import njit
 
-from segcore.arrays import FloatArray
+from segcore.arrays import FloatArray, dot
 from segcore.graphs.laplacian import LaplacianFactor, factorise
 from segcore.graphs.surface_graph import IndexArray, SurfaceGraph
 
@@ -87,7 +87,7 @@ class InnerProblem:
 
         The sign of a supply does not matter to the method; the one that is nearer to the last supply is taken.
         """
-        self.supply = supply if supply @ self.supply >= 0 else -supply
+        self.supply = supply if dot(supply, self.supply) >= 0 else -supply
         potential = self.factor.solve(self.supply - self.flow.divergence)
         _add_flow(self.dual, potential, self.flow)
         self.momentum = 1.0

@@ -6,7 +6,7 @@ from collections.abc import Iterator
 import numpy as np
 from numba import njit
 
-from segcore.arrays import FloatArray
+from segcore.arrays import FloatArray, dot
 from segcore.errors import InvalidParameters
 from segcore.graphs.cheeger import Cut, sweep
 from segcore.graphs.laplacian import LaplacianFactor, factorise, factorise_edges
@@ -99,7 +99,7 @@ def minimise(graph: SurfaceGraph, values: FloatArray, p: float, iterations: int)
     pairs: deque[tuple[FloatArray, FloatArray]] = deque(maxlen=MEMORY)
     for _ in range(iterations):
         direction = _newton_direction(factor, gradient, pairs)
-        slope = gradient @ direction
+        slope = dot(gradient, direction)
         step = 1.0
         trial, trial_gradient = rayleigh_quotient(graph, f + direction, p)
         while trial > value + SUFFICIENT_DECREASE * step * slope and step > SHORTEST_STEP:
@@ -107,7 +107,7 @@ def minimise(graph: SurfaceGraph, values: FloatArray, p: float, iterations: int)
             trial, trial_gradient = rayleigh_quotient(graph, f + step * direction, p)
         if not trial < value * (1 - LEAST_DECREASE):
             break
-        if direction @ (trial_gradient - gradient) > 0:
+        if dot(direction, trial_gradient - gradient) > 0:
             pairs.append((step * direction, trial_gradient - gradient))
         f = f + step * direction
         value, gradient = trial, trial_gradient
@@ -121,14 +121,14 @@ def _newton_direction(
     rest = gradient.copy()
     shares = []
     for step, change in reversed(pairs):
-        shares.append((step @ rest) / (step @ change))
+        shares.append(dot(step, rest) / dot(step, change))
         rest -= shares[-1] * change
     direction = factor.solve(rest)
     if pairs:
         step, change = pairs[-1]
-        direction *= (step @ change) / (change @ factor.solve(change))
+        direction *= dot(step, change) / dot(change, factor.solve(change))
     for (step, change), share in zip(pairs, reversed(shares), strict=True):
-        direction += step * (share - (change @ direction) / (step @ change))
+        direction += step * (share - dot(change, direction) / dot(step, change))
     return -direction
 
 

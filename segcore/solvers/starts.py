@@ -4,7 +4,7 @@ from collections.abc import Iterator
 
 import numpy as np
 
-from segcore.arrays import FloatArray
+from segcore.arrays import FloatArray, dot
 from segcore.graphs.laplacian import LaplacianFactor
 from segcore.graphs.surface_graph import SurfaceGraph
 from segcore.solvers.fiedler import eigenvectors
@@ -34,6 +34,6 @@ def start_functions(
     for _ in range(starts - 1):
         values = rng.standard_normal(graph.node_count)
         for _ in range(SMOOTHING_STEPS):
-            mean = graph.volume @ values / graph.total_volume
+            mean = dot(graph.volume, values) / graph.total_volume
             values = factor.solve(graph.volume * (values - mean))
         yield values

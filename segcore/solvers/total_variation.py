@@ -7,7 +7,7 @@ from typing import NamedTuple
 import numpy as np
 from numba import njit
 
-from segcore.arrays import FloatArray
+from segcore.arrays import FloatArray, dot
 from segcore.graphs.cheeger import Cut, sweep
 from segcore.graphs.laplacian import LaplacianFactor, factorise_edges, substitute
 from segcore.graphs.surface_graph import IndexArray, SurfaceGraph
@@ -90,7 +90,7 @@ class TotalVariationFlow:
 
     def _scale(self, f: FloatArray) -> float:
         """The factor that makes the mean magnitude 1."""
-        return float(self.total_volume / (self.graph.volume @ np.abs(f)))
+        return float(self.total_volume / dot(self.graph.volume, np.abs(f)))
 
 
 def _centred(graph: SurfaceGraph, values: FloatArray) -> FloatArray:
@@ -102,8 +102,8 @@ def _centred(graph: SurfaceGraph, values: FloatArray) -> FloatArray:
 
 def _energy(graph: SurfaceGraph, f: FloatArray) -> float:
     """E(f) = R(f) / B(f) of a function with median 0."""
-    variation = graph.weight @ np.abs(f[graph.edges[:, 0]] - f[graph.edges[:, 1]])
-    return float(variation / (graph.volume @ np.abs(f)))
+    variation = dot(graph.weight, np.abs(f[graph.edges[:, 0]] - f[graph.edges[:, 1]]))
+    return float(variation / dot(graph.volume, np.abs(f)))
 
 
 def _subgradient(graph: SurfaceGraph, f: FloatArray) -> FloatArray:

@@ -33,6 +33,14 @@ def test_every_segment_at_every_level_is_connected(mesh):
         assert pieces_of_labels(mesh, hierarchy.labels(k)) == k
 
 
+@pytest.mark.parametrize("scale", [1e-15, 1e-20])
+def test_a_copy_far_smaller_than_the_rounding_of_a_shape_changes_nothing(scale):
+    speck = Mesh(scale * BURR.mesh.vertices, BURR.mesh.faces)
+    with np.errstate(all="raise", under="ignore"):
+        labels = segment(shapes.joined(BURR.mesh, speck).mesh).labels(7)[: len(BURR.mesh.faces)]
+    assert agreement(labels, BURR.parts, areas(BURR.mesh)) > 0.95
+
+
 def test_the_same_mesh_gives_the_same_bytes():
     first, second = segment(BURR.mesh), segment(BURR.mesh)
     for name in ("split_node", "cut_value", "area", "face_count", "face_leaf"):

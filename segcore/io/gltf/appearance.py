@@ -13,7 +13,7 @@ from segcore.appearance import (
     texture_coordinates,
     unit_normals,
 )
-from segcore.arrays import FloatArray
+from segcore.arrays import FloatArray, transformed
 from segcore.errors import CleaveError
 from segcore.io.gltf.accessors import Accessors
 from segcore.io.gltf.scene import Instance, Primitive
@@ -68,10 +68,9 @@ def _block(instance: Instance, primitives: list[Primitive], accessors: Accessors
 def _transformed(normals: FloatArray, matrix: FloatArray) -> FloatArray | None:
     """(V, 3) normals N after the transform M: rows of N inverse(M); None if M is singular."""
     try:
-        moved: FloatArray = normals @ np.linalg.inv(matrix)
+        return transformed(normals, np.asarray(np.linalg.inv(matrix).T, dtype=np.float64))
     except np.linalg.LinAlgError:
         return None
-    return moved
 
 
 def _values(accessors: Accessors, source: int, name: str) -> FloatArray | None:

@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from segcore.arrays import FloatArray, IntArray
+from segcore.arrays import FloatArray, IntArray, transformed
 from segcore.errors import InvalidMesh
 from segcore.io.gltf.accessors import Accessors
 from segcore.io.gltf.appearance import gltf_appearance
@@ -96,7 +96,7 @@ def _place(accessors: Accessors, positions: int, transform: FloatArray) -> Float
     """(V, 3) transformed positions."""
     values = accessors.read(positions, "VEC3").astype(np.float64)
     matrix = transform.reshape(4, 4)
-    return values if (matrix == np.eye(4)).all() else values @ matrix[:3, :3].T + matrix[:3, 3]
+    return values if (matrix == np.eye(4)).all() else transformed(values, matrix[:3, :3]) + matrix[:3, 3]
 
 
 def _faces(primitive: Primitive, accessors: Accessors, instance: Instance) -> IntArray:

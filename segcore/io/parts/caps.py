@@ -5,7 +5,7 @@ from dataclasses import dataclass
 import numpy as np
 from numba import njit
 
-from segcore.arrays import BoolArray, FloatArray, IntArray, LongArray
+from segcore.arrays import BoolArray, FloatArray, IntArray, LongArray, transformed
 
 # The number of ears, each with a shorter base than the one before, that end the search. Set by hand: one is enough for
 # a valid cap, more avoid long thin triangles.
@@ -131,7 +131,7 @@ def _projected(points: FloatArray) -> FloatArray:
     normal = normal / size if size > 0 else np.array([0.0, 0.0, 1.0])
     across = np.cross(normal, np.eye(3)[np.argmin(np.abs(normal))])
     across /= np.linalg.norm(across)
-    return relative @ np.stack([across, np.cross(normal, across)], axis=1)
+    return transformed(relative, np.stack([across, np.cross(normal, across)]))
 
 
 @njit(cache=True)

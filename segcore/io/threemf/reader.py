@@ -3,7 +3,7 @@
 import numpy as np
 
 from segcore.appearance import group_appearance
-from segcore.arrays import FloatArray, IntArray
+from segcore.arrays import FloatArray, IntArray, transformed
 from segcore.errors import InvalidMesh, LimitExceeded
 from segcore.io.limits import ReadLimits
 from segcore.io.threemf.model import Model, ModelObject, ObjectKey, Placed, parse_model
@@ -130,8 +130,7 @@ def _assemble(placed: list[Placed], objects: _Objects, with_appearance: bool) ->
 def _place(source: ModelObject, transform: FloatArray, vertices: FloatArray) -> None:
     """Fill ``vertices`` (V, 3) with the transformed vertices of an object."""
     own = np.frombuffer(source.vertices, dtype=np.float64).reshape(-1, 3)
-    np.matmul(own, transform[:3, :3].T, out=vertices)
-    vertices += transform[:3, 3]
+    np.add(transformed(own, transform[:3, :3]), transform[:3, 3], out=vertices)
 
 
 def _faces(source: ModelObject, place: Placed) -> IntArray:

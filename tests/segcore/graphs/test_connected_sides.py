@@ -42,3 +42,20 @@ def test_the_best_piece_of_a_cycle_is_cut_off() -> None:
     cut = with_connected_sides(graph, cut_of(graph, side))
     assert set(np.flatnonzero(cut.side == cut.side[11])) == set(range(6, 12))
     assert cut.ncc == pytest.approx(cuts(graph, cut.side[None])[0] / 12)
+
+
+def test_a_piece_whose_volume_is_lost_in_rounding_is_not_cut_off() -> None:
+    """A path a - b - c - d with the sides {a, d} and {b, c}: without a, the volume of the rest is that of all."""
+    volume = np.array([1e-30, 1.0, 1.0, 1.0])
+    graph = SurfaceGraph(np.array([[0, 1], [1, 2], [2, 3]], dtype=np.int32), np.ones(3), volume, np.ones(3))
+    cut = with_connected_sides(graph, cut_of(graph, np.array([True, False, False, True])))
+    assert cut.canonical.side.tolist() == [True, True, True, False]
+
+
+def test_a_piece_beside_which_nothing_else_counts_is_not_divided_by_zero() -> None:
+    """The same path if all volume is in b and c: no piece leaves any volume on both sides, and the first is cut off."""
+    volume = np.array([1e-30, 1.0, 1.0, 1e-30])
+    graph = SurfaceGraph(np.array([[0, 1], [1, 2], [2, 3]], dtype=np.int32), np.ones(3), volume, np.ones(3))
+    with np.errstate(divide="raise"):
+        cut = with_connected_sides(graph, cut_of(graph, np.array([True, False, False, True])))
+    assert cut.canonical.side.tolist() == [True, False, False, False]

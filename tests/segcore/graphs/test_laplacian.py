@@ -4,7 +4,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from helpers.graphs import graph_of, graphs, laplacian, mesh_like
-from segcore.graphs.laplacian import factorise
+from segcore.graphs.laplacian import Elimination, factorise, factorise_edges
 from segcore.graphs.surface_graph import SurfaceGraph, connected_components
 
 
@@ -39,3 +39,11 @@ def test_every_digit_is_right_when_weights_span_thirty_decades() -> None:
     assert potential[0] - potential[-1] == pytest.approx((1 / weight).sum(), rel=1e-14)
     last = graph_of([(0, 1), (1, 2), (0, 2)], [1e-15, 1e-15, 1e15])
     assert factorise(last).pivot.min(where=factorise(last).pivot > 0, initial=np.inf) == pytest.approx(2e-15, rel=1e-14)
+
+
+def test_an_elimination_serves_all_weights_of_a_graph() -> None:
+    graph = mesh_like(0)
+    elimination = Elimination.of(graph.edges, graph.node_count)
+    for weight in (graph.weight, 3 * graph.weight**2):
+        again, alone = elimination.factorise(weight), factorise_edges(graph.edges, weight, graph.node_count)
+        assert [array.tolist() for array in again] == [array.tolist() for array in alone]

@@ -1,5 +1,6 @@
 """`cleave segment`: the summary and the outputs are those of the library."""
 
+import io
 import json
 import os
 import subprocess
@@ -9,7 +10,7 @@ from pathlib import Path
 import pytest
 
 import segcore
-from segcore.io.result import read_result
+from segcore.io.result import read_result, write_result
 from service.commands.main import main
 
 
@@ -32,6 +33,14 @@ def test_every_output_is_of_the_same_segmentation(mesh: Path, tmp_path: Path) ->
     assert read_result(paths["ball.cleave"]).hierarchy.labels(5).tolist() == expected
     assert b"segment 4" in paths["parts.glb"].read_bytes()
     assert len(json.loads(paths["tree.json"].read_text())["nodes"]) > 5
+
+
+def test_the_result_file_has_the_bytes_that_the_library_writes(mesh: Path, tmp_path: Path) -> None:
+    assert main(["segment", str(mesh), "--result", str(tmp_path / "ball.cleave")]) == 0
+    read = segcore.read_mesh(mesh, appearance=True)
+    expected = io.BytesIO()
+    write_result(expected, read, segcore.segment(read))
+    assert (tmp_path / "ball.cleave").read_bytes() == expected.getvalue()
 
 
 def test_a_granularity_can_be_given_instead_of_a_number(

@@ -1,6 +1,7 @@
 """Running a job without a queue: the outcome is a result, or a failure with a reason."""
 
 import gzip
+import io
 import json
 from dataclasses import asdict
 from pathlib import Path
@@ -10,7 +11,7 @@ import pytest
 import segcore
 from cleave.settings import Settings
 from helpers.jobs import accepted, sphere
-from segcore.io.result import read_result
+from segcore.io.result import read_result, write_result
 from segcore.report import mesh_report
 from worker.jobs.job import Canceled, Failed, Succeeded, now
 from worker.jobs.store.store import JobStore
@@ -44,6 +45,16 @@ def test_the_result_is_that_of_segcore(store: JobStore, settings: Settings, tmp_
     report = mesh_report(result.mesh)
     assert outcome.report is not None
     assert json.loads(json.dumps(asdict(report))) == outcome.report
+
+
+def test_the_result_file_has_the_bytes_that_the_library_writes(store: JobStore, settings: Settings) -> None:
+    job = accepted(store, sphere(20))
+    perform(store, settings, job.id, ignore)
+    mesh = segcore.read_mesh(io.BytesIO(sphere(20)), "off", appearance=True)
+    expected = io.BytesIO()
+    write_result(expected, mesh, segcore.segment(mesh))
+    with store.results.open(job.id) as file:
+        assert file.read() == expected.getvalue()
 
 
 def test_the_appearance_in_the_file_is_kept(store: JobStore, settings: Settings) -> None:
