@@ -56,7 +56,7 @@ def segment(
     clusters = cluster_nodes(nodes, chosen.clusters, rng)
     clusters, links = assemble(surface, nodes, clusters, chosen.max_segments)
     progress("cut")
-    rule = split_rule(clusters, chosen, rng)
+    rule = split_rule(surface, clusters, chosen, rng)
     after_splits = partial(progress.after_splits, chosen.max_segments)
     tree = bisect(clusters.graph, clusters.points, rule, chosen.max_segments, after_splits)
     progress("label")

@@ -1,8 +1,8 @@
 """Learn from people's cuts: write segcore/learned/models.json, and the files to evaluate it on unseen shapes.
 
-One file is learned from all models of the benchmark folder. With --folds, one more file is learned for every group of
-models without this group, for "python -m bench princeton --learned FOLDER". The same folder always gives the same
-bytes.
+One file is learned from all meshes of the benchmark folder and, with --assets, of the folder of the authored assets.
+With --folds, one more file is learned for every group of meshes without this group, for "python -m bench princeton
+--learned FOLDER" and "python -m bench assets --folds FOLDER". The same folders always give the same bytes.
 """
 
 from __future__ import annotations
@@ -12,7 +12,9 @@ import json
 from pathlib import Path
 from typing import get_args
 
+from bench.assets.dataset import read_assets
 from bench.errors import BenchmarkError
+from bench.learning.examples import examples
 from bench.learning.folds import save_fold
 from bench.learning.training import Grouping, train
 from bench.princeton.dataset import read_models
@@ -22,7 +24,10 @@ _SHIPPED = Path(__file__).parents[2] / "segcore" / "learned" / "models.json"
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("--data", type=Path, required=True, metavar="DIR", help="the folder of the benchmark")
-    parser.add_argument("--limit", type=int, metavar="N", help="only N models, spread evenly over the list")
+    parser.add_argument("--assets", type=Path, metavar="DIR", help="the folder of the authored assets")
+    parser.add_argument(
+        "--limit", type=int, metavar="N", help="only N meshes of each folder, spread evenly over its list"
+    )
     parser.add_argument(
         "--output", type=Path, default=_SHIPPED, metavar="FILE", help="default: segcore/learned/models.json"
     )
@@ -30,8 +35,8 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         "--leave-out",
         choices=get_args(Grouping),
         default="category",
-        help="the models that are left out together: a category (default, as for segcore/learned/models.json), or "
-        "every fifth model",
+        help="the meshes that are left out together: a category or set (default, as for segcore/learned/models.json), "
+        "or every fifth mesh",
     )
     parser.add_argument(
         "--folds", type=Path, metavar="FOLDER", help="write what was learned without each group to this folder"
@@ -44,7 +49,9 @@ def run(arguments: argparse.Namespace) -> None:
         raise BenchmarkError(f"--jobs must be at least 1, not {arguments.jobs}.")
     if not arguments.output.parent.is_dir():
         raise BenchmarkError(f"The folder of {arguments.output} does not exist: create it first.")
-    everything, *folds = train(read_models(arguments.data, arguments.limit), arguments.leave_out, arguments.jobs)
+    models = read_models(arguments.data, arguments.limit)
+    assets = read_assets(arguments.assets, arguments.limit) if arguments.assets else []
+    everything, *folds = train(examples(models, assets), arguments.leave_out, arguments.jobs)
     arguments.output.write_text(json.dumps(everything.models.document(), indent=1) + "\n", encoding="utf-8")
     if arguments.folds is not None:
         arguments.folds.mkdir(parents=True, exist_ok=True)

@@ -7,13 +7,14 @@ from typing import TYPE_CHECKING
 import numpy as np
 from scipy.spatial import KDTree
 
+from bench.assets.dataset import NO_PART
 from bench.learning.rows import Rows
 from segcore.affinity.boundary_features import edge_features, patch_fields
 from segcore.affinity.measurements import measure
 from segcore.clean.surface import build_surface
 
 if TYPE_CHECKING:
-    from bench.princeton.dataset import Model
+    from bench.learning.examples import Example
     from segcore.arrays import FloatArray, IntArray, LongArray
     from segcore.clean.surface import Surface
 
@@ -24,21 +25,24 @@ _SPACING = 0.004  # of the points by which a cut is represented, in sqrt(total a
 _NEAREST = 8  # points of a cut that an edge is compared with; about six of a straight cut are within the tolerance
 
 
-def boundary_rows(model: Model, seed: int = 0) -> Rows:
-    """Sample the edges of a model, cut ones more often, with weights such that edges count by length.
+def boundary_rows(example: Example, seed: int = 0) -> Rows:
+    """Sample the edges of a mesh, cut ones more often, with weights such that edges count by length.
+
+    Edges of faces that belong to no part are not sampled.
 
     Raises
     ------
     BenchmarkError
-        If a file of the model cannot be used.
+        If a file of the mesh cannot be used.
     """
-    mesh = model.read_mesh()
+    mesh = example.read_mesh()
     surface = build_surface(mesh)
     measured = measure(surface, seed)
-    people = [_on_surface(surface, labels) for labels in model.read_people(len(mesh.faces))]
+    people = [_on_surface(surface, labels) for labels in example.read_people(len(mesh.faces))]
     share = cut_share(surface, people)
-    length = measured.edges.length
-    chosen, weight = _sample(length, share, np.random.default_rng(model.number))
+    known = np.all([(labels[surface.edge_faces] != NO_PART).all(axis=1) for labels in people], axis=0)
+    length = np.where(known, measured.edges.length, 0.0)
+    chosen, weight = _sample(length, share, np.random.default_rng(example.seed))
     features = edge_features(surface, measured, patch_fields(surface, measured), chosen)
     return Rows(features.astype(np.float32), share[chosen], weight)
 

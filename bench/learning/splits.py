@@ -2,23 +2,29 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from typing import TYPE_CHECKING
 
 import numpy as np
 
+from bench.assets.dataset import NO_PART
 from bench.learning.rows import Rows
 from segcore.affinity.mesh_graphs import mesh_graph
+from segcore.arrays import group_sums
 from segcore.clean.surface import build_surface
 from segcore.coarsen.assembly import assemble
-from segcore.coarsen.clusters import cluster_nodes
+from segcore.coarsen.clusters import MOST_COMPONENTS, cluster_nodes
 from segcore.cut.bisection import bisect
-from segcore.cut.features import ClusterFields, Segment
-from segcore.cut.rules import LearnedRule, Split
+from segcore.cut.features import FEATURES
+from segcore.cut.fields import ClusterFields, Segment, SegmentFields, cluster_fields
+from segcore.cut.rules import LearnedRule
+from segcore.mesh import face_normals_and_areas
 from segcore.parameters import SegmentationParameters
 
 if TYPE_CHECKING:
-    from bench.princeton.dataset import Model
+    from bench.learning.examples import Example
     from segcore.arrays import FloatArray, IntArray, LongArray
+    from segcore.graphs.cheeger import Cut
 
 SEGMENTS = 64  # of the trees that are learned from: the default of max_segments
 # Exponent of the share of all pairs that a cut separates, in the weight of its row. Set by hand, between equal weights
@@ -26,30 +32,41 @@ SEGMENTS = 64  # of the trees that are learned from: the default of max_segments
 _SIZE_EXPONENT = 0.75
 
 
-def cut_rows(model: Model, seed: int = 0) -> Rows:
-    """Grow the tree of a model with the learned models in use, and compare every candidate cut with the people."""
-    mesh = model.read_mesh()
+def cut_rows(example: Example, seed: int = 0) -> Rows:
+    """Grow the tree of a mesh with the learned models in use, and compare every candidate cut with the people.
+
+    Pairs of points count by area. Cuts that separate no pair of points with a label are left out.
+    """
+    mesh = example.read_mesh()
     parameters = SegmentationParameters(seed=seed, affinity="learned")
     rng = np.random.default_rng(seed)
     surface = build_surface(mesh)
     nodes = mesh_graph(surface, parameters)
-    clusters, _ = assemble(surface, nodes, cluster_nodes(nodes, parameters.clusters, rng), parameters.max_segments)
-    labels_of_people = model.read_people(len(mesh.faces))
-    people = [_face_counts(clusters.of_node[surface.face_of_input], labels) for labels in labels_of_people]
-    assert clusters.thickness is not None
-    fields = ClusterFields.of(clusters.graph, clusters.points, clusters.thickness)
-    rule = _Recorder(fields, parameters, rng, people)
+    clusters, _ = assemble(surface, nodes, cluster_nodes(nodes, parameters.clusters, rng), MOST_COMPONENTS)
+    _, area = face_normals_and_areas(mesh.corners)
+    cluster = clusters.of_node[surface.face_of_input]
+    count = clusters.graph.node_count
+    people = [_areas(cluster, labels, area, count) for labels in example.read_people(len(mesh.faces))]
+    rule = _Recorder(cluster_fields(surface, clusters), parameters, rng, people)
     bisect(clusters.graph, clusters.points, rule, SEGMENTS)
+    if not rule.rows:
+        return Rows(np.empty((0, len(FEATURES))), np.empty(0), np.empty(0))
     weight = np.array(rule.pairs) ** _SIZE_EXPONENT
     return Rows(np.stack(rule.rows), np.array(rule.target), weight / weight.sum())
 
 
-def _face_counts(cluster: IntArray, labels: LongArray) -> FloatArray:
-    """(N, K) number of faces of every cluster in every segment of a person."""
-    distinct, segment = np.unique(labels, return_inverse=True)
-    count = int(cluster.max()) + 1
-    cells = np.bincount(cluster.astype(np.int64) * len(distinct) + segment, minlength=count * len(distinct))
-    return cells.reshape(count, len(distinct)).astype(np.float64)
+def _areas(cluster: IntArray, labels: LongArray, area: FloatArray, count: int) -> FloatArray:
+    """(N, K) area of every cluster in every segment of a person, without the faces of no part.
+
+    Parameters
+    ----------
+    cluster, labels, area : (F,) of the input faces.
+    count : N.
+    """
+    known = labels != NO_PART
+    distinct, segment = np.unique(labels[known], return_inverse=True)
+    cell = cluster[known].astype(np.int64) * len(distinct) + segment
+    return group_sums(cell, area[known], count * len(distinct)).reshape(count, len(distinct))
 
 
 class _Recorder(LearnedRule):
@@ -68,18 +85,14 @@ class _Recorder(LearnedRule):
         self.target: list[float] = []
         self.pairs: list[float] = []
 
-    def best_split(self, segment: Segment) -> Split:
-        candidates = self.candidates(segment)
-        features = self.features(segment, candidates)
-        self.rows += list(features)
-        for cut in candidates:
+    def features(self, segment: Segment, inside: SegmentFields, candidates: Sequence[Cut]) -> FloatArray:
+        features = super().features(segment, inside, candidates)
+        for row, cut in zip(features, candidates, strict=True):
             one, other = segment.nodes[cut.side], segment.nodes[~cut.side]
-            shares = [_kept(faces[one].sum(axis=0), faces[other].sum(axis=0)) for faces in self._people]
-            self.target.append(float(np.mean(shares)))
-            self.pairs.append(cut.inside * cut.outside / self._total**2)
-        return self.best_of(candidates, features)
-
-
-def _kept(one: FloatArray, other: FloatArray) -> float:
-    """Return the share of the pairs across a cut that are in one segment, from the faces (K,) on each side of it."""
-    return float(np.dot(one, other) / max(one.sum() * other.sum(), 1.0))
+            areas = [(area[one].sum(axis=0), area[other].sum(axis=0)) for area in self._people]
+            pairs = np.array([a.sum() * b.sum() for a, b in areas])
+            if pairs.sum() > 0.0:
+                self.rows.append(row)
+                self.target.append(sum(float((a * b).sum()) for a, b in areas) / float(pairs.sum()))
+                self.pairs.append(cut.inside * cut.outside / self._total**2)
+        return features

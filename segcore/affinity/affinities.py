@@ -31,6 +31,7 @@ class Affinity:
 
     value: FloatArray  # (E,) g in (0, 1]
     thickness: FloatArray | None = None  # (F,) logarithm of the shape diameter over sqrt(total area), smoothed
+    confidence: FloatArray | None = None  # (F,) share of the rays that met the other side from inside
 
 
 def concavity(surface: Surface, parameters: SegmentationParameters) -> Affinity:
@@ -76,4 +77,6 @@ VERTEX_AFFINITIES = {"minima_rule": minima_rule_of_vertices, "adjacency": adjace
 
 def _affinity(measured: Measurements, distance: FloatArray) -> Affinity:
     """g = 0.03 + 0.97 exp(-distance) with distances (E,), and the thickness of the patch of every face."""
-    return Affinity(_FLOOR + (1.0 - _FLOOR) * np.exp(-distance), measured.log_thickness[measured.patches.of_face])
+    patch = measured.patches.of_face
+    value = _FLOOR + (1.0 - _FLOOR) * np.exp(-distance)
+    return Affinity(value, measured.log_thickness[patch], measured.thickness.confidence[patch])

@@ -33,7 +33,7 @@ def face_dual_graph(surface: Surface, parameters: SegmentationParameters) -> Mes
     length = at_least(edge_lengths(surface), _SHORTEST_EDGE)
     graph = SurfaceGraph(surface.edge_faces, length * affinity.value, at_least(surface.areas, _SMALLEST_FACE), length)
     centroids = face_centroids(surface.vertices, surface.faces)
-    return MeshGraph(graph, centroids, None, affinity.thickness)
+    return MeshGraph(graph, centroids, None, affinity.thickness, affinity.confidence)
 
 
 def vertex_graph(surface: Surface, parameters: SegmentationParameters) -> MeshGraph:

@@ -13,9 +13,9 @@ from segcore.coarsen.contacts import POINTS, Links, find_contacts, spread_points
 from segcore.graphs.mesh_graph import MeshGraph
 from segcore.graphs.surface_graph import connected_components
 
-# Affinity across a contact, set by hand: that of an edge with a concave bending of 3.7 (affinity "concavity"). Smaller
-# values do better on models of several bodies: see docs/algorithm.md, "Constants" of section 3.
-CONTACT = 0.1
+# Affinity across a contact: less than that of any edge, which is at least 0.03. Its neighbours are compared in
+# docs/algorithm.md, "Constants" of section 3.
+CONTACT = 0.01
 NEGLIGIBLE = 0.002  # share of the total area below which an assembly is attached to its neighbour, as cut/rules.py has
 _SHORTEST = (
     1e-9  # least length of a contact, in the extent: eigenvectors see no weights below 1e-16 of others; set by hand
@@ -30,11 +30,10 @@ def assemble(surface: Surface, nodes: MeshGraph, clusters: Clusters, most: int) 
     ----------
     most : number of components of the new graph, at most.
     """
-    component = connected_components(clusters.graph.edges, clusters.graph.node_count)
-    if component.max() == 0:
+    if clusters.body.max() == 0:
         return clusters, Links.none()
     of_face = clusters.of_node[nodes.of_face]
-    links = link_components(surface, component[of_face], most)
+    links = link_components(surface, clusters.body[of_face], most)
     border = _border_per_length(surface, nodes) * links.length
     return replace(clusters, graph=clusters.graph.with_edges(of_face[links.faces], CONTACT * border, border)), links
 

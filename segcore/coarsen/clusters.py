@@ -21,6 +21,8 @@ class Clusters:
     of_node: IntArray  # the cluster of every node of the mesh graph
     points: FloatArray  # (N, 3) their centres
     thickness: FloatArray | None  # (N,) their mean logarithm of the shape diameter over sqrt(total area), if measured
+    confidence: FloatArray | None  # (N,) share of the rays of the thickness that met the other side from inside
+    body: IntArray  # (N,) the connected component of every cluster
 
 
 def cluster_nodes(mesh_graph: MeshGraph, target: int, rng: np.random.Generator) -> Clusters:
@@ -40,9 +42,12 @@ def cluster_nodes(mesh_graph: MeshGraph, target: int, rng: np.random.Generator) 
         of_node = _with_small_components(of_host, host_nodes, component, nearest_hosts(component, is_host, points))
     volume = group_sums(of_node, graph.volume)
     centres = np.stack([group_sums(of_node, graph.volume * points[:, axis]) / volume for axis in range(3)], axis=1)
-    thickness = mesh_graph.thickness
-    mean = None if thickness is None else group_sums(of_node, graph.volume * thickness) / volume
-    return Clusters(replace(coarse, volume=volume), of_node, centres, mean)
+    thickness, confidence = (
+        None if values is None else group_sums(of_node, graph.volume * values) / volume
+        for values in (mesh_graph.thickness, mesh_graph.confidence)
+    )
+    body = connected_components(coarse.edges, coarse.node_count)
+    return Clusters(replace(coarse, volume=volume), of_node, centres, thickness, confidence, body)
 
 
 def _with_small_components(of_host: IntArray, host_nodes: IntArray, component: IntArray, pairs: IntArray) -> IntArray:

@@ -7,8 +7,8 @@ import numpy as np
 
 from segcore.arrays import BoolArray, FloatArray, IntArray, group_sums
 from segcore.coarsen.components import group_by_nearness
-from segcore.cut.features import Segment
-from segcore.cut.rules import SMALLEST_SIDE, Split, SplitRule
+from segcore.cut.fields import Segment
+from segcore.cut.rules import Split, SplitRule
 from segcore.graphs.surface_graph import SurfaceGraph, connected_components
 from segcore.graphs.tree import Tree
 
@@ -49,7 +49,6 @@ class _GrowingTree:
     def __init__(self, graph: SurfaceGraph, rule: SplitRule) -> None:
         self._rule = rule
         self._volume = graph.volume
-        self._total = graph.total_volume
         self._split_node: list[int] = []
         self._splits: list[Split | None] = []
         self._queue: list[tuple[bool, float, int]] = []
@@ -88,7 +87,7 @@ class _GrowingTree:
         volume = segment.graph.total_volume
         if len(segment.nodes) == 1:
             return
-        if volume >= 2 * SMALLEST_SIDE * self._total:
+        if volume >= self._rule.smallest_segment:
             self._best[node] = self._rule.best_split(segment)
             if not self._best[node].late:
                 heappush(self._queue, (False, self._best[node].priority, node))

@@ -10,9 +10,10 @@ from typing import NamedTuple
 import numpy as np
 from numba import njit
 
-from segcore.arrays import BoolArray, FloatArray, IntArray, group_sums
+from segcore.arrays import BoolArray, FloatArray
+from segcore.cut.body_features import BodyFeatures, body_features
+from segcore.cut.fields import ClusterFields, Segment, SegmentFields
 from segcore.graphs.cheeger import Cut
-from segcore.graphs.surface_graph import SurfaceGraph
 
 _TINY = 1e-12  # keeps logarithms and quotients finite; far below all values of surfaces of unit size
 
@@ -56,61 +57,33 @@ class CutFeatures(NamedTuple):
     against_parent: float  # ncut less parent_ncut; 0 if there is no cut above
 
 
-FEATURES = CutFeatures._fields
+FEATURES = CutFeatures._fields + BodyFeatures._fields
 
 
-@dataclass(frozen=True, slots=True, eq=False)
-class ClusterFields:
-    """The graph of all clusters, with their positions and thickness."""
+def cut_features(fields: ClusterFields, segment: Segment, inside: SegmentFields, cut: Cut) -> FloatArray:
+    """(M,) features of a cut of a segment, in the order of ``FEATURES``.
 
-    graph: SurfaceGraph
-    points: FloatArray  # (N, 3)
-    thickness: FloatArray  # (N,) logarithm of the shape diameter over sqrt(total area)
-    degree: FloatArray  # (N,) total length of the edges of every cluster
-
-    @classmethod
-    def of(cls, graph: SurfaceGraph, points: FloatArray, thickness: FloatArray) -> "ClusterFields":
-        degree = group_sums(graph.edges.ravel(), np.repeat(graph.length, 2), graph.node_count)
-        return cls(graph, points, thickness, degree)
+    Parameters
+    ----------
+    inside : ``fields.inside(segment)``.
+    """
+    return np.array([*_shape_features(fields, segment, inside, cut), *body_features(fields, inside, cut)])
 
 
-@dataclass(frozen=True, slots=True, eq=False)
-class Segment:
-    """A connected set of nodes of the graph that is to be cut."""
-
-    nodes: IntArray  # (M,) in the whole graph
-    graph: SurfaceGraph  # the edges inside
-    depth: int  # number of cuts above it, without the splits between components
-    parent_ncut: float  # normalized cut of the last of them; 0 if there is none
-
-
-class SegmentFields(NamedTuple):
-    """The arrays of a segment over which the features sum."""
-
-    edges: IntArray  # (E, 2)
-    weight: FloatArray  # (E,)
-    length: FloatArray  # (E,)
-    volume: FloatArray  # (M,)
-    degree: FloatArray  # (M,) in the whole graph
-    thickness: FloatArray  # (M,)
-    points: FloatArray  # (M, 3)
-
-
-def cut_features(fields: ClusterFields, segment: Segment, cut: Cut) -> FloatArray:
-    """(M,) features of a cut of a segment, in the order of ``FEATURES``."""
+def _shape_features(fields: ClusterFields, segment: Segment, inside: SegmentFields, cut: Cut) -> CutFeatures:
     total = fields.graph.total_volume
     size = float(np.sqrt(total))
     graph, small = segment.graph, cut.side if cut.inside <= cut.outside else ~cut.side
     crossing = small[graph.edges[:, 0]] != small[graph.edges[:, 1]]
     length = graph.length[crossing]
     border = float(length.sum())
-    one, other = _sides(fields, segment, small, border)
+    one, other = (_side(row, border) for row in _sums_of_sides(inside, small))
     affinity = cut.weight / border
     at_cut = fields.thickness[segment.nodes[graph.edges[crossing]]].mean(axis=1)
     thickness = float((at_cut * length).sum() / border)
     ncut = np.log(cut.ncut * size + _TINY)
     parent = np.log(segment.parent_ncut * size) if segment.parent_ncut > 0 else 0.0
-    features = CutFeatures(
+    return CutFeatures(
         ncut=ncut,
         ncc=np.log(cut.ncc * size + _TINY),
         small_area=np.log(one.area / total),
@@ -139,7 +112,6 @@ def cut_features(fields: ClusterFields, segment: Segment, cut: Cut) -> FloatArra
         parent_ncut=parent,
         against_parent=ncut - parent if segment.parent_ncut > 0 else 0.0,
     )
-    return np.array(features)
 
 
 @dataclass(frozen=True, slots=True)
@@ -153,20 +125,6 @@ class _Side:
     thickness_spread: float  # standard deviation
     flatness: float  # least over largest standard deviation of the points
     roundness: float  # middle over largest
-
-
-def _sides(fields: ClusterFields, segment: Segment, small: BoolArray, border: float) -> list[_Side]:
-    graph, nodes = segment.graph, segment.nodes
-    inside = SegmentFields(
-        graph.edges,
-        graph.weight,
-        graph.length,
-        graph.volume,
-        fields.degree[nodes],
-        fields.thickness[nodes],
-        fields.points[nodes],
-    )
-    return [_side(row, border) for row in _sums_of_sides(inside, small)]
 
 
 def _side(sums: FloatArray, border: float) -> _Side:
@@ -188,7 +146,7 @@ def _side(sums: FloatArray, border: float) -> _Side:
 
 
 @njit(cache=True)
-def _sums_of_sides(fields, small):  # type: ignore[no-untyped-def]
+def _sums_of_sides(fields: SegmentFields, small: BoolArray) -> FloatArray:
     """(2, 18) sums over the small side and over the other one.
 
     Area; weight and length of the edges inside; degree; and, weighted by area, thickness, its square, the position, and

@@ -6,9 +6,12 @@ from typing import Protocol
 
 import numpy as np
 
-from segcore.arrays import FloatArray
+from segcore.arrays import BoolArray, FloatArray
+from segcore.clean.surface import Surface
 from segcore.coarsen.clusters import Clusters
-from segcore.cut.features import ClusterFields, Segment, cut_features
+from segcore.cut.bodies import cuts_between_pieces
+from segcore.cut.features import FEATURES, cut_features
+from segcore.cut.fields import ClusterFields, Segment, SegmentFields, cluster_fields
 from segcore.cut.order import best_order
 from segcore.graphs.cheeger import Cut
 from segcore.graphs.connected_sides import with_connected_sides
@@ -21,8 +24,16 @@ from segcore.solvers.solvers import SOLVERS, candidate_cuts
 # Their neighbours are compared in bench/RESULTS.md, "Constants and their neighbours".
 AUTOMATIC_NCUT = 1.44  # normalized cut times sqrt(total area) at which splitting ends, fitted for ``concavity``
 SMALLEST_SIDE = 0.002  # share of the total area below which a part is cut off only after all others
+SMALLEST_BODY = 0.0002  # share of the total area below which even a whole body is cut off only after all others
 NCUT_WEIGHT = 0.4  # of the normalized cut beside the learned share in the comparison of candidates
-_LATE_GAIN = -1.0  # of a split that comes after all others: less than any other split, which loses 0.5 at most
+# Factors on the learned share q of a cut between bodies, and on 1 - q of a cut through a body of several. Bodies are
+# parted before they are cut. Compared in bench/RESULTS.md, "Constants and their neighbours".
+BETWEEN_BODIES = 0.7
+THROUGH_BODY = 0.8
+
+_CONTACT_SHARE, _DIVIDED, _SMALL_WHOLE = (FEATURES.index(name) for name in ("contact_share", "divided", "small_whole"))
+_PIECES = [FEATURES.index("small_pieces"), FEATURES.index("large_pieces")]
+_NEARLY = 1e-6  # of a share of 0 or 1, for rounding
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -38,6 +49,10 @@ class Split:
 class SplitRule(Protocol):
     """Chooses the splits of a tree."""
 
+    @property
+    def smallest_segment(self) -> float:
+        """Area below which every split of a segment is a late one."""
+
     def best_split(self, segment: Segment) -> Split:
         """Return the split of a segment of at least two nodes."""
 
@@ -50,11 +65,13 @@ class SplitRule(Protocol):
         """
 
 
-def split_rule(clusters: Clusters, parameters: SegmentationParameters, rng: np.random.Generator) -> SplitRule:
+def split_rule(
+    surface: Surface, clusters: Clusters, parameters: SegmentationParameters, rng: np.random.Generator
+) -> SplitRule:
     """Return the rule that the parameters name; the learned one needs the thickness of the clusters."""
     if parameters.split_order != "learned" or clusters.thickness is None:
         return RatioRule(clusters.graph, parameters, rng)
-    return LearnedRule(ClusterFields.of(clusters.graph, clusters.points, clusters.thickness), parameters, rng)
+    return LearnedRule(cluster_fields(surface, clusters), parameters, rng)
 
 
 class RatioRule:
@@ -64,6 +81,10 @@ class RatioRule:
         self._parameters = parameters
         self._rng = rng
         self._total = graph.total_volume
+
+    @property
+    def smallest_segment(self) -> float:
+        return 2.0 * SMALLEST_SIDE * self._total
 
     def best_split(self, segment: Segment) -> Split:
         cut = SOLVERS[self._parameters.solver](segment.graph, self._parameters, self._rng)
@@ -91,29 +112,51 @@ class LearnedRule:
         self._rng = rng
         self._total = fields.graph.total_volume
 
+    @property
+    def smallest_segment(self) -> float:
+        share = SMALLEST_SIDE if self._fields.bodies.count == 1 else SMALLEST_BODY
+        return 2.0 * share * self._total
+
     def best_split(self, segment: Segment) -> Split:
-        candidates = self.candidates(segment)
-        return self.best_of(candidates, self.features(segment, candidates))
+        inside = self._fields.inside(segment)
+        candidates = self.candidates(segment, inside)
+        return self.best_of(candidates, self.features(segment, inside, candidates))
 
     def best_of(self, candidates: Sequence[Cut], features: FloatArray) -> Split:
         """Return the candidate of least learned share and normalized cut; a late one only if there is no other."""
-        kept = self._model.probability(features)
+        kept = self._kept(features)
         size = np.sqrt(self._total)
-        late = [min(cut.inside, cut.outside) < SMALLEST_SIDE * self._total for cut in candidates]
+        late = self._is_late(candidates, features)
         loss = [q + NCUT_WEIGHT * cut.ncut * size for q, cut in zip(kept, candidates, strict=True)]
         best = min(range(len(candidates)), key=lambda i: (late[i], loss[i]))
         cut = candidates[best]
-        return Split(cut, cut.ncut * size, float(kept[best]), late[best])
+        return Split(cut, cut.ncut * size, float(kept[best]), bool(late[best]))
 
-    def candidates(self, segment: Segment) -> list[Cut]:
+    def candidates(self, segment: Segment, inside: SegmentFields) -> list[Cut]:
         """Return different cuts of a segment, each with connected sides."""
         cuts = candidate_cuts(segment.graph, self._parameters, self._rng)
-        connected = (with_connected_sides(segment.graph, cut) for cut in cuts)
-        return list({cut.key: cut for cut in connected}.values())
+        connected = [with_connected_sides(segment.graph, cut) for cut in cuts]
+        between = cuts_between_pieces(segment.graph, inside.piece)
+        return list({cut.key: cut for cut in connected + between}.values())
 
-    def features(self, segment: Segment, candidates: Sequence[Cut]) -> FloatArray:
+    def features(self, segment: Segment, inside: SegmentFields, candidates: Sequence[Cut]) -> FloatArray:
         """(N, M) features of the candidates, see ``segcore.cut.features``."""
-        return np.stack([cut_features(self._fields, segment, cut) for cut in candidates])
+        return np.stack([cut_features(self._fields, segment, inside, cut) for cut in candidates])
+
+    def _kept(self, features: FloatArray) -> FloatArray:
+        """(N,) the share of the pairs across each candidate that people keep together."""
+        kept = self._model.probability(features)
+        if self._fields.bodies.count == 1:
+            return kept
+        between = _between_bodies(features)
+        several = np.expm1(features[:, _PIECES]).sum(axis=1) > 2.0 + _NEARLY  # one piece that is divided counts twice
+        through = np.where(several, 1.0 - THROUGH_BODY * (1.0 - kept), kept)
+        return np.where(between, BETWEEN_BODIES * kept, through)
+
+    def _is_late(self, candidates: Sequence[Cut], features: FloatArray) -> BoolArray:
+        smaller = np.array([min(cut.inside, cut.outside) for cut in candidates])
+        is_body = _between_bodies(features) & (features[:, _SMALL_WHOLE] > 1.0 - _NEARLY)
+        return smaller < np.where(is_body, SMALLEST_BODY, SMALLEST_SIDE) * self._total
 
     def finished(self, tree: Tree, splits: Sequence[Split | None]) -> Tree:
         apart = sum(split is None for split in splits)
@@ -123,6 +166,11 @@ class LearnedRule:
         # people separate, less the part that they keep together.
         pairs = np.array([2.0 * split.cut.inside * split.cut.outside / self._total**2 for split in learned])
         kept = np.array([split.priority for split in learned])
-        gain = np.where([split.late for split in learned], _LATE_GAIN, pairs * (1.0 - 2.0 * kept))
+        gain = pairs * (1.0 - 2.0 * kept)
         order, worthwhile = best_order(parent, gain, pairs)
         return tree.reordered([*range(apart), *(apart + s for s in order)], apart + worthwhile + 1)
+
+
+def _between_bodies(features: FloatArray) -> BoolArray:
+    """(N,) True for cuts that are contact alone and divide no body."""
+    return (features[:, _CONTACT_SHARE] > 1.0 - _NEARLY) & (features[:, _DIVIDED] < _NEARLY)

@@ -10,6 +10,8 @@ from numba import njit
 from segcore.arrays import BoolArray, FloatArray
 from segcore.graphs.surface_graph import SurfaceGraph
 
+_VALLEY = 0.03  # of the volume, to either side: half the least distance of two valleys; set by hand
+
 Criterion: TypeAlias = Literal["ncc", "ncut"]
 
 
@@ -120,6 +122,66 @@ def sweep(graph: SurfaceGraph, values: FloatArray, criterion: Criterion = "ncc")
     order = np.argsort(values)
     threshold = _best_threshold(graph.edges, graph.weight, graph.volume, values, order, criterion == "ncut")
     return cut_of(graph, values > threshold)
+
+
+def valleys(graph: SurfaceGraph, values: FloatArray, most: int) -> list[Cut]:
+    """Return the cuts of least weight among the upper level sets of a function, each the least one around it.
+
+    A cut through a neck is a valley of the weight along the sweep, even if another level set has a better ratio.
+
+    Parameters
+    ----------
+    values : (N,) finite.
+    most : number of valleys, at most.
+    """
+    order = np.argsort(values, kind="stable")
+    found = _valleys(graph.edges, graph.weight, graph.volume, order, _VALLEY * graph.total_volume, most)
+    above = np.arange(graph.node_count)[None, :] > found[:, None]
+    sides = np.zeros((len(found), graph.node_count), dtype=bool)
+    sides[:, order] = above
+    return [cut_of(graph, side) for side in sides]
+
+
+@njit(cache=True)
+def _valleys(edges, weight, volume, order, width, most):  # type: ignore[no-untyped-def]
+    """The ranks after which the weight of the cut is the least within a width of volume to both sides."""
+    node_count = len(volume)
+    rank = np.empty(node_count, dtype=np.int32)
+    for r in range(node_count):
+        rank[order[r]] = r
+    cut = np.zeros(node_count)
+    for e in range(len(edges)):
+        a = rank[edges[e, 0]]
+        b = rank[edges[e, 1]]
+        cut[min(a, b)] += weight[e]
+        cut[max(a, b)] -= weight[e]
+    below = np.cumsum(volume[order])
+    cut = np.cumsum(cut)
+    found = np.empty(most, dtype=np.int64)
+    count = 0
+    first = last = 0
+    for r in range(node_count - 1):
+        while below[r] - below[first] > width:
+            first += 1
+        while last < node_count - 1 and below[last] - below[r] < width:
+            last += 1
+        if first == 0 or last == node_count - 1:
+            continue
+        lowest = True
+        for q in range(first, last + 1):
+            if cut[q] < cut[r] or (cut[q] == cut[r] and q < r):
+                lowest = False
+        if not lowest:
+            continue
+        k = count
+        while k > 0 and cut[found[k - 1]] > cut[r]:
+            if k < most:
+                found[k] = found[k - 1]
+            k -= 1
+        if k < most:
+            found[k] = r
+            count = min(count + 1, most)
+    return found[:count]
 
 
 @njit(cache=True)

@@ -3,7 +3,7 @@
 from itertools import islice
 
 from segcore.arrays import BoolArray
-from segcore.graphs.cheeger import Cut, balance_subgradient, cut_of, sweep
+from segcore.graphs.cheeger import Cut, balance_subgradient, cut_of, sweep, valleys
 from segcore.graphs.max_flow import Network
 from segcore.graphs.surface_graph import SurfaceGraph
 from segcore.solvers.fiedler import eigenvectors
@@ -13,6 +13,7 @@ from segcore.solvers.total_variation import TotalVariationFlow
 STEPS = 4  # of total variation flow from every eigenvector
 ITERATIONS = 5  # of split Bregman in a step
 WORST_IMPROVED = 1.35  # times the best value so far: cuts with a larger one are not improved
+VALLEYS = 1  # of every eigenvector, among the candidates; set by hand
 LEAST_GAIN = 1e-12  # relative decrease of the value; a smaller one is rounding error
 
 
@@ -54,7 +55,7 @@ def flow_cut(graph: SurfaceGraph, *, count: int = 2) -> Cut:
 
 
 def sweep_cuts(graph: SurfaceGraph, count: int = 3) -> list[Cut]:
-    """Return the best of the sweeps of several eigenvectors, improved by maximum flows, then the sweeps unchanged.
+    """Return the best of the sweeps of several eigenvectors, improved by maximum flows, the sweeps, and their valleys.
 
     Parameters
     ----------
@@ -67,8 +68,10 @@ def sweep_cuts(graph: SurfaceGraph, count: int = 3) -> list[Cut]:
         If the graph is not connected.
     """
     network = Network.of(graph)
-    sweeps = [sweep(graph, values) for values in eigenvectors(graph, network.factor, count).T]
-    return [cut.canonical for cut in (_improved(network, min(sweeps, key=_ncc)), *sweeps)]
+    vectors = eigenvectors(graph, network.factor, count).T
+    sweeps = [sweep(graph, values) for values in vectors]
+    necks = [cut for values in vectors for cut in valleys(graph, values, VALLEYS)]
+    return [cut.canonical for cut in (_improved(network, min(sweeps, key=_ncc)), *sweeps, *necks)]
 
 
 def improve(graph: SurfaceGraph, side: BoolArray) -> Cut:

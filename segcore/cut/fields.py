@@ -1,0 +1,159 @@
+"""The clusters of a surface and a segment of them, with all that the features of a cut are made of."""
+
+from dataclasses import dataclass
+from typing import NamedTuple
+
+import numpy as np
+
+from segcore.arrays import FloatArray, IntArray, LongArray, group_sums
+from segcore.clean.edge_geometry import dihedral_angles, edge_lengths
+from segcore.clean.surface import Surface
+from segcore.coarsen.clusters import Clusters
+from segcore.cut.bodies import Bodies, pieces_of
+from segcore.graphs.surface_graph import SurfaceGraph
+
+_COPLANAR = np.deg2rad(1.0)  # largest dihedral angle of two faces of a plane; set by hand
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class ClusterFields:
+    """The graph of all clusters, and what is known about them."""
+
+    graph: SurfaceGraph  # with the contacts between bodies
+    points: FloatArray  # (N, 3)
+    thickness: FloatArray  # (N,) logarithm of the shape diameter over sqrt(total area)
+    confidence: FloatArray  # (N,) share of the rays of the thickness that met the other side from inside
+    open_border: FloatArray  # (N,) length of the edges that have one face
+    flat: FloatArray  # (E,) share of each edge of the graph that runs between coplanar faces
+    degree: FloatArray  # (N,) total length of the edges of every cluster
+    edge_key: LongArray  # (E,) the keys of the edges in ascending order, see ``_edge_keys``
+    edge_order: LongArray  # (E,) the edges in the order of their keys
+    bodies: Bodies
+    mean_affinity: float  # of the edges inside the bodies, weighted by length
+
+    @classmethod
+    def of(
+        cls,
+        graph: SurfaceGraph,
+        points: FloatArray,
+        thickness: FloatArray,
+        *,
+        body: IntArray | None = None,
+        confidence: FloatArray | None = None,
+        open_border: FloatArray | None = None,
+        flat: FloatArray | None = None,
+    ) -> "ClusterFields":
+        """The fields of a graph; by default those of one closed body without flat faces."""
+        count = graph.node_count
+        of_cluster = np.zeros(count, dtype=np.int32) if body is None else body
+        inside = of_cluster[graph.edges[:, 0]] == of_cluster[graph.edges[:, 1]]
+        length = float(graph.length[inside].sum())
+        key = _edge_keys(graph.edges, count)
+        order = np.argsort(key, kind="stable")
+        return cls(
+            graph=graph,
+            points=points,
+            thickness=thickness,
+            confidence=np.ones(count) if confidence is None else confidence,
+            open_border=np.zeros(count) if open_border is None else open_border,
+            flat=np.zeros(len(graph.edges)) if flat is None else flat,
+            degree=group_sums(graph.edges.ravel(), np.repeat(graph.length, 2), count),
+            edge_key=key[order],
+            edge_order=order,
+            bodies=Bodies.of(of_cluster, graph.volume, points),
+            mean_affinity=float(graph.weight[inside].sum()) / length if length > 0.0 else 1.0,
+        )
+
+    def inside(self, segment: "Segment") -> "SegmentFields":
+        """The fields of a segment."""
+        nodes, graph = segment.nodes, segment.graph
+        body = self.bodies.of_cluster[nodes]
+        return SegmentFields(
+            edges=graph.edges,
+            weight=graph.weight,
+            length=graph.length,
+            flat=self.flat[
+                self.edge_order[np.searchsorted(self.edge_key, _edge_keys(nodes[graph.edges], self.graph.node_count))]
+            ],
+            volume=graph.volume,
+            degree=self.degree[nodes],
+            thickness=self.thickness[nodes],
+            confidence=self.confidence[nodes],
+            open_border=self.open_border[nodes],
+            points=self.points[nodes],
+            body=body,
+            piece=pieces_of(graph, body),
+        )
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Segment:
+    """A connected set of nodes of the graph that is to be cut."""
+
+    nodes: IntArray  # (M,) in the whole graph
+    graph: SurfaceGraph  # the edges inside
+    depth: int  # number of cuts above it, without the splits between components
+    parent_ncut: float  # normalized cut of the last of them; 0 if there is none
+
+
+class SegmentFields(NamedTuple):
+    """The fields of the M nodes and E edges of a segment, for compiled kernels."""
+
+    edges: IntArray  # (E, 2)
+    weight: FloatArray  # (E,)
+    length: FloatArray  # (E,)
+    flat: FloatArray  # (E,)
+    volume: FloatArray  # (M,)
+    degree: FloatArray  # (M,) in the whole graph
+    thickness: FloatArray  # (M,)
+    confidence: FloatArray  # (M,)
+    open_border: FloatArray  # (M,)
+    points: FloatArray  # (M, 3)
+    body: IntArray  # (M,)
+    piece: IntArray  # (M,) see ``segcore.cut.bodies.pieces_of``
+
+
+def cluster_fields(surface: Surface, clusters: Clusters) -> ClusterFields:
+    """The fields of clusters of the faces of a surface, whose thickness was measured."""
+    assert clusters.thickness is not None
+    count = clusters.graph.node_count
+    length = edge_lengths(surface)
+    return ClusterFields.of(
+        clusters.graph,
+        clusters.points,
+        clusters.thickness,
+        body=clusters.body,
+        confidence=clusters.confidence,
+        open_border=group_sums(clusters.of_node, _open_border(surface, length), count),
+        flat=_flat_share(surface, length, clusters),
+    )
+
+
+def _open_border(surface: Surface, length: FloatArray) -> FloatArray:
+    """(F,) the length of the edges of every face that no other face shares."""
+    a, b, c = surface.vertices[surface.faces].transpose(1, 0, 2)
+    perimeter = sum(np.linalg.norm(q - p, axis=1) for p, q in ((a, b), (b, c), (c, a)))
+    shared = group_sums(surface.edge_faces.ravel(), np.repeat(length, 2), len(surface.faces))
+    rounding = 1e-9 * perimeter
+    return np.where(perimeter - shared > rounding, np.maximum(perimeter - shared, 0.0), 0.0)
+
+
+def _flat_share(surface: Surface, length: FloatArray, clusters: Clusters) -> FloatArray:
+    """(E,) the share of each edge of the graph of the clusters that runs between coplanar faces."""
+    count = clusters.graph.node_count
+    ends = clusters.of_node[surface.edge_faces]
+    crossing = np.flatnonzero(ends[:, 0] != ends[:, 1])
+    is_flat = np.abs(dihedral_angles(surface)[crossing]) < _COPLANAR
+    key = _edge_keys(clusters.graph.edges, count)
+    order = np.argsort(key, kind="stable")
+    edge = order[np.searchsorted(key[order], _edge_keys(ends[crossing], count))]
+    flat = group_sums(edge, length[crossing] * is_flat, len(key))
+    border = group_sums(edge, length[crossing], len(key))
+    share: FloatArray = np.divide(flat, border, out=np.zeros(len(key)), where=border > 0.0)
+    return share
+
+
+def _edge_keys(edges: IntArray, count: int) -> LongArray:
+    """(E,) a number for every pair of nodes in (E, 2), in any order, of a graph of ``count`` nodes."""
+    keys: LongArray = edges.min(axis=1).astype(np.int64) * count + edges.max(axis=1)
+    return keys
