@@ -16,6 +16,7 @@ class MeshGraph:
     points: FloatArray  # (N, 3) positions of the nodes
     corners: IntArray | None  # (F, 3) the nodes at the corners of every face; None if the nodes are the faces
     thickness: FloatArray | None = None  # (N,) logarithm of the shape diameter over sqrt(total area); None if unknown
+    authored: IntArray | None = None  # (N,) the part of the structure of the file, if the cuts follow it
 
     @property
     def of_face(self) -> IntArray:
