@@ -41,7 +41,7 @@ def read_obj(data: bytes, limits: ReadLimits, with_appearance: bool = False) -> 
     vertices = _vertices(words, is_vertex)
     polygons = _polygons(words, is_vertex, is_face)
     appearance = obj_appearance(words, is_vertex, is_face, polygons) if with_appearance else None
-    structure = obj_structure(words, is_face, polygons.sizes)
+    structure = obj_structure(words, is_vertex, is_face, polygons.sizes)
     return mesh_of_polygons(vertices, polygons, limits, appearance, structure)
 
 

@@ -18,26 +18,38 @@ class _Runs(NamedTuple):
     faces: list[int]  # their number
 
 
-def obj_structure(words: Words, is_face: BoolArray, sizes: LongArray) -> FileStructure | None:
+def obj_structure(words: Words, is_vertex: BoolArray, is_face: BoolArray, sizes: LongArray) -> FileStructure | None:
     """The structure of the faces that polygons with ``sizes`` (P,) corners are triangulated into, or None.
 
     A group is an object and the last group in it. Groups of one name in one object are one, as are materials of one
     name.
     """
-    is_object = words.lines_with(b"o")
-    triangles = np.maximum(sizes - 2, 0)
-    groups = _runs(is_object | words.lines_with(b"g"), is_face, triangles)
-    materials = _runs(words.lines_with(b"usemtl"), is_face, triangles)
-    names = [None if line == _NO_LINE else words.rest_of_line(line) for line in materials.mark]
+    others = np.flatnonzero(~(is_vertex | is_face))
+    objects, in_objects, materials = (_lines(words, others, keyword) for keyword in (b"o", b"g", b"usemtl"))
+    if len(objects) + len(in_objects) + len(materials) == 0:
+        return None
+    polygons, triangles = np.flatnonzero(is_face), np.maximum(sizes - 2, 0)
+    groups = _runs(np.union1d(objects, in_objects), polygons, triangles)
+    painted = _runs(materials, polygons, triangles)
+    names = [None if line == _NO_LINE else words.rest_of_line(line) for line in painted.mark]
     return file_structure(
-        numbered_runs(_groups(words, groups.mark, np.flatnonzero(is_object)), groups.faces),
-        numbered_runs(names, materials.faces),
+        numbered_runs(_groups(words, groups.mark, objects), groups.faces), numbered_runs(names, painted.faces)
     )
 
 
-def _runs(is_mark: BoolArray, is_face: BoolArray, triangles: LongArray) -> _Runs:
-    """The runs of faces between marks; ``triangles`` (P,) is the number of faces of every polygon."""
-    marks, polygons = np.flatnonzero(is_mark), np.flatnonzero(is_face)
+def _lines(words: Words, lines: LongArray, keyword: bytes) -> LongArray:
+    """Those of some lines whose first word is ``keyword``."""
+    return lines[words.equal(words.line_start[lines], keyword)]
+
+
+def _runs(marks: LongArray, polygons: LongArray, triangles: LongArray) -> _Runs:
+    """The runs of faces between marks.
+
+    Parameters
+    ----------
+    marks, polygons : lines, ascending.
+    triangles : (P,) the number of faces of every polygon.
+    """
     before, first = np.unique(np.searchsorted(marks, polygons), return_index=True)
     mark = np.append(marks, _NO_LINE)[before - 1]
     return _Runs(mark.tolist(), np.add.reduceat(triangles, first).tolist() if len(first) else [])
