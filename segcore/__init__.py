@@ -16,9 +16,10 @@ Public are the names of this package:
 - ``mesh_report``, ``MeshReport``, ``build_surface``, ``Surface``: the cleaned mesh and the defects that were found
 - ``CleaveError``, ``InvalidMesh``, ``UnsupportedFormat``, ``InvalidParameters``, ``LimitExceeded``: the errors
 
-and the modules that define them, ``segcore.io`` (readers and writers), ``segcore.appearance``, ``segcore.progress`` and
-``segcore.shapes`` (procedural meshes). The packages of the stages (``clean``, ``affinity``, ``coarsen``, ``cut``,
-``label``) and ``solvers``, ``graphs`` and ``learned`` are internal, except for ``Surface`` and ``build_surface``.
+and the modules that define them, ``segcore.io`` (readers and writers), ``segcore.appearance``, ``segcore.structure``,
+``segcore.progress`` and ``segcore.shapes`` (procedural meshes). The packages of the stages (``clean``, ``affinity``,
+``coarsen``, ``cut``, ``label``) and ``solvers``, ``graphs`` and ``learned`` are internal, except for ``Surface`` and
+``build_surface``.
 """
 
 from segcore.clean.surface import Surface, build_surface

@@ -9,6 +9,7 @@ from numpy.typing import ArrayLike
 from segcore.appearance import Appearance
 from segcore.arrays import FloatArray, IntArray
 from segcore.errors import InvalidMesh
+from segcore.structure import FileStructure
 
 _LARGEST_COORDINATE = 1e100  # areas and volumes of larger meshes leave the range of float64
 
@@ -25,6 +26,7 @@ class Mesh:
     source_polygon : (F,) the polygon of the file, counted from 0, that each face is a part of; None if every polygon is
         one face.
     appearance : normals, texture coordinates, colours and groups of the file; None if they were not read.
+    structure : the group and the material of every face; None if the file has neither.
 
     Raises
     ------
@@ -36,6 +38,7 @@ class Mesh:
     faces: IntArray  # (F, 3)
     source_polygon: IntArray | None = None  # (F,)
     appearance: Appearance | None = None
+    structure: FileStructure | None = None
 
     def __init__(
         self,
@@ -43,15 +46,19 @@ class Mesh:
         faces: ArrayLike,
         source_polygon: ArrayLike | None = None,
         appearance: Appearance | None = None,
+        structure: FileStructure | None = None,
     ) -> None:
         object.__setattr__(self, "vertices", _checked_vertices(vertices))
         object.__setattr__(self, "faces", _checked_faces(faces, len(self.vertices)))
         object.__setattr__(self, "source_polygon", _checked_polygons(source_polygon, len(self.faces)))
         object.__setattr__(self, "appearance", appearance)
+        object.__setattr__(self, "structure", structure)
         if appearance is not None and not appearance.fits(len(self.vertices), len(self.faces)):
             raise InvalidMesh(
                 "The arrays of the appearance do not match the numbers of vertices and faces of the mesh."
             )
+        if structure is not None and not structure.fits(len(self.faces)):
+            raise InvalidMesh("The groups and materials do not match the number of faces of the mesh.")
 
     @property
     def corners(self) -> FloatArray:

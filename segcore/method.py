@@ -9,6 +9,7 @@ from segcore.affinity.mesh_graphs import mesh_graph
 from segcore.arrays import group_sums
 from segcore.clean.surface import Surface, build_surface
 from segcore.coarsen.assembly import assemble
+from segcore.coarsen.authored import with_structure
 from segcore.coarsen.clusters import Clusters, cluster_nodes
 from segcore.coarsen.contacts import Links
 from segcore.cut.bisection import bisect
@@ -44,12 +45,17 @@ def segment(
     -------
     The hierarchy of cuts, with a leaf for every face of the mesh in input order. The same mesh and parameters give the
     same hierarchy.
+
+    Raises
+    ------
+    InvalidParameters
+        If ``structure`` is one that the mesh does not have.
     """
     chosen = parameters or SegmentationParameters()
     rng = np.random.default_rng(chosen.seed)
     progress = Progress(on_progress, len(mesh.faces))
     progress("clean")
-    surface = surface or build_surface(mesh)
+    surface = with_structure(surface or build_surface(mesh), mesh, chosen.structure)
     progress("affinity")
     nodes = mesh_graph(surface, chosen)
     progress("coarsen")
@@ -58,7 +64,7 @@ def segment(
     progress("cut")
     rule = split_rule(surface, clusters, chosen, rng)
     after_splits = partial(progress.after_splits, chosen.max_segments)
-    tree = bisect(clusters.graph, clusters.points, rule, chosen.max_segments, after_splits)
+    tree = bisect(clusters.graph, clusters.points, rule, chosen.max_segments, after_splits, clusters.authored)
     progress("label")
     tree = _over_faces(tree, clusters, nodes, links, surface)
     hierarchy = _of_input(surface, tree)

@@ -9,6 +9,7 @@ from segcore.errors import InvalidParameters
 
 Graph: TypeAlias = Literal["faces", "vertices"]
 Affinity: TypeAlias = Literal["learned", "concavity", "minima_rule", "adjacency"]
+Structure: TypeAlias = Literal["none", "shells", "groups", "materials"]
 Thinning: TypeAlias = Literal["walk", "revisit", "none"]
 Solver: TypeAlias = Literal["flow", "fiedler", "inverse_power", "split_bregman", "p_laplacian"]
 Order: TypeAlias = Literal["learned", "ncut", "ncc", "volume"]
@@ -32,6 +33,14 @@ class SegmentationParameters:
         If a value is outside its range; the message contains the range and the value.
     """
 
+    structure: Structure = field(
+        default="none",
+        metadata=_about(
+            "Structure of the file that the first levels of the hierarchy follow: its shells (connected components), "
+            "groups (nodes, objects, groups) or materials. Parts are cut below. The automatic number is that of the "
+            "parts."
+        ),
+    )
     graph: Graph = field(default="faces", metadata=_about("Nodes of the graph: the faces or the vertices of the mesh."))
     affinity: Affinity = field(
         default="learned",

@@ -8,8 +8,33 @@ from segcore.arrays import BoolArray, FloatArray, IntArray
 from segcore.clean.surface import Surface, build_surface
 from segcore.clean.topology import dual_edges
 from segcore.clean.welding import weld
-from segcore.graphs.surface_graph import connected_components
+from segcore.coarsen.authored import MOST_AUTHORED, authored_parts
 from segcore.mesh import Mesh
+from segcore.parameters import Structure
+
+_FOLLOWED: tuple[Structure, ...] = ("shells", "groups", "materials")
+
+
+@dataclass(frozen=True, slots=True)
+class StructureCounts:
+    """The number of parts for every value of the parameter ``structure``; 0 if it cannot be used with this mesh."""
+
+    shells: int
+    groups: int
+    materials: int
+
+    def named(self) -> dict[Structure, int]:
+        """The counts by the values of the parameter."""
+        return {"shells": self.shells, "groups": self.groups, "materials": self.materials}
+
+    @property
+    def has_parts(self) -> bool:
+        """Whether there is a structure of several parts."""
+        return max(self.named().values()) > 1
+
+    def in_words(self) -> str:
+        """The counts that are not 0, such as ``96 shells, 1 group, 14 materials``."""
+        return ", ".join(f"{count} {name if count > 1 else name[:-1]}" for name, count in self.named().items() if count)
 
 
 @dataclass(frozen=True, slots=True)
@@ -37,6 +62,7 @@ class MeshReport:
     area: float  # in squared units of the mesh
     volume: float | None  # in cubed units of the mesh; None if the surface is not closed
     groups: tuple[str, ...]  # names of the groups of the file
+    structure: StructureCounts | None = None  # None in reports of earlier versions
 
 
 def mesh_report(mesh: Mesh, surface: Surface | None = None) -> MeshReport:
@@ -60,6 +86,7 @@ def mesh_report(mesh: Mesh, surface: Surface | None = None) -> MeshReport:
     representatives[corners] = True
     is_closed = bool(proper.any()) and border == 0 and non_manifold == 0
     points = mesh.vertices[used]
+    counts = structure_counts(mesh, surface)
     return MeshReport(
         vertices=len(mesh.vertices),
         faces=len(mesh.faces),
@@ -70,7 +97,7 @@ def mesh_report(mesh: Mesh, surface: Surface | None = None) -> MeshReport:
         sliver_faces=_slivers(surface) if proper.any() else 0,
         duplicate_faces=int(proper.sum()) - len(surface.faces) if proper.any() else 0,
         flipped_faces=_flipped(corners[proper], surface, proper) if proper.any() else 0,
-        components=int(connected_components(surface.edge_faces, len(surface.faces)).max()) + 1,
+        components=counts.shells,
         border_edges=border if proper.any() else 0,
         non_manifold_edges=non_manifold,
         is_closed=is_closed,
@@ -79,7 +106,48 @@ def mesh_report(mesh: Mesh, surface: Surface | None = None) -> MeshReport:
         area=float(surface.areas.sum()) * surface.unit**2,
         volume=_volume(surface) if is_closed else None,
         groups=mesh.appearance.group_names if mesh.appearance else (),
+        structure=counts,
     )
+
+
+def structure_counts(mesh: Mesh, surface: Surface) -> StructureCounts:
+    """Count the parts that the first levels of a hierarchy would follow, by the values of ``structure``.
+
+    Parameters
+    ----------
+    surface : ``build_surface(mesh)``.
+    """
+    shells, groups, materials = (authored_parts(surface, mesh, structure) for structure in _FOLLOWED)
+    return StructureCounts(_count(shells), _count(groups), _count(materials))
+
+
+def structure_note(counts: StructureCounts, structure: Structure, max_segments: int) -> str | None:
+    """A sentence for people on how the structure limits a hierarchy; None if it does not.
+
+    Parameters
+    ----------
+    structure, max_segments : the parameters of the segmentation.
+    """
+    if structure == "none":
+        return None
+    parts = counts.named()[structure]
+    if parts == 1:
+        return f"The {structure} of the file are one part, so that structure={structure} has no effect."
+    if parts > MOST_AUTHORED:
+        return (
+            f"The file has {parts} {structure}: the {MOST_AUTHORED} largest are segments of their own, and each of the "
+            "others is in the segment of the nearest."
+        )
+    if parts >= max_segments:
+        return (
+            f"The hierarchy ends with the {parts} {structure} of the file: choose max_segments above {parts} to cut "
+            "them further."
+        )
+    return None
+
+
+def _count(part: IntArray | None) -> int:
+    return 0 if part is None else int(part.max()) + 1
 
 
 def _polygons(mesh: Mesh) -> int:

@@ -5,7 +5,7 @@ from typing import Any, Literal
 
 from pydantic import BaseModel, Field
 
-from segcore.report import MeshReport
+from segcore.report import MeshReport, structure_note
 from service.answer.model_formats import model_links
 from service.problems import JobError
 from worker.jobs.attempts import Attempt
@@ -68,6 +68,10 @@ class JobDocument(BaseModel):
     mesh: MeshSummary | None = Field(description="Null until the job has succeeded.")
     max_segments: int | None = Field(description="The largest possible number of segments.")
     automatic_segments: int | None = Field(description="The number of segments if a request gives none.")
+    notes: list[str] = Field(
+        description="Sentences on what limits the result, for people: for example that a file has more shells than "
+        "segments can be."
+    )
     error: JobError | None = Field(description="The reason why the job failed.")
     links: JobLinks
 
@@ -212,7 +216,7 @@ def job_document(job: Job, outcome: Outcome | None, attempts: list[Attempt], act
         ),
         parameters=job.parameters,
         links=_links(f"/v1/jobs/{job.id}"),
-        **_result_fields(outcome),
+        **_result_fields(job, outcome),
     )
 
 
@@ -222,16 +226,27 @@ def _is_running(attempts: list[Attempt], activity: Activity | None) -> bool:
     return bool(attempts) and attempts[-1].ended_at is None
 
 
-def _result_fields(outcome: Outcome | None) -> dict[str, Any]:
-    fields: dict[str, Any] = {"mesh": None, "max_segments": None, "automatic_segments": None, "error": None}
+def _result_fields(job: Job, outcome: Outcome | None) -> dict[str, Any]:
+    fields: dict[str, Any] = {
+        "mesh": None, "max_segments": None, "automatic_segments": None, "notes": [], "error": None,
+    }  # fmt: skip
     match outcome:
         case Succeeded(faces=faces, vertices=vertices, max_segments=most, automatic_segments=automatic, report=report):
             mesh = MeshSummary.model_validate({"faces": faces, "vertices": vertices, "report": report})
-            return fields | {"mesh": mesh, "max_segments": most, "automatic_segments": automatic}
+            numbers = {"max_segments": most, "automatic_segments": automatic}
+            return fields | numbers | {"mesh": mesh, "notes": _notes(job, mesh)}
         case Failed(code=code, message=message):
             return fields | {"error": JobError(code=code, message=message)}
         case Canceled() | None:
             return fields
+
+
+def _notes(job: Job, mesh: MeshSummary) -> list[str]:
+    counts = mesh.report.structure if mesh.report else None
+    if counts is None or "structure" not in job.parameters:
+        return []
+    note = structure_note(counts, job.parameters["structure"], job.parameters["max_segments"])
+    return [] if note is None else [note]
 
 
 def _links(path: str) -> JobLinks:

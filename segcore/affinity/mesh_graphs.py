@@ -7,6 +7,7 @@ from segcore.arrays import IntArray, at_least
 from segcore.clean.edge_geometry import edge_lengths
 from segcore.clean.surface import Surface
 from segcore.clean.topology import mesh_edges
+from segcore.coarsen.authored import part_of_component
 from segcore.graphs.mesh_graph import MeshGraph
 from segcore.graphs.surface_graph import SurfaceGraph, connected_components, weighted_degrees
 from segcore.mesh import face_centroids
@@ -33,7 +34,7 @@ def face_dual_graph(surface: Surface, parameters: SegmentationParameters) -> Mes
     length = at_least(edge_lengths(surface), _SHORTEST_EDGE)
     graph = SurfaceGraph(surface.edge_faces, length * affinity.value, at_least(surface.areas, _SMALLEST_FACE), length)
     centroids = face_centroids(surface.vertices, surface.faces)
-    return MeshGraph(graph, centroids, None, affinity.thickness, affinity.confidence)
+    return MeshGraph(graph, centroids, None, affinity.thickness, affinity.confidence, surface.authored)
 
 
 def vertex_graph(surface: Surface, parameters: SegmentationParameters) -> MeshGraph:
@@ -45,7 +46,9 @@ def vertex_graph(surface: Surface, parameters: SegmentationParameters) -> MeshGr
     edges = mesh_edges(corners)
     affinity = VERTEX_AFFINITIES[parameters.affinity](surface, vertex[edges], parameters)
     degrees = weighted_degrees(edges, affinity, len(vertex))
-    return MeshGraph(SurfaceGraph(edges, affinity, degrees, np.ones(len(edges))), surface.vertices[vertex], corners)
+    graph = SurfaceGraph(edges, affinity, degrees, np.ones(len(edges)))
+    authored = None if surface.authored is None else part_of_component(corners.ravel(), np.repeat(surface.authored, 3))
+    return MeshGraph(graph, surface.vertices[vertex], corners, authored=authored)
 
 
 _GRAPHS = {"faces": face_dual_graph, "vertices": vertex_graph}

@@ -34,6 +34,7 @@ class Surface:
     edge_vertices: IntArray  # (E, 2) the two vertices of the mesh edge that it crosses
     face_of_input: IntArray  # (F_input,) the face that represents every input face
     unit: float  # length of one unit here, in units of the input
+    authored: IntArray | None = None  # (F,) the part of the structure of the file, if the cuts follow it
 
     def face_graph(self) -> SurfaceGraph:
         """The face dual graph with weights and lengths 1 and the areas as volumes."""

@@ -7,6 +7,7 @@ import numpy as np
 from segcore.arrays import IntArray, group_sums
 from segcore.clean.edge_geometry import edge_lengths
 from segcore.clean.surface import Surface
+from segcore.coarsen.authored import apart, largest_of_each_part
 from segcore.coarsen.clusters import Clusters
 from segcore.coarsen.components import largest, nearest_hosts
 from segcore.coarsen.contacts import POINTS, Links, find_contacts, spread_points
@@ -28,7 +29,7 @@ def assemble(surface: Surface, nodes: MeshGraph, clusters: Clusters, most: int) 
 
     Parameters
     ----------
-    most : number of components of the new graph, at most.
+    most : number of components of the new graph, at most, unless there are more authored parts.
     """
     if clusters.body.max() == 0:
         return clusters, Links.none()
@@ -48,7 +49,8 @@ def link_components(surface: Surface, component: IntArray, most: int) -> Links:
     """Connect the components of a surface to at most ``most`` assemblies that lie apart.
 
     Components that touch are linked along their contacts. An assembly with less than 0.2 % of the total area, and every
-    one beyond the ``most`` largest, is attached to the nearest of the others.
+    one beyond the ``most`` largest, is attached to the nearest of the others. Components of different authored parts
+    are not linked, and every part keeps an assembly.
 
     Parameters
     ----------
@@ -59,15 +61,25 @@ def link_components(surface: Surface, component: IntArray, most: int) -> Links:
     points = spread_points(surface, component, POINTS)
     own = component[points.face]
     size = np.clip(np.sqrt(surface.areas.sum()), _SMALLEST_SIZE, 1.0)  # many components can have a large area
-    contacts = find_contacts(points, own, float(size))
+    contacts = _within_parts(find_contacts(points, own, float(size)), surface.authored)
     assembly = _assemblies(component, contacts)[own]
+    authored = None if surface.authored is None else surface.authored[points.face]
     is_host = largest(assembly, points.area, most, NEGLIGIBLE)
-    attached = nearest_hosts(assembly, is_host, points.position)
+    is_host |= largest_of_each_part(assembly, points.area, authored)
+    attached = nearest_hosts(assembly, is_host, apart(points.position, authored))
     length = np.sqrt(group_sums(assembly, points.area)[assembly[attached[:, 0]]])
     return Links(
         np.concatenate([contacts.faces, points.face[attached]]),
         np.concatenate([contacts.length, np.maximum(length, _SHORTEST)]),
     )
+
+
+def _within_parts(links: Links, authored: IntArray | None) -> Links:
+    """The links between faces of the same authored part."""
+    if authored is None:
+        return links
+    inside = authored[links.faces[:, 0]] == authored[links.faces[:, 1]]
+    return Links(links.faces[inside], links.length[inside])
 
 
 def _assemblies(component: IntArray, links: Links) -> IntArray:

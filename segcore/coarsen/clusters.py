@@ -5,6 +5,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from segcore.arrays import FloatArray, IntArray, group_sums
+from segcore.coarsen.authored import apart, largest_of_each_part, part_of_component
 from segcore.coarsen.components import largest, nearest_hosts
 from segcore.coarsen.matching import coarsen
 from segcore.graphs.mesh_graph import MeshGraph
@@ -23,23 +24,27 @@ class Clusters:
     thickness: FloatArray | None  # (N,) their mean logarithm of the shape diameter over sqrt(total area), if measured
     confidence: FloatArray | None  # (N,) share of the rays of the thickness that met the other side from inside
     body: IntArray  # (N,) the connected component of every cluster
+    authored: IntArray | None = None  # (N,) the part of the structure of the file, if the cuts follow it
 
 
 def cluster_nodes(mesh_graph: MeshGraph, target: int, rng: np.random.Generator) -> Clusters:
     """Coarsen a mesh graph to about ``target`` clusters, or not at all if ``target`` is 0.
 
-    A cluster lies in one component. Of more than 1,024 components all but the largest are merged, as a whole, with the
-    cluster that is nearest to them.
+    A cluster lies in one component and in one authored part. Of more than 1,024 components all but the largest, and the
+    largest of each authored part, are merged, as a whole, with the cluster that is nearest to them.
     """
     graph, points = mesh_graph.graph, mesh_graph.points
     component = connected_components(graph.edges, graph.node_count)
+    authored = mesh_graph.authored
     is_host = largest(component, graph.volume, MOST_COMPONENTS)
+    is_host |= largest_of_each_part(component, graph.volume, authored)
     if is_host.all():
         coarse, of_node = coarsen(graph, target or graph.node_count, rng)
     else:
         host_nodes = np.flatnonzero(is_host[component]).astype(np.int32)
         coarse, of_host = coarsen(graph.subgraph(host_nodes), target or graph.node_count, rng)
-        of_node = _with_small_components(of_host, host_nodes, component, nearest_hosts(component, is_host, points))
+        pairs = nearest_hosts(component, is_host, apart(points, authored))
+        of_node = _with_small_components(of_host, host_nodes, component, pairs)
     volume = group_sums(of_node, graph.volume)
     centres = np.stack([group_sums(of_node, graph.volume * points[:, axis]) / volume for axis in range(3)], axis=1)
     thickness, confidence = (
@@ -47,7 +52,8 @@ def cluster_nodes(mesh_graph: MeshGraph, target: int, rng: np.random.Generator) 
         for values in (mesh_graph.thickness, mesh_graph.confidence)
     )
     body = connected_components(coarse.edges, coarse.node_count)
-    return Clusters(replace(coarse, volume=volume), of_node, centres, thickness, confidence, body)
+    of_cluster = None if authored is None else part_of_component(of_node, authored)
+    return Clusters(replace(coarse, volume=volume), of_node, centres, thickness, confidence, body, of_cluster)
 
 
 def _with_small_components(of_host: IntArray, host_nodes: IntArray, component: IntArray, pairs: IntArray) -> IntArray:

@@ -1,6 +1,7 @@
 """Components of a mesh: the largest ones, the nearest to each other, and groups by distance."""
 
 import numpy as np
+from numba import njit
 from scipy.cluster.hierarchy import linkage
 from scipy.spatial import KDTree
 from scipy.spatial.distance import cdist, squareform
@@ -62,6 +63,8 @@ def group_by_nearness(points: FloatArray, component: IntArray) -> IntArray:
     if count == 1:
         return np.empty((0, 2), dtype=np.int32)
     sample, start = _sample(component, count)
+    if count > _SAMPLES:  # one point each
+        return _merges(*_spanning_tree(points[sample]))
     distance = cdist(points[sample], points[sample])
     nearest = np.minimum.reduceat(np.minimum.reduceat(distance, start, axis=0), start, axis=1)
     np.fill_diagonal(nearest, 0.0)
@@ -79,3 +82,46 @@ def _sample(component: IntArray, count: int) -> tuple[IntArray, IntArray]:
     stride = np.repeat(size / taken, taken)
     sample = order[np.repeat(first, taken) + (within * stride).astype(np.int64)]
     return sample.astype(np.int32), start.astype(np.int32)
+
+
+@njit(cache=True)
+def _spanning_tree(points):  # type: ignore[no-untyped-def]
+    """The edges (P - 1, 2) of a minimum spanning tree of points, and their squared lengths, by Prim's algorithm."""
+    count = len(points)
+    edges = np.empty((count - 1, 2), dtype=np.int32)
+    squared = np.empty(count - 1)
+    waiting = np.arange(1, count).astype(np.int32)
+    nearest = np.zeros(count, dtype=np.int32)
+    distance = np.full(count, np.inf)
+    added = 0
+    for step in range(count - 1):
+        left = count - 1 - step
+        best = 0
+        for k in range(left):
+            i = waiting[k]
+            away = 0.0
+            for axis in range(points.shape[1]):
+                away += (points[i, axis] - points[added, axis]) ** 2
+            if away < distance[i]:
+                distance[i], nearest[i] = away, added
+            if distance[i] < distance[waiting[best]]:
+                best = k
+        added = waiting[best]
+        waiting[best] = waiting[left - 1]
+        edges[step, 0], edges[step, 1], squared[step] = nearest[added], added, distance[added]
+    return edges, squared
+
+
+def _merges(edges: IntArray, length: FloatArray) -> IntArray:
+    """(C - 1, 2) the groups that the edges of a tree of C components merge, the shortest edge first."""
+    merges = np.empty_like(edges)
+    group = list(range(2 * len(edges) + 1))  # a group that has the group, itself if it is not merged yet
+    for i, edge in enumerate(np.argsort(length, kind="stable").tolist()):
+        for side in range(2):
+            at = int(edges[edge, side])
+            while group[at] != at:
+                group[at] = group[group[at]]
+                at = group[at]
+            merges[i, side] = at
+            group[at] = len(edges) + 1 + i
+    return merges

@@ -1,12 +1,13 @@
 """Best-first bisection of a graph into a tree of segments."""
 
 from collections.abc import Callable
+from dataclasses import replace
 from heapq import heappop, heappush
 
 import numpy as np
 
 from segcore.arrays import BoolArray, FloatArray, IntArray, group_sums
-from segcore.coarsen.components import group_by_nearness
+from segcore.coarsen.authored import group_by_part
 from segcore.cut.fields import Segment
 from segcore.cut.rules import Split, SplitRule
 from segcore.graphs.surface_graph import SurfaceGraph, connected_components
@@ -19,6 +20,7 @@ def bisect(
     rule: SplitRule,
     max_segments: int,
     on_split: Callable[[float], None] = lambda _: None,
+    authored: IntArray | None = None,
 ) -> Tree:
     """Separate the components of a graph, then repeatedly cut the segment of highest priority.
 
@@ -28,6 +30,8 @@ def bisect(
     rule : chooses the cut of a segment, its priority, and the automatic number of segments.
     max_segments : limit of the segments; components are separated in any case.
     on_split : called with the fraction of ``max_segments`` that is reached.
+    authored : (N,) the authored part of every node, if the first splits separate these. Their number is then the
+        automatic number of segments.
 
     Notes
     -----
@@ -36,11 +40,12 @@ def bisect(
     """
     component = connected_components(graph.edges, graph.node_count)
     tree = _GrowingTree(graph, rule)
-    for node, members in tree.part_components(component, group_by_nearness(points, component)):
+    for node, members in tree.part_components(component, group_by_part(points, component, authored)):
         tree.add(node, Segment(members, graph.subgraph(members), 0, 0.0))
     while tree.segments < max_segments and tree.split_next():
         on_split(tree.segments / max_segments)
-    return tree.finished()
+    finished = tree.finished()
+    return finished if authored is None else replace(finished, automatic_segments=int(authored.max()) + 1)
 
 
 class _GrowingTree:

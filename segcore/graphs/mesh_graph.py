@@ -17,6 +17,7 @@ class MeshGraph:
     corners: IntArray | None  # (F, 3) the nodes at the corners of every face; None if the nodes are the faces
     thickness: FloatArray | None = None  # (N,) logarithm of the shape diameter over sqrt(total area); None if unknown
     confidence: FloatArray | None = None  # (N,) share of the rays that met the other side from inside; None if unknown
+    authored: IntArray | None = None  # (N,) the part of the structure of the file, if the cuts follow it
 
     @property
     def of_face(self) -> IntArray:

@@ -8,6 +8,7 @@ from segcore.appearance import Appearance
 from segcore.arrays import BoolArray, FloatArray, IntArray, LongArray
 from segcore.io.limits import ReadLimits
 from segcore.mesh import Mesh
+from segcore.structure import FileStructure
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -19,7 +20,11 @@ class Polygons:
 
 
 def mesh_of_polygons(
-    vertices: FloatArray, polygons: Polygons, limits: ReadLimits, appearance: Appearance | None = None
+    vertices: FloatArray,
+    polygons: Polygons,
+    limits: ReadLimits,
+    appearance: Appearance | None = None,
+    structure: FileStructure | None = None,
 ) -> Mesh:
     """Return the mesh whose faces are the fans of polygons, in their order.
 
@@ -37,11 +42,11 @@ def mesh_of_polygons(
     limits.check_vertices(len(vertices))
     if (polygons.sizes == 3).all():
         limits.check_faces(len(polygons.sizes))
-        return Mesh(vertices, polygons.corners.reshape(-1, 3), appearance=appearance)
+        return Mesh(vertices, polygons.corners.reshape(-1, 3), None, appearance, structure)
     triangles = np.maximum(polygons.sizes - 2, 0)
     limits.check_faces(int(triangles.sum()))
     source_polygon = np.repeat(np.arange(len(triangles), dtype=np.int32), triangles)
-    return Mesh(vertices, polygons.corners[fan_corners(polygons.sizes)], source_polygon, appearance)
+    return Mesh(vertices, polygons.corners[fan_corners(polygons.sizes)], source_polygon, appearance, structure)
 
 
 def ragged_range(start: LongArray, length: LongArray) -> LongArray:

@@ -4,8 +4,10 @@ import argparse
 from collections.abc import Callable
 from contextlib import suppress
 from pathlib import Path
+from typing import get_args
 
 from cleave.settings import Settings
+from segcore.parameters import Structure
 
 
 def add_level(parser: argparse.ArgumentParser, default: str) -> None:
@@ -30,6 +32,16 @@ def add_parameters(parser: argparse.ArgumentParser, example: str) -> None:
         dest="parameters",
         metavar="NAME=VALUE",
         help=f"a parameter of the method, such as {example}; can be repeated",
+    )
+
+
+def add_structure(parser: argparse.ArgumentParser) -> None:
+    """Add ``--structure``, the parameter of that name."""
+    parser.add_argument(
+        "--structure",
+        choices=get_args(Structure),
+        help="what of the file the first levels follow: its connected components, its nodes and groups, or its "
+        "materials (none)",
     )
 
 

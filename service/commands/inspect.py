@@ -43,6 +43,8 @@ def _lines(name: str, report: MeshReport) -> list[str]:
         f"{_count(report.components, 'component')}, {'closed' if report.is_closed else 'not closed'}",
     ]
     lines += [f"{_count(number, what)}, {meaning}" for number, what, meaning in _defects(report) if number]
+    if report.structure is not None and report.structure.has_parts:
+        lines.append(f"structure: {report.structure.in_words()}")
     if report.groups:
         lines.append(f"{_count(len(report.groups), 'group')}: {', '.join(name or '(none)' for name in report.groups)}")
     return lines

@@ -12,7 +12,8 @@ import segcore
 from segcore.io.labels import hierarchy_document, write_seg
 from segcore.io.result import write_result
 from segcore.levels import Fineness
-from service.commands.arguments import add_level, add_parameters
+from segcore.report import StructureCounts, structure_counts, structure_note
+from service.commands.arguments import add_level, add_parameters, add_structure
 from service.commands.console import ProgressBar, say
 from service.commands.outputs import add_outputs, check_outputs, output_options, write_file, write_model
 
@@ -23,6 +24,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     add_level(parser, "chosen by the mesh")
     parser.add_argument("--max-segments", type=int, metavar="N", help="number of segments of the hierarchy (64, or K)")
     parser.add_argument("--preset", metavar="NAME", help="a published method, such as chahhou2014")
+    add_structure(parser)
     add_parameters(parser, "solver=inverse_power")
     add_outputs(parser)
     parser.add_argument("--labels", type=Path, metavar="LABELS.seg", help="the segment of every face, one per line")
@@ -49,19 +51,22 @@ def run(choices: argparse.Namespace) -> None:
         segcore.warm_up()
         bar("read", 0.0)
         mesh = segcore.read_mesh(choices.mesh, appearance=True)
-        hierarchy = segcore.segment(mesh, parameters, bar)
+        surface = segcore.build_surface(mesh)
+        hierarchy = segcore.segment(mesh, parameters, bar, surface)
         segments = fineness.segments_of(hierarchy)
         _write(choices, mesh, hierarchy, segments)
     chosen = "chosen automatically" if fineness.is_automatic else "as requested"
     say(f"{choices.mesh.name}: {len(mesh.faces)} faces, {len(mesh.vertices)} vertices")
     say(f"{segments} segments, {chosen}; 1 to {hierarchy.max_segments} are possible")
+    for line in _structure_lines(structure_counts(mesh, surface), parameters):
+        say(line)
     for path in outputs:
         say(f"wrote {path}")
 
 
 def _parameters(choices: argparse.Namespace) -> segcore.SegmentationParameters:
     """Return the parameters, with a hierarchy that is large enough for ``--segments``."""
-    named = {"preset": choices.preset, "max_segments": choices.max_segments}
+    named = {"preset": choices.preset, "max_segments": choices.max_segments, "structure": choices.structure}
     given = dict(choices.parameters) | {name: value for name, value in named.items() if value is not None}
     parameters = segcore.SegmentationParameters.from_mapping(given)
     segments = choices.segments
@@ -70,6 +75,12 @@ def _parameters(choices: argparse.Namespace) -> segcore.SegmentationParameters:
     if segments < 1:
         raise segcore.InvalidParameters(f"The number of segments must be at least 1, not {segments}.")
     return replace(parameters, max_segments=max(parameters.max_segments, segments))
+
+
+def _structure_lines(counts: StructureCounts, parameters: segcore.SegmentationParameters) -> list[str]:
+    """Return what structure the file has if it is of several parts, and how it limits the hierarchy."""
+    note = structure_note(counts, parameters.structure, parameters.max_segments)
+    return ([f"structure of the file: {counts.in_words()}"] if counts.has_parts else []) + ([note] if note else [])
 
 
 def _write(choices: argparse.Namespace, mesh: segcore.Mesh, hierarchy: segcore.Hierarchy, segments: int) -> None:

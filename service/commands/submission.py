@@ -58,7 +58,7 @@ def submit_file(client: Client, submission: Submission, board: ProgressBoard, st
     except ClientError as error:
         board.finish(label, str(error))
         return f"{label}: {error}"
-    board.finish(label, _level_name(job, submission))
+    board.finish(label, "; ".join([_level_name(job, submission), *job.document.get("notes", [])]))
     return None
 
 

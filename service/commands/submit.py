@@ -9,7 +9,7 @@ from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
 
 from cleave.client import Client
-from service.commands.arguments import add_level, add_parameters
+from service.commands.arguments import add_level, add_parameters, add_structure
 from service.commands.console import ProgressBoard, say
 from service.commands.server_results import DEFAULT_RESULTS, RESULTS, result_names
 from service.commands.submission import Submission, submit_file
@@ -33,6 +33,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("files", type=Path, nargs="+", metavar="FILE", help="mesh files")
     parser.add_argument("--server", default=_DEFAULT_SERVER, metavar="URL", help="of the service (%(default)s)")
     add_level(parser, "chosen by each mesh")
+    add_structure(parser)
     add_parameters(parser, "max_segments=100")
     parser.add_argument(
         "--results",
@@ -90,13 +91,14 @@ def _submit_files(choices: argparse.Namespace, api_key: str | None) -> str:
 
 def _submissions(choices: argparse.Namespace) -> list[Submission]:
     names = _result_names(choices.files)
+    parameters = dict(choices.parameters) | ({"structure": choices.structure} if choices.structure else {})
     for path in choices.files:
         path.stat()  # raises OSError before anything is sent
     return [
         Submission(
             path,
             name,
-            parameters=dict(choices.parameters),
+            parameters=parameters,
             segments=choices.segments,
             granularity=choices.granularity,
             results=choices.results,

@@ -7,6 +7,7 @@ import httpx
 from cleave.settings import Settings
 from helpers.browser.meshes import small_burr
 from helpers.browser.visit import Visit
+from helpers.files.samples import TWO_SQUARES
 from helpers.installation import Installation
 from helpers.jobs import accepted
 from worker.jobs.store.opening import open_store
@@ -104,3 +105,18 @@ def test_a_mesh_can_be_segmented_again_with_other_parameters_and_compared(visit:
     assert len(visit.parts()) == 7
     visit.page.click("#close-beside")
     assert "beside" not in visit.address("job=") or visit.page.locator("#beside").is_hidden()
+
+
+def test_the_structure_of_a_file_is_shown_and_followed_if_asked(visit: Visit) -> None:
+    visit.open()
+    visit.drop("two.obj", TWO_SQUARES.encode())
+    visit.wait_for_parts()
+    assert visit.page.locator("#about").inner_text().endswith("2 shells · 2 groups · 1 material")
+    assert "groups" not in visit.page.locator("#level-note").inner_text()
+    visit.page.click("#open-parameters")
+    visit.page.select_option("#parameter-structure", "groups")
+    visit.page.fill("#parameter-max_segments", "2")
+    visit.page.click("#parameters button[value=run]")
+    visit.page.wait_for_function("() => document.querySelector('#level').max === '2'")
+    assert len(visit.parts()) == 2
+    assert "The hierarchy ends with the 2 groups of the file" in visit.page.locator("#level-note").inner_text()

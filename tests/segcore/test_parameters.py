@@ -10,8 +10,8 @@ from segcore.parameters import SegmentationParameters, parameters_schema
     ("name", "value"),
     [("max_segments", 0), ("max_segments", 10_001), ("max_segments", 2.0), ("max_segments", True), ("seed", -1),
      ("seed", 2**32), ("starts", 0), ("iterations", 0), ("p", 1), ("p", 2.0), ("p", "1.5"), ("solver", "luck"),
-     ("graph", "edges"), ("affinity", ""), ("thinning", None), ("order", "ncc "), ("clusters", 99),
-     ("clusters", "many")],
+     ("graph", "edges"), ("structure", "nodes"), ("affinity", ""), ("thinning", None), ("order", "ncc "),
+     ("clusters", 99), ("clusters", "many")],
 )  # fmt: skip
 def test_a_value_outside_its_range_is_refused_with_name_and_value(name, value):
     with pytest.raises(InvalidParameters, match=f"{name} must be .*{value}"):

@@ -11,7 +11,10 @@ from helpers.meshes import exploded
 from segcore import shapes
 from segcore.clean.welding import WELD_TOLERANCE
 from segcore.mesh import Mesh
-from segcore.report import mesh_report
+from segcore.method import segment
+from segcore.parameters import SegmentationParameters, Structure
+from segcore.report import StructureCounts, mesh_report, structure_note
+from segcore.structure import FileStructure
 
 BALL = shapes.icosphere(2)
 
@@ -116,3 +119,34 @@ def test_components_farther_apart_than_the_tolerance_stay_apart() -> None:
         np.vstack([BALL.vertices, BALL.vertices + gap]), np.vstack([BALL.faces, BALL.faces + len(BALL.vertices)])
     )
     assert mesh_report(two).components == 2
+
+
+def test_the_structure_is_counted_by_the_values_of_the_parameter() -> None:
+    shape = shapes.joined(shapes.box(), shapes.box(centre=(3, 0, 0)), shapes.box(centre=(6, 0, 0)))
+    group = np.array([4, 4, -1], np.int32)[shape.parts]
+    mesh = Mesh(shape.mesh.vertices, shape.mesh.faces, structure=FileStructure(group=group))
+    counts = mesh_report(mesh).structure
+    assert counts == StructureCounts(shells=3, groups=2, materials=0)
+    assert counts.has_parts
+    assert counts.in_words() == "3 shells, 2 groups"
+    assert not StructureCounts(1, 0, 1).has_parts
+    assert StructureCounts(1, 0, 1).in_words() == "1 shell, 1 material"
+
+
+@pytest.mark.parametrize("structure", ["shells", "groups", "materials"])
+def test_the_count_is_the_automatic_number_of_a_segmentation_that_follows_it(structure: Structure) -> None:
+    """Also if a group consists of faces that other faces represent."""
+    shape = shapes.joined(shapes.box(), shapes.box(), shapes.box(centre=(3, 0, 0)), shapes.box(centre=(6, 0, 0)))
+    file = FileStructure(shape.parts, np.minimum(shape.parts, 2))
+    mesh = Mesh(shape.mesh.vertices, shape.mesh.faces, structure=file)
+    hierarchy = segment(mesh, SegmentationParameters(structure=structure))
+    assert hierarchy.automatic_segments == mesh_report(mesh).structure.named()[structure]
+
+
+def test_a_note_says_how_the_structure_limits_the_hierarchy() -> None:
+    counts = StructureCounts(shells=12_000, groups=64, materials=1)
+    assert structure_note(counts, "none", 8) is None
+    assert structure_note(counts, "groups", 65) is None
+    assert "ends with the 64 groups of the file: choose max_segments above 64" in structure_note(counts, "groups", 64)
+    assert structure_note(counts, "shells", 64).startswith("The file has 12000 shells: the 10000 largest are segments")
+    assert structure_note(counts, "materials", 64).endswith("structure=materials has no effect.")

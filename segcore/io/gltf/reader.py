@@ -12,6 +12,7 @@ from segcore.io.gltf.scene import FAN, STRIP, TRIANGLES, Instance, Primitive, me
 from segcore.io.limits import ReadLimits
 from segcore.io.polygons import strip_faces
 from segcore.mesh import Mesh
+from segcore.structure import FileStructure, file_structure, numbered_runs
 
 
 def read_gltf(data: bytes, limits: ReadLimits, with_appearance: bool = False) -> Mesh:
@@ -20,7 +21,8 @@ def read_gltf(data: bytes, limits: ReadLimits, with_appearance: bool = False) ->
     Face order: the nodes of the scene depth first, the primitives of each mesh, the triangles of each primitive. A mesh
     that several nodes use is repeated. Points and lines are ignored. If a transform mirrors a mesh, the orientation of
     its faces is reversed, as glTF requires, so that their outside stays outside. The appearance is NORMAL, TEXCOORD_0
-    and COLOR_0, each if all primitives have it, and the names of the nodes or else of their meshes.
+    and COLOR_0, each if all primitives have it, and the names of the nodes or else of their meshes. The groups of the
+    structure are the nodes.
 
     Raises
     ------
@@ -65,7 +67,13 @@ def _primitive(entry: Item, accessors: Accessors, where: str) -> Primitive:
     corners = accessors.count(positions if indices is None else indices)
     if mode == TRIANGLES and corners % 3:
         raise InvalidMesh(f"{where} of the glTF file has {corners} corners, which is not a multiple of 3.")
-    return Primitive(where, mode, positions, indices, corners, member(entry, "attributes", where))
+    return Primitive(where, mode, positions, indices, corners, member(entry, "attributes", where), _material(entry))
+
+
+def _material(entry: Item) -> int | None:
+    """The number of the material; one that is not a number is ignored, as all else of materials is."""
+    material = entry.get("material")
+    return material if type(material) is int else None
 
 
 def _assemble(
@@ -89,7 +97,14 @@ def _assemble(
         np.concatenate([np.zeros((0, 3)), *vertices]) if len(vertices) != 1 else vertices[0],
         np.concatenate([np.zeros((0, 3), dtype=np.int32), *faces]) if len(faces) != 1 else faces[0],
         appearance=gltf_appearance(parts, accessors) if with_appearance else None,
+        structure=_structure(parts),
     )
+
+
+def _structure(parts: list[tuple[Instance, Primitive]]) -> FileStructure | None:
+    sizes = [primitive.face_count for _, primitive in parts]
+    groups = numbered_runs([instance.node for instance, _ in parts], sizes)
+    return file_structure(groups, numbered_runs([primitive.material for _, primitive in parts], sizes))
 
 
 def _place(accessors: Accessors, positions: int, transform: FloatArray) -> FloatArray:

@@ -17,6 +17,7 @@ _IDENTITY = np.eye(4)
 class Instance:
     """A mesh in the scene."""
 
+    node: int
     mesh: int
     transform: FloatArray  # (4, 4) from the mesh to the scene, for column vectors
     name: str  # of the node, else of the mesh, else empty
@@ -32,6 +33,7 @@ class Primitive:
     indices: int | None  # accessor
     corners: int  # the number of indices, or of positions if there are no indices
     attributes: Item  # all accessors of vertices, by semantic
+    material: int | None
 
     @property
     def face_count(self) -> int:
@@ -62,7 +64,7 @@ def mesh_instances(document: Document) -> list[Instance]:
         if "mesh" in entry:
             mesh = integer(entry, "mesh", where)
             place = _IDENTITY if "skin" in entry else transform
-            instances.append(Instance(mesh, place, _name(entry) or _name(document.item("meshes", mesh))))
+            instances.append(Instance(node, mesh, place, _name(entry) or _name(document.item("meshes", mesh))))
         waiting.extend((child, transform) for child in reversed(indices(entry, "children", where)))
     return instances
 

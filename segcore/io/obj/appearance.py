@@ -105,13 +105,7 @@ def _groups(words: Words, is_face: BoolArray, sizes: LongArray) -> tuple[IntArra
     if len(marks) == 0:
         return None, ()
     used, of_polygon = np.unique(np.searchsorted(marks, np.flatnonzero(is_face)), return_inverse=True)
-    names = [_name(words, int(marks[mark - 1])) if mark else "" for mark in used]
+    names = [words.rest_of_line(int(marks[mark - 1])) if mark else "" for mark in used]
     entry = {name: i for i, name in enumerate(dict.fromkeys(names))}
     of_used = np.array([entry[name] for name in names], dtype=np.int32)
     return np.repeat(of_used[of_polygon], np.maximum(sizes - 2, 0)), tuple(entry)
-
-
-def _name(words: Words, line: int) -> str:
-    first, last = int(words.line_start[line]), int(words.line_start[line + 1])
-    text: bytes = words.text[words.start[first] : words.start[last] if last < words.count else None]
-    return text.split(b"\n", 1)[0][1:].strip().decode("utf-8", "replace")

@@ -9,6 +9,7 @@ from segcore.errors import InvalidMesh
 from segcore.io.limits import ReadLimits
 from segcore.io.obj.appearance import obj_appearance
 from segcore.io.obj.kernels import FaceLines, parse_face_lines, parse_vertex_lines
+from segcore.io.obj.structure import obj_structure
 from segcore.io.polygons import Polygons, mesh_of_polygons
 from segcore.io.text.words import Words, find_words, plain_text, without_comments
 from segcore.mesh import Mesh
@@ -20,9 +21,9 @@ _CORNER = re.compile(r"[-+]?\d+(/-?\d*){0,2}", re.ASCII)
 def read_obj(data: bytes, limits: ReadLimits, with_appearance: bool = False) -> Mesh:
     """Read the vertices and polygons of an OBJ file.
 
-    Materials, points and lines are ignored, and no file that is named in it is opened. A negative index counts back
-    from the last vertex before its line. The appearance is the texture coordinates and normals of the corners, the
-    colours of the vertices and the names of groups and objects.
+    Points and lines are ignored, and no file that is named in it is opened. A negative index counts back from the last
+    vertex before its line. The appearance is the texture coordinates and normals of the corners, the colours of the
+    vertices and the names of groups and objects. The structure is the groups and objects, and the names of materials.
 
     An OBJ file does not specify its length: a file that is cut short between two lines cannot be detected.
 
@@ -40,7 +41,8 @@ def read_obj(data: bytes, limits: ReadLimits, with_appearance: bool = False) -> 
     vertices = _vertices(words, is_vertex)
     polygons = _polygons(words, is_vertex, is_face)
     appearance = obj_appearance(words, is_vertex, is_face, polygons) if with_appearance else None
-    return mesh_of_polygons(vertices, polygons, limits, appearance)
+    structure = obj_structure(words, is_vertex, is_face, polygons.sizes)
+    return mesh_of_polygons(vertices, polygons, limits, appearance, structure)
 
 
 def _values_per_line(words: Words, lines: LongArray, what: str) -> LongArray:

@@ -4,13 +4,14 @@ import re
 
 import numpy as np
 
-from segcore.appearance import Appearance, group_appearance
+from segcore.appearance import group_appearance
 from segcore.arrays import BoolArray, FloatArray, LongArray
 from segcore.errors import InvalidMesh
 from segcore.io.limits import ReadLimits
 from segcore.io.polygons import Polygons, mesh_of_polygons
 from segcore.io.text.words import Words, find_words, plain_text
 from segcore.mesh import Mesh
+from segcore.structure import file_structure, numbered_runs
 
 # The lines of a face as most programs write them: the first words of each line, and its number of words.
 _VERTEX = (b"vertex",)
@@ -28,6 +29,8 @@ _FACE = re.compile(
 def read_ascii_stl(data: bytes, limits: ReadLimits, with_appearance: bool = False) -> Mesh:
     """Read an STL file in text: one or more solids; loops of more than three vertices are triangulated as fans.
 
+    If there are several solids, they are the groups of the structure.
+
     Raises
     ------
     InvalidMesh, LimitExceeded
@@ -42,9 +45,11 @@ def read_ascii_stl(data: bytes, limits: ReadLimits, with_appearance: bool = Fals
     vertices = _regular_vertices(words, np.flatnonzero(~is_solid))
     if vertices is None:
         return _read_any_layout(_SOLID.sub(lambda line: b" " * len(line[0]), text), limits)
-    appearance = _solids(plain, words, is_solid) if with_appearance else None
+    sizes = _sizes_of_solids(words, is_solid)
+    appearance = group_appearance(_names(plain, words), sizes) if with_appearance and sizes else None
+    structure = file_structure(numbered_runs(range(len(sizes)), sizes), None) if len(sizes) > 1 else None
     polygons = Polygons(np.arange(len(vertices)), np.full(len(vertices) // 3, 3))
-    return mesh_of_polygons(vertices, polygons, limits, appearance)
+    return mesh_of_polygons(vertices, polygons, limits, appearance, structure)
 
 
 def _regular_vertices(words: Words, lines: LongArray) -> FloatArray | None:
@@ -64,14 +69,18 @@ def _regular_vertices(words: Words, lines: LongArray) -> FloatArray | None:
         return None
 
 
-def _solids(text: bytes, words: Words, is_solid: BoolArray) -> Appearance | None:
-    """The solids as groups of faces; ``text`` has their names in the original case."""
+def _sizes_of_solids(words: Words, is_solid: BoolArray) -> list[int]:
+    """The number of faces of every solid; empty if there are faces before the first one."""
     solids = np.flatnonzero(words.lines_with(b"solid"))
     faces_before = np.append(np.cumsum(~is_solid)[solids], np.count_nonzero(~is_solid)) // len(_LINES)
-    if faces_before[0] > 0:
-        return None
-    names = [_name(text, int(words.start[words.line_start[line]])) for line in solids]
-    return group_appearance(names, np.diff(faces_before).tolist())
+    sizes: list[int] = np.diff(faces_before).tolist()
+    return sizes if faces_before[0] == 0 else []
+
+
+def _names(text: bytes, words: Words) -> list[str]:
+    """The names of the solids; ``text`` has them in the original case."""
+    solids = np.flatnonzero(words.lines_with(b"solid"))
+    return [_name(text, int(words.start[words.line_start[line]])) for line in solids]
 
 
 def _name(text: bytes, solid: int) -> str:

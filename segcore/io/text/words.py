@@ -96,6 +96,13 @@ class Words:
         """(L,) True for each line whose first word is ``keyword``."""
         return self.equal(self.line_start[:-1], keyword)
 
+    def rest_of_line(self, line: int) -> str:
+        """What follows the first word of a line, without white space at its ends."""
+        begin = int(self.start[self.line_start[line]])
+        end = self.text.find(b"\n", begin)
+        rest = self.text[begin : end if end >= 0 else None].split(None, 1)[1:]
+        return b"".join(rest).strip().decode("utf-8", "replace")
+
 
 def plain_text(data: bytes) -> bytes:
     """Return the text with newlines as line ends, without byte order mark and without padding at its end.

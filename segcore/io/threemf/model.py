@@ -3,7 +3,7 @@
 from array import array
 from collections.abc import Iterable
 from dataclasses import dataclass, field
-from typing import TypeAlias
+from typing import NamedTuple, TypeAlias
 from xml.parsers import expat
 
 import numpy as np
@@ -11,16 +11,19 @@ import numpy as np
 from segcore.arrays import FloatArray
 from segcore.errors import InvalidMesh, UnsupportedFormat
 from segcore.io.limits import ReadLimits
+from segcore.structure import NO_ENTRY
 
 ObjectKey: TypeAlias = tuple[str, str]  # the model part, empty for the root model, and the id in it
+MaterialKey: TypeAlias = tuple[str, str, str]  # the model part, the id of the resource, and the index in it or empty
 Attributes: TypeAlias = dict[str, str]
 
 _CORE = "http://schemas.microsoft.com/3dmanufacturing/core/2015/02"
 _PRODUCTION = "http://schemas.microsoft.com/3dmanufacturing/production/2015/06"
+_MATERIAL = "http://schemas.microsoft.com/3dmanufacturing/material/2015/02"
 # Required extensions that change neither the faces nor their positions, or that are implemented here.
 _UNDERSTOOD = (
     _PRODUCTION,
-    "http://schemas.microsoft.com/3dmanufacturing/material/2015/02",
+    _MATERIAL,
     "http://schemas.microsoft.com/3dmanufacturing/trianglesets/2021/07",
 )
 _MILLIMETRES = {
@@ -45,7 +48,15 @@ class ModelObject:
     name: str
     vertices: "array[float]" = field(default_factory=lambda: array("d"))  # x, y and z of each vertex
     triangles: "array[int]" = field(default_factory=lambda: array("i"))  # the three vertices of each triangle
+    materials: "array[int]" = field(default_factory=lambda: array("i"))  # of each triangle, by number; -1 for none
     components: list[Placed] = field(default_factory=list)
+
+
+class _Default(NamedTuple):
+    """The properties of the triangles of an object that have none of their own."""
+
+    resource: str | None
+    material: int  # by number; -1 for none
 
 
 @dataclass(slots=True, eq=False)
@@ -57,25 +68,29 @@ class Model:
     items: list[Placed] = field(default_factory=list)
 
 
-def parse_model(chunks: Iterable[bytes], part: str, limits: ReadLimits) -> Model:
+def parse_model(chunks: Iterable[bytes], part: str, limits: ReadLimits, materials: dict[MaterialKey, int]) -> Model:
     """Parse a model part; entities are not expanded, and no other part or file is read.
 
     Parameters
     ----------
     part : the name of the part, empty for the root model.
+    materials : the numbers of all materials so far; those of this part are added.
 
     Raises
     ------
     InvalidMesh, UnsupportedFormat, LimitExceeded
         The message of InvalidMesh has the line.
     """
-    return _ModelParser(part, limits).parse(chunks)
+    return _ModelParser(part, limits, materials).parse(chunks)
 
 
 class _ModelParser:
-    def __init__(self, part: str, limits: ReadLimits) -> None:
+    def __init__(self, part: str, limits: ReadLimits, materials: dict[MaterialKey, int]) -> None:
         self._part = part
         self._limits = limits
+        self._materials = materials
+        self._palettes: set[str] = set()  # resources with a material per index; others have texture coordinates
+        self._default = _Default(None, NO_ENTRY)
         self._model = Model()
         self._object = ModelObject("")
         self._namespaces: dict[str, str] = {}
@@ -91,6 +106,8 @@ class _ModelParser:
             f"{_CORE} component": self._component,
             f"{_CORE} item": self._item,
             f"{_CORE} model": self._begin_model,
+            f"{_CORE} basematerials": self._palette,
+            f"{_MATERIAL} colorgroup": self._palette,
         }
         self._has_model = False
 
@@ -129,6 +146,7 @@ class _ModelParser:
         if "_" in a or "_" in b or "_" in c:
             raise ValueError("a number with an underscore, which Python would accept")
         self._object.triangles.extend((int(a), int(b), int(c)))
+        self._object.materials.append(self._material_of(attributes) if "p1" in attributes else self._default.material)
         if len(self._object.triangles) > 3 * self._limits.max_faces:
             self._limits.check_faces(len(self._object.triangles) // 3)
 
@@ -150,6 +168,23 @@ class _ModelParser:
         if number in self._model.objects:
             raise InvalidMesh(f"Line {self._parser.CurrentLineNumber}: the 3MF model has two objects {number[:40]!r}.")
         self._object = self._model.objects[number] = ModelObject(attributes.get("name", ""))
+        pid, index = attributes.get("pid"), attributes.get("pindex", "")
+        self._default = _Default(pid, NO_ENTRY if pid is None else self._numbered(pid, index))
+
+    def _palette(self, attributes: Attributes) -> None:
+        self._palettes.add(attributes.get("id", ""))
+
+    def _material_of(self, attributes: Attributes) -> int:
+        """The number of the material of a triangle with properties of its own; its corners may differ in them."""
+        pid, first = attributes.get("pid", self._default.resource), attributes["p1"]
+        if pid is None:
+            return NO_ENTRY
+        is_uniform = attributes.get("p2", first) == first and attributes.get("p3", first) == first
+        return self._numbered(pid, first if is_uniform else "")
+
+    def _numbered(self, pid: str, index: str) -> int:
+        key = (self._part, pid, index if pid in self._palettes else "")
+        return self._materials.setdefault(key, len(self._materials))
 
     def _component(self, attributes: Attributes) -> None:
         self._object.components.append(self._placed(attributes))

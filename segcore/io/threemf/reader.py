@@ -6,9 +6,10 @@ from segcore.appearance import group_appearance
 from segcore.arrays import FloatArray, IntArray, transformed
 from segcore.errors import InvalidMesh, LimitExceeded
 from segcore.io.limits import ReadLimits
-from segcore.io.threemf.model import Model, ModelObject, ObjectKey, Placed, parse_model
+from segcore.io.threemf.model import MaterialKey, Model, ModelObject, ObjectKey, Placed, parse_model
 from segcore.io.threemf.package import Package
 from segcore.mesh import Mesh
+from segcore.structure import NO_ENTRY, file_structure, numbered_runs
 
 _MOST_PLACES = 100_000  # placed objects, also those without a mesh, after components are expanded; set by hand
 
@@ -45,6 +46,7 @@ class _Objects:
     def __init__(self, package: Package, limits: ReadLimits) -> None:
         self._package = package
         self._limits = limits
+        self._materials: dict[MaterialKey, int] = {}
         self.root = self._parse(package.root_model(), "")
         self._models = {"": self.root}
 
@@ -57,7 +59,7 @@ class _Objects:
         return self._models[part].objects[number]
 
     def _parse(self, name: str, part: str) -> Model:
-        return parse_model(self._package.chunks(name), part, self._limits)
+        return parse_model(self._package.chunks(name), part, self._limits, self._materials)
 
 
 class _Counts:
@@ -124,7 +126,15 @@ def _assemble(placed: list[Placed], objects: _Objects, with_appearance: bool) ->
     vertices *= objects.root.unit
     sizes = np.diff(face_end, prepend=0).tolist()
     appearance = group_appearance([source.name for source in sources], sizes) if with_appearance else None
-    return Mesh(vertices, faces, appearance=appearance)
+    return Mesh(
+        vertices, faces, None, appearance, file_structure(numbered_runs(range(len(sizes)), sizes), _materials(sources))
+    )
+
+
+def _materials(sources: list[ModelObject]) -> IntArray | None:
+    """(F,) the numbers of the materials of all faces; None if none has one."""
+    materials = np.concatenate([np.frombuffer(source.materials, dtype=np.int32) for source in sources])
+    return materials if (materials != NO_ENTRY).any() else None
 
 
 def _place(source: ModelObject, transform: FloatArray, vertices: FloatArray) -> None:

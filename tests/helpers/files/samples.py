@@ -43,6 +43,12 @@ UNSHARED_SQUARE = unshared(SQUARE)
 TRIANGLES = [tuple(SQUARE.vertices[corner] for corner in polygon) for polygon in SQUARE.polygons]
 BINARY_STL = binary_stl(TRIANGLES)
 
+# An OBJ file of two shells in two groups, of one material.
+TWO_SQUARES = (
+    "".join(f"v {x} {y} 0\n" for x in (0, 1, 2, 3) for y in (0, 1))
+    + "usemtl red\ng left\nf 1 2 4 3\ng right\nf 5 6 8 7\n"
+)
+
 
 def gltf_square() -> Asset:
     asset = Asset()

@@ -1,4 +1,5 @@
 import numpy as np
+from scipy.cluster.hierarchy import linkage
 
 from segcore.coarsen.components import group_by_nearness, largest, nearest_hosts
 
@@ -47,3 +48,11 @@ def test_every_component_that_is_not_a_host_gets_the_nearest_pair_of_points():
 
 def test_there_are_no_pairs_if_all_components_are_hosts():
     assert nearest_hosts(np.array([0, 1]), np.array([True, True]), np.eye(3)[:2]).shape == (0, 2)
+
+
+def test_many_components_are_grouped_as_by_single_linkage():
+    at = np.random.default_rng(2).random((2100, 3))
+    np.testing.assert_array_equal(
+        np.sort(group_by_nearness(at, np.arange(2100)), axis=1),
+        np.sort(linkage(at, "single")[:, :2].astype(int), axis=1),
+    )

@@ -6,6 +6,7 @@ from pathlib import Path
 import pytest
 
 import segcore
+from helpers.files.samples import TWO_SQUARES
 from segcore.report import mesh_report
 from service.commands.main import main
 
@@ -42,3 +43,17 @@ def test_the_text_lists_no_defect_of_a_ball(ball: Path, capsys: pytest.CaptureFi
     lines = capsys.readouterr().out.splitlines()
     assert lines[2:] == ["1 component, closed"]
     assert ", volume " in lines[1]
+
+
+def test_the_text_has_the_structure_of_a_file_of_several_parts(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    path = tmp_path / "two.obj"
+    path.write_text(TWO_SQUARES)
+    assert main(["inspect", str(path)]) == 0
+    assert capsys.readouterr().out.splitlines()[-2:] == [
+        "structure: 2 shells, 2 groups, 1 material",
+        "2 groups: left, right",
+    ]
+    assert main(["inspect", "--json", str(path)]) == 0
+    assert json.loads(capsys.readouterr().out)["structure"] == {"shells": 2, "groups": 2, "materials": 1}

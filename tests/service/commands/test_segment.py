@@ -10,6 +10,7 @@ from pathlib import Path
 import pytest
 
 import segcore
+from helpers.files.samples import TWO_SQUARES
 from segcore.io.result import read_result, write_result
 from service.commands.main import main
 
@@ -78,3 +79,25 @@ def test_an_output_that_is_a_pipe_is_not_replaced(mesh: Path, tmp_path: Path) ->
     with subprocess.Popen(command, stdout=subprocess.DEVNULL):
         assert len(pipe.read_text().split()) == 4 * 12 * 11
     assert pipe.is_fifo()
+
+
+def test_the_summary_has_the_structure_of_the_file_and_says_if_it_fills_the_hierarchy(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    path = tmp_path / "two.obj"
+    path.write_text(TWO_SQUARES)
+    counts = "structure of the file: 2 shells, 2 groups, 1 material"
+    assert main(["segment", str(path)]) == 0
+    assert capsys.readouterr().out.splitlines()[2:] == [counts]
+    labels = tmp_path / "labels.seg"
+    for given in (["--structure", "groups"], ["--set", "structure=groups"]):
+        assert main(["segment", str(path), "--max-segments", "2", *given, "--labels", str(labels)]) == 0
+        lines = capsys.readouterr().out.splitlines()
+        assert lines[1:3] == ["2 segments, chosen automatically; 1 to 2 are possible", counts]
+        assert lines[3].startswith("The hierarchy ends with the 2 groups of the file")
+        assert labels.read_text().split() in (["0", "0", "1", "1"], ["1", "1", "0", "0"])
+
+
+def test_a_file_without_groups_cannot_be_cut_by_them(mesh: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    assert main(["segment", str(mesh), "--structure", "groups"]) == 2
+    assert "This file has no groups: use structure=shells" in capsys.readouterr().err

@@ -6,6 +6,7 @@ from pathlib import Path
 import pytest
 
 from cleave.client import Client
+from helpers.files.samples import TWO_SQUARES
 from helpers.jobs import sphere
 from service.commands.main import main
 
@@ -93,3 +94,14 @@ def test_files_of_the_same_stem_do_not_overwrite_each_other(url: str, meshes: li
     other.write_bytes(meshes[1].read_bytes())
     assert submit(url, [meshes[0], other], tmp_path / "out", "--results", "seg") == 0
     assert sorted(path.name for path in (tmp_path / "out").iterdir()) == ["ball10.off.seg", "ball10.txt.seg"]
+
+
+def test_the_structure_of_a_file_is_followed_and_limits_are_reported(
+    url: str, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    path = tmp_path / "two.obj"
+    path.write_text(TWO_SQUARES)
+    options = ["--structure", "groups", "--set", "max_segments=2", "--results", "seg"]
+    assert submit(url, [path], tmp_path, *options) == 0
+    assert len(set((tmp_path / "two.seg").read_text().split())) == 2
+    assert "two.obj: 2 segments; The hierarchy ends with the 2 groups of the file" in capsys.readouterr().err

@@ -1,5 +1,6 @@
 """Jobs: documents, list, long polling, cancellation and deletion."""
 
+import json
 import threading
 import time
 from collections.abc import Callable
@@ -8,10 +9,13 @@ import httpx
 import pytest
 
 from cleave.settings import Settings
-from helpers.api import FACES, problem, submit, traces
+from helpers.api import AGAIN, FACES, problem, submit, traces
+from helpers.files.samples import TWO_SQUARES
 from helpers.jobs import SMALL
 from service.documents import Status
 from worker.jobs.queue.queue import JobQueue, Progress
+from worker.jobs.store.store import JobStore
+from worker.process.perform import perform
 
 
 def test_a_leased_job_is_running_and_has_a_stage(client: httpx.Client, queue: JobQueue) -> None:
@@ -32,6 +36,32 @@ def test_a_finished_job_describes_its_mesh_and_levels(client: httpx.Client, fini
     assert (report["components"], report["is_closed"], report["border_edges"]) == (1, True, 0)
     assert 1 <= job["automatic_segments"] <= job["max_segments"]
     assert job["created_at"] <= job["finished_at"]
+
+
+def test_a_job_counts_the_structure_of_its_file_and_notes_what_limits_the_result(
+    client: httpx.Client, settings: Settings, store: JobStore
+) -> None:
+    notes = {"none": 0, "groups": 1, "materials": 1, "shells": 1}
+    for structure, count in notes.items():
+        parameters = json.dumps({"structure": structure, "max_segments": 2})
+        files = {"mesh": ("two.obj", TWO_SQUARES.encode())}
+        job = client.post("/v1/jobs", files=files, data={"parameters": parameters}, headers=AGAIN).json()
+        assert job["notes"] == []
+        perform(store, settings, job["id"], lambda *_: None)
+        job = client.get(job["links"]["self"]).json()
+        assert job["mesh"]["report"]["structure"] == {"shells": 2, "groups": 2, "materials": 1}
+        assert len(job["notes"]) == count
+        assert all(f" {structure} of the file" in note for note in job["notes"])
+
+
+def test_a_job_whose_file_lacks_the_structure_fails_with_a_remedy(
+    client: httpx.Client, settings: Settings, store: JobStore
+) -> None:
+    path = submit(client, parameters='{"structure": "materials"}')
+    perform(store, settings, path.rpartition("/")[2], lambda *_: None)
+    job = client.get(path).json()
+    assert (job["status"], job["error"]["code"]) == ("failed", "invalid_parameters")
+    assert "use structure=shells" in job["error"]["message"]
 
 
 def test_a_bad_mesh_ends_as_a_failed_job_with_a_reason(client: httpx.Client, finished_job: Callable[..., str]) -> None:

@@ -14,10 +14,22 @@ export interface Job {
   readonly finished_at: string | null;
   readonly input: { readonly file_name: string | null; readonly size_bytes: number };
   readonly parameters: Readonly<Record<string, unknown>>;
-  readonly mesh: { readonly faces: number; readonly vertices: number } | null;
+  readonly mesh: { readonly faces: number; readonly vertices: number; readonly report: Report | null } | null;
   readonly max_segments: number | null;
   readonly automatic_segments: number | null;
+  readonly notes: readonly string[];
   readonly error: { readonly code: string; readonly message: string } | null;
+}
+
+export interface Report {
+  /** The number of parts for every value of the parameter ``structure``; null in jobs of earlier versions. */
+  readonly structure: Structure | null;
+}
+
+export interface Structure {
+  readonly shells: number;
+  readonly groups: number;
+  readonly materials: number;
 }
 
 export interface JobPage {

@@ -75,8 +75,9 @@ export class Beside {
   }
 }
 
-const SHOWN = ["affinity", "solver", "graph"];
+const SHOWN = ["structure", "affinity", "solver", "graph"];
 
 function differences(job: Job): string {
-  return SHOWN.flatMap((name) => (name in job.parameters ? [String(job.parameters[name])] : [])).join(" · ");
+  const values = SHOWN.flatMap((name) => (name in job.parameters ? [String(job.parameters[name])] : []));
+  return values.filter((value) => value !== "none").join(" · ");
 }

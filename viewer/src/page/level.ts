@@ -15,6 +15,7 @@ export class LevelSlider {
   readonly #automatic = byId<HTMLButtonElement>("level-automatic");
   readonly #chart = byId<SVGSVGElement>("level-chart");
   readonly #session: () => Session | null;
+  #notes: readonly string[] = [];
 
   constructor(session: () => Session | null) {
     this.#session = session;
@@ -28,8 +29,9 @@ export class LevelSlider {
     byId("level-more").addEventListener("click", () => this.#step(1));
   }
 
-  /** Draw the chart of a new result. */
-  open(session: Session): void {
+  /** Draw the chart of a new result; ``notes`` are sentences on what limits it. */
+  open(session: Session, notes: readonly string[]): void {
+    this.#notes = notes;
     const values = session.tree.cutValues;
     const most = session.tree.maxSegments;
     this.#range.max = String(most);
@@ -59,7 +61,8 @@ export class LevelSlider {
     this.#range.setAttribute("aria-valuetext", `${plural(segments, "part")}${isLevel ? "" : ", edited by hand"}`);
     const isAutomatic = isLevel && segments === session.automaticSegments;
     this.#automatic.setAttribute("aria-pressed", String(isAutomatic));
-    this.#note.textContent = isLevel ? nextCut(session, segments) : "Edited by hand. Moving the slider replaces the edits.";
+    const state = isLevel ? nextCut(session, segments) : "Edited by hand. Moving the slider replaces the edits.";
+    this.#note.textContent = [state, ...this.#notes].join(" ");
     this.#chart.querySelector("#level-clip rect")!.setAttribute("width", String(segments - 1));
   }
 

@@ -2,7 +2,7 @@
 
 import { CleaveViewer, type LoadDetail, type View } from "../component/element";
 import { readAddress, readState, writeAddress, type Address } from "./address";
-import { getJob, headers, jobPath, type Job } from "./api";
+import { getJob, headers, jobPath, type Job, type Structure } from "./api";
 import { Beside } from "./beside";
 import { announce, byId, openDialog, toast } from "./dom";
 import { hasEnded } from "./follow";
@@ -154,11 +154,12 @@ class Page {
     this.#session = new Session(this.#viewer.tree!, automaticSegments, () => this.#changed());
     this.#viewer.setAttribute("label", name);
     byId("title").textContent = name;
-    byId("about").textContent = `${plural(faces, "face")} · ${bytes(job.input.size_bytes)}`;
+    const structure = structureOf(job.mesh?.report?.structure ?? null);
+    byId("about").textContent = [plural(faces, "face"), bytes(job.input.size_bytes), ...structure].join(" · ");
     document.title = `${stem(name)} – Cleave`;
     this.#start.show("none");
     this.#showWork(true);
-    this.#level.open(this.#session);
+    this.#level.open(this.#session, job.notes);
     if (this.#next.segments !== null) this.#session.restore({ cut: this.#session.tree.cutAt(this.#next.segments) }, {});
     this.#next = { segments: null, isBeside: false };
     this.#restore();
@@ -280,6 +281,14 @@ class Page {
     byId("work").hidden = !isShown;
     for (const element of document.querySelectorAll<HTMLElement>(".with-result")) element.hidden = !isShown;
   }
+}
+
+/** Return the counts of the structure of a file, such as "96 shells"; none if it is of one part. */
+function structureOf(structure: Structure | null): string[] {
+  const { shells, groups, materials } = structure ?? { shells: 0, groups: 0, materials: 0 };
+  if (Math.max(shells, groups, materials) <= 1) return [];
+  const counts: [number, string][] = [[shells, "shell"], [groups, "group"], [materials, "material"]];
+  return counts.filter(([number]) => number > 0).map(([number, one]) => plural(number, one));
 }
 
 await customElements.whenDefined("cleave-viewer");

@@ -6,7 +6,7 @@ import { explain, problemOf } from "./problems";
 import { capitalized } from "./text";
 
 /** Shown at once; all others are under "More". */
-const USUAL = ["affinity", "solver", "max_segments"];
+const USUAL = ["structure", "affinity", "solver", "max_segments"];
 
 export interface Run {
   readonly parameters: Readonly<Record<string, unknown>>;

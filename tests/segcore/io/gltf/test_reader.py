@@ -187,3 +187,15 @@ def test_instances_beyond_the_limits_are_refused_by_name_before_they_are_made() 
     ):
         with pytest.raises(LimitExceeded, match=name):
             read(asset.glb(), limits=limits)
+
+
+def test_the_structure_has_the_nodes_and_the_materials_of_the_primitives() -> None:
+    asset = square()
+    mesh = asset.document["meshes"][0]
+    first = {**mesh["primitives"][0], "material": 7}
+    mesh["primitives"] = [first, {**first, "material": 2}, {**first, "material": "none"}]
+    asset.root(mesh=0, name="same name")
+    structure = read(asset.glb()).structure
+    assert structure.group.tolist() == [0] * 6 + [1] * 6
+    assert structure.material.tolist() == [0, 0, 1, 1, -1, -1] * 2
+    assert read(square().glb()).structure.material is None

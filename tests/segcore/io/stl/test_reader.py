@@ -107,3 +107,9 @@ def test_counts_beyond_the_limits_are_refused_by_name(data: bytes) -> None:
     for limits, name in ((ReadLimits(max_faces=1), "max_faces = 1"), (ReadLimits(max_vertices=5), "max_vertices = 5")):
         with pytest.raises(LimitExceeded, match=name):
             read(data, limits=limits)
+
+
+def test_several_solids_are_groups_and_one_solid_is_none() -> None:
+    assert read(ASCII).structure is None
+    assert read(BINARY).structure is None
+    assert read(ASCII + b"\n" + ASCII).structure.group.tolist() == [0, 0, 1, 1]

@@ -16,6 +16,7 @@ from helpers.files.threemf import RELATIONSHIPS, TYPES, Model3MF, package, packa
 from segcore.errors import InvalidMesh, LimitExceeded, UnsupportedFormat
 from segcore.io import ReadLimits
 
+MATERIAL = "http://schemas.microsoft.com/3dmanufacturing/material/2015/02"
 IDENTITY = [1.0, 0, 0, 0, 1, 0, 0, 0, 1, 0, 0, 0]
 
 
@@ -280,3 +281,48 @@ def test_a_damaged_stream_is_refused() -> None:
     data[begin] ^= 0x55
     with pytest.raises(InvalidMesh):
         read(bytes(data))
+
+
+def test_every_placed_object_is_a_group() -> None:
+    model = square()
+    assembly = model.assembly([(1, None), (1, [*IDENTITY[:9], 2, 0, 0])])
+    model.item(assembly)
+    model.item(1, [*IDENTITY[:9], 4, 0, 0])
+    structure = read(model.package()).structure
+    assert structure.group.tolist() == [0, 0, 1, 1, 2, 2]
+    assert structure.material is None
+
+
+def painted(resource: str, triangles: list[str], default: str = "") -> list[int]:
+    """The materials of an object of triangles with attributes, after an object without any."""
+    model = square(attributes=f'xmlns:m="{MATERIAL}"')
+    model.objects.append(resource)
+    faces = "".join(f'<triangle v1="0" v2="1" v3="2" {attributes}/>' for attributes in triangles)
+    corners = "".join(f'<vertex x="{x}" y="{y}" z="{z}"/>' for x, y, z in SQUARE.vertices)
+    content = f"<mesh><vertices>{corners}</vertices><triangles>{faces}</triangles></mesh>"
+    model.objects.append(f'<object id="5" {default}>{content}</object>')
+    model.item(1)
+    model.item(5)
+    structure = read(model.package()).structure
+    assert structure.material[:2].tolist() == [-1, -1]
+    return structure.material[2:].tolist()
+
+
+def test_a_triangle_has_its_own_material_or_that_of_its_object() -> None:
+    base = '<basematerials id="9"><base name="a"/><base name="b"/></basematerials>'
+    triangles = ["", 'p1="1"', 'pid="9" p1="0"', 'pid="9" p1="1"']
+    assert painted(base, triangles, 'pid="9" pindex="0"') == [0, 1, 0, 1]
+    assert painted(base, triangles[2:]) == [0, 1]
+
+
+def test_a_uniform_colour_is_a_material_and_a_texture_is_one_as_a_whole() -> None:
+    colors = '<m:colorgroup id="9"><m:color color="#F00"/><m:color color="#0F0"/></m:colorgroup>'
+    corners = [
+        'pid="9" p1="0"',
+        'pid="9" p1="1" p2="1" p3="1"',
+        'pid="9" p1="0" p2="1" p3="1"',
+        'pid="9" p1="0" p2="0"',
+    ]
+    assert painted(colors, corners) == [0, 1, 2, 0]
+    texture = '<m:texture2dgroup id="9" texid="8"><m:tex2coord u="0" v="0"/></m:texture2dgroup>'
+    assert painted(texture, corners) == [0, 0, 0, 0]
