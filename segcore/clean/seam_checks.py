@@ -10,7 +10,9 @@ from segcore.clean.welding import WELD_TOLERANCE
 from segcore.graphs.surface_graph import connected_components, rows_of
 
 _LARGEST_GROWTH = 0.1  # share by which a seam may become longer if its tolerance is doubled; set by hand
-_SHORTEST_SEAM = 10.0  # least length of a seam in mean gaps; set by hand
+# Least lengths in mean gaps, set by hand: of a seam of two patches, and of all seams that are connected.
+_SHORTEST_RUN = 2.0
+_SHORTEST_NETWORK = 10.0
 
 
 def seams_of(matches: Matches, faces: IntArray, dual: DualEdges, borders: IntArray) -> Matches:
@@ -18,9 +20,9 @@ def seams_of(matches: Matches, faces: IntArray, dual: DualEdges, borders: IntArr
 
     The tolerance of a seam is found from the seam itself. A run is a set of matches between two patches (sets of faces
     that edges connect) that follow each other. Its tolerance is the largest gap in it so that a tolerance twice as large
-    makes the run at most a tenth longer: two borders that were one are near over their whole length, and borders
-    that merely pass each other diverge. Matches with larger gaps, and runs shorter than ten gaps, are left out. So is
-    what would give a patch two orientations.
+    makes the run at most a tenth longer: two borders that were one are near over their whole length, and borders that
+    merely pass each other diverge. What is farther apart is left out, and so are runs and networks of runs that are
+    short for their gaps, and what would give a patch two orientations.
 
     Parameters
     ----------
@@ -29,37 +31,55 @@ def seams_of(matches: Matches, faces: IntArray, dual: DualEdges, borders: IntArr
     if len(matches.gap) == 0:
         return matches
     patch, is_flipped = consistent_orientation(rows_of(dual.faces, len(faces)), dual)
-    sides = borders[matches.edges, 0]
-    between = np.sort(patch[sides], axis=1).astype(np.int64)
-    turned = matches.disagrees ^ is_flipped[sides[:, 0]] ^ is_flipped[sides[:, 1]]
     count = int(patch.max()) + 1
-    pair = between[:, 0] * count + between[:, 1]
-    run = _runs(matches, pair, faces, borders)
-    chosen = np.flatnonzero(_saturated(matches, run))
-    chosen = chosen[_orientable(pair[chosen], turned[chosen], matches.length[chosen], count)]
-    return matches.select(chosen)
+    matches = matches.select(_within_runs(matches, patch, faces, borders))
+    matches = matches.select(_within_networks(matches, faces, borders))
+    sides = borders[matches.edges, 0]
+    turned = matches.disagrees ^ is_flipped[sides[:, 0]] ^ is_flipped[sides[:, 1]]
+    return matches.select(_orientable(_pairs(matches, patch, borders), turned, matches.length, count))
 
 
-def _runs(matches: Matches, pair: LongArray, faces: IntArray, borders: IntArray) -> IntArray:
-    """(M,) the run of every match: those between the same patches whose edges have an end in common are connected."""
+def _pairs(matches: Matches, patch: IntArray, borders: IntArray) -> LongArray:
+    """(M,) the patches i <= j at every match, as the number i * number of patches + j."""
+    between = np.sort(patch[borders[matches.edges, 0]], axis=1).astype(np.int64)
+    pairs: LongArray = between[:, 0] * (int(patch.max()) + 1) + between[:, 1]
+    return pairs
+
+
+def _within_runs(matches: Matches, patch: IntArray, faces: IntArray, borders: IntArray) -> BoolArray:
+    """(M,) True for the matches within the tolerance of their run, if the run is long enough for its gaps."""
+    run = _connected(matches, _pairs(matches, patch, borders), faces, borders)
+    order = np.lexsort((matches.gap, run))
+    is_within = np.zeros(len(run), dtype=bool)
+    is_within[order] = _within_tolerance(run[order], matches.gap[order], matches.length[order])
+    return is_within & _is_long(run, matches, is_within, _SHORTEST_RUN)
+
+
+def _within_networks(matches: Matches, faces: IntArray, borders: IntArray) -> BoolArray:
+    """(M,) True for the matches of connected runs that are together long enough for their gaps."""
+    every = np.ones(len(matches.gap), dtype=bool)
+    network = _connected(matches, np.zeros(len(every), dtype=np.int64), faces, borders)
+    return _is_long(network, matches, every, _SHORTEST_NETWORK)
+
+
+def _is_long(group: IntArray, matches: Matches, counts: BoolArray, least: float) -> BoolArray:
+    """(M,) True if the matches of the group that count are together at least so many times as long as their mean gap."""
+    length = group_sums(group, matches.length * counts)
+    moment = group_sums(group, matches.length * matches.gap * counts)
+    long_enough: BoolArray = (length**2 >= least * moment)[group]
+    return long_enough
+
+
+def _connected(matches: Matches, kind: LongArray, faces: IntArray, borders: IntArray) -> IntArray:
+    """(M,) the set of every match: those of one kind (M,) whose edges have an end in common are connected."""
     face, corner = borders.T
     ends = np.stack([faces[face, corner], faces[face, (corner + 1) % 3]], axis=1)[matches.edges].reshape(-1, 4)
-    _, place = np.unique(np.stack([np.repeat(pair, 4), ends.ravel()], axis=1), axis=0, return_inverse=True)
-    match = np.repeat(np.arange(len(pair)), 4)
-    links = np.stack([match, len(pair) + place.ravel()], axis=1).astype(np.int32)
-    return connected_components(links, len(pair) + int(place.max()) + 1)[: len(pair)]
-
-
-def _saturated(matches: Matches, run: IntArray) -> BoolArray:
-    """(M,) True for the matches within the tolerance of their run, if the run is long enough for its gap."""
-    order = np.lexsort((matches.gap, run))
-    return_order = np.empty_like(order)
-    return_order[order] = np.arange(len(order))
-    is_within = _within_tolerance(run[order], matches.gap[order], matches.length[order])[return_order]
-    length = group_sums(run, matches.length * is_within)
-    moment = group_sums(run, matches.length * matches.gap * is_within)
-    long_enough: BoolArray = length**2 >= _SHORTEST_SEAM * moment
-    return is_within & long_enough[run]
+    _, kind = np.unique(kind, return_inverse=True)
+    key = np.repeat(kind, 4) * (int(faces.max()) + 1) + ends.ravel()
+    different, place = np.unique(key, return_inverse=True)
+    match = np.repeat(np.arange(len(kind)), 4)
+    links = np.stack([match, len(kind) + place], axis=1).astype(np.int32)
+    return connected_components(links, len(kind) + len(different))[: len(kind)]
 
 
 @njit(cache=True)

@@ -99,9 +99,7 @@ def _meeting(
     return pairs, distance, np.tile(length[matches.edges].min(axis=1), 2)
 
 
-def _with_matches(
-    dual: DualEdges, matches: Matches, faces: IntArray, borders: IntArray, group: IntArray
-) -> DualEdges:
+def _with_matches(dual: DualEdges, matches: Matches, faces: IntArray, borders: IntArray, group: IntArray) -> DualEdges:
     """The dual edges, and one for every pair of faces that match and have none, along the longest of their matches."""
     order = np.argsort(-matches.length, kind="stable")
     sides, ends = np.sort(borders[matches.edges[order], 0], axis=1), np.sort(group[matches.ends[order]], axis=1)
