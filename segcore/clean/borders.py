@@ -23,6 +23,12 @@ def open_edges(faces: IntArray, dual: DualEdges) -> IntArray:
     return np.argwhere(~paired).astype(np.int32)
 
 
+def ends_of(borders: IntArray, faces: IntArray) -> IntArray:
+    """(B, 2) the two vertices of open edges (B, 2), in the order of the face."""
+    face, corner = borders.T
+    return np.stack([faces[face, corner], faces[face, (corner + 1) % 3]], axis=1)
+
+
 @njit(cache=True)
 def _paired(faces: IntArray, pairs: IntArray, ends: IntArray) -> BoolArray:
     """(F, 3) True for the edges, each beginning at a corner, that another face has as well."""

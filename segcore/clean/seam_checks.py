@@ -4,82 +4,88 @@ import numpy as np
 from numba import njit
 
 from segcore.arrays import BoolArray, FloatArray, IntArray, LongArray, group_sums
+from segcore.clean.borders import ends_of
 from segcore.clean.seams import LARGEST_GAP, Matches
 from segcore.clean.topology import DualEdges, consistent_orientation
 from segcore.clean.welding import WELD_TOLERANCE
 from segcore.graphs.surface_graph import connected_components, rows_of
 
 _LARGEST_GROWTH = 0.1  # share by which a seam may become longer if its tolerance is doubled; set by hand
-# Least lengths in mean gaps, set by hand: of a seam of two patches, and of all seams that are connected.
-_SHORTEST_RUN = 2.0
-_SHORTEST_NETWORK = 10.0
+# Set by hand: a seam is at least so many mean gaps long, or the seams of one of its patches are at least this share of
+# the open edges of the patch.
+_SHORTEST_RUN = 10.0
+_ENCLOSED = 0.5
 
 
-def seams_of(matches: Matches, faces: IntArray, dual: DualEdges, borders: IntArray) -> Matches:
+def seams_of(matches: Matches, faces: IntArray, dual: DualEdges, borders: IntArray, length: FloatArray) -> Matches:
     """The matches that belong to seams.
 
     The tolerance of a seam is found from the seam itself. A run is a set of matches between two patches (sets of faces
-    that edges connect) that follow each other. Its tolerance is the largest gap in it so that a tolerance twice as large
-    makes the run at most a tenth longer: two borders that were one are near over their whole length, and borders that
-    merely pass each other diverge. What is farther apart is left out, and so are runs and networks of runs that are
-    short for their gaps, and what would give a patch two orientations.
+    that edges connect) that follow each other. Its tolerance is the largest gap in it so that a tolerance twice as
+    large makes the run at most a tenth longer: two borders that were one are near over their whole length, and borders
+    that merely pass each other diverge. What is farther apart is left out. So are runs that are short for their gaps or
+    contradict the orientations of the input, unless most of what is open at one of the patches is closed by seams; and
+    what would give a patch two orientations.
 
     Parameters
     ----------
     borders : (B, 2) face and first corner of every open edge.
+    length : (B,) of the open edges.
     """
     if len(matches.gap) == 0:
         return matches
     patch, is_flipped = consistent_orientation(rows_of(dual.faces, len(faces)), dual)
-    count = int(patch.max()) + 1
-    matches = matches.select(_within_runs(matches, patch, faces, borders))
-    matches = matches.select(_within_networks(matches, faces, borders))
     sides = borders[matches.edges, 0]
     turned = matches.disagrees ^ is_flipped[sides[:, 0]] ^ is_flipped[sides[:, 1]]
-    return matches.select(_orientable(_pairs(matches, patch, borders), turned, matches.length, count))
+    between = np.sort(patch[sides], axis=1)
+    run = _runs(matches, between, faces, borders)
+    is_within = _within_tolerances(matches, run)
+    is_long = _is_long(matches, run, is_within) & ~turned
+    share = _closed_share(matches.length * is_within, patch[borders[:, 0]], length, between)
+    chosen = np.flatnonzero(is_within & (is_long | (share >= _ENCLOSED)))
+    return matches.select(chosen[_orientable(between[chosen], turned[chosen], matches.length[chosen])])
 
 
-def _pairs(matches: Matches, patch: IntArray, borders: IntArray) -> LongArray:
-    """(M,) the patches i <= j at every match, as the number i * number of patches + j."""
-    between = np.sort(patch[borders[matches.edges, 0]], axis=1).astype(np.int64)
-    pairs: LongArray = between[:, 0] * (int(patch.max()) + 1) + between[:, 1]
-    return pairs
-
-
-def _within_runs(matches: Matches, patch: IntArray, faces: IntArray, borders: IntArray) -> BoolArray:
-    """(M,) True for the matches within the tolerance of their run, if the run is long enough for its gaps."""
-    run = _connected(matches, _pairs(matches, patch, borders), faces, borders)
+def _within_tolerances(matches: Matches, run: IntArray) -> BoolArray:
+    """(M,) True for the matches within the tolerance of their run."""
     order = np.lexsort((matches.gap, run))
     is_within = np.zeros(len(run), dtype=bool)
     is_within[order] = _within_tolerance(run[order], matches.gap[order], matches.length[order])
-    return is_within & _is_long(run, matches, is_within, _SHORTEST_RUN)
+    return is_within
 
 
-def _within_networks(matches: Matches, faces: IntArray, borders: IntArray) -> BoolArray:
-    """(M,) True for the matches of connected runs that are together long enough for their gaps."""
-    every = np.ones(len(matches.gap), dtype=bool)
-    network = _connected(matches, np.zeros(len(every), dtype=np.int64), faces, borders)
-    return _is_long(network, matches, every, _SHORTEST_NETWORK)
-
-
-def _is_long(group: IntArray, matches: Matches, counts: BoolArray, least: float) -> BoolArray:
-    """(M,) True if the matches of the group that count are together at least so many times as long as their mean gap."""
-    length = group_sums(group, matches.length * counts)
-    moment = group_sums(group, matches.length * matches.gap * counts)
-    long_enough: BoolArray = (length**2 >= least * moment)[group]
+def _is_long(matches: Matches, run: IntArray, is_within: BoolArray) -> BoolArray:
+    """(M,) True if the matches of the run that are within its tolerance are long for their mean gap."""
+    length = group_sums(run, matches.length * is_within)
+    moment = group_sums(run, matches.length * matches.gap * is_within)
+    long_enough: BoolArray = (length**2 >= _SHORTEST_RUN * moment)[run]
     return long_enough
 
 
-def _connected(matches: Matches, kind: LongArray, faces: IntArray, borders: IntArray) -> IntArray:
-    """(M,) the set of every match: those of one kind (M,) whose edges have an end in common are connected."""
-    face, corner = borders.T
-    ends = np.stack([faces[face, corner], faces[face, (corner + 1) % 3]], axis=1)[matches.edges].reshape(-1, 4)
-    _, kind = np.unique(kind, return_inverse=True)
-    key = np.repeat(kind, 4) * (int(faces.max()) + 1) + ends.ravel()
+def _closed_share(matched: FloatArray, patch: IntArray, length: FloatArray, between: IntArray) -> FloatArray:
+    """(M,) the share of the open edges of a patch that matches cover, of the two patches of a match the larger.
+
+    Parameters
+    ----------
+    matched : (M,) the length that every match covers.
+    patch, length : (B,) of the open edges.
+    between : (M, 2) the two patches.
+    """
+    count = int(patch.max()) + 1
+    closed = group_sums(between.ravel(), np.repeat(matched, 2), count)
+    share: FloatArray = (closed / np.maximum(group_sums(patch, length, count), np.finfo(float).tiny))[between]
+    return share.max(axis=1)
+
+
+def _runs(matches: Matches, between: IntArray, faces: IntArray, borders: IntArray) -> IntArray:
+    """(M,) the run of every match: those between the same patches (M, 2) whose edges have an end in common."""
+    _, pair = np.unique(between[:, 0].astype(np.int64) * (int(between.max()) + 1) + between[:, 1], return_inverse=True)
+    ends = ends_of(borders, faces)[matches.edges].reshape(-1, 4)
+    key = np.repeat(pair, 4) * (int(faces.max()) + 1) + ends.ravel()
     different, place = np.unique(key, return_inverse=True)
-    match = np.repeat(np.arange(len(kind)), 4)
-    links = np.stack([match, len(kind) + place], axis=1).astype(np.int32)
-    return connected_components(links, len(kind) + len(different))[: len(kind)]
+    match = np.repeat(np.arange(len(pair)), 4)
+    links = np.stack([match, len(pair) + place], axis=1).astype(np.int32)
+    return connected_components(links, len(pair) + len(different))[: len(pair)]
 
 
 @njit(cache=True)
@@ -106,19 +112,20 @@ def _within_tolerance(run: IntArray, gap: FloatArray, length: FloatArray) -> Boo
     return is_within
 
 
-def _orientable(pair: LongArray, turned: BoolArray, length: FloatArray, count: int) -> BoolArray:
+def _orientable(between: IntArray, turned: BoolArray, length: FloatArray) -> BoolArray:
     """(M,) True for the matches that leave every patch with one orientation relative to every other.
 
     Patches are joined in the order of the length of their seams, and what contradicts the seams before is left out.
 
     Parameters
     ----------
-    pair : (M,) the patches i <= j of both edges as i * count + j.
+    between : (M, 2) the patches at both edges, the smaller first.
     turned : (M,) one of the two patches has to be turned against the other.
     length : (M,)
-    count : number of patches.
     """
-    different, seam = np.unique(2 * pair + turned, return_inverse=True)
+    count = int(between.max(initial=0)) + 1
+    key = 2 * (between[:, 0].astype(np.int64) * count + between[:, 1]) + turned
+    different, seam = np.unique(key, return_inverse=True)
     order = np.argsort(-group_sums(seam, length), kind="stable")
     patches = np.stack([different // 2 // count, different // 2 % count, different % 2], axis=1)
     fits = np.zeros(len(different), dtype=bool)

@@ -11,7 +11,7 @@ import numpy as np
 from numba import njit
 
 from segcore.arrays import BoolArray, FloatArray, IntArray, LongArray
-from segcore.clean.borders import near_segments
+from segcore.clean.borders import ends_of, near_segments
 from segcore.clean.topology import DualEdges
 
 # Set by hand.
@@ -35,7 +35,9 @@ class Matches(NamedTuple):
 
     def select(self, chosen: BoolArray | LongArray) -> "Matches":
         """Return some of the matches, in the order of the selection."""
-        return Matches(*(values[chosen] for values in self))
+        return Matches(
+            self.edges[chosen], self.ends[chosen], self.gap[chosen], self.length[chosen], self.disagrees[chosen]
+        )
 
 
 def find_matches(vertices: FloatArray, faces: IntArray, dual: DualEdges, borders: IntArray) -> Matches:
@@ -49,7 +51,7 @@ def find_matches(vertices: FloatArray, faces: IntArray, dual: DualEdges, borders
     borders : (B, 2) face and first corner of every open edge.
     """
     face, corner = borders.T
-    ends = np.stack([faces[face, corner], faces[face, (corner + 1) % 3]], axis=1)
+    ends = ends_of(borders, faces)
     segments = vertices[ends]
     length = np.linalg.norm(segments[:, 1] - segments[:, 0], axis=1)
     pairs = _neighbours(vertices, ends, segments, np.minimum(_LARGEST_SHARE * length, 2 * LARGEST_GAP))
@@ -96,7 +98,7 @@ def are_adjacent(pairs: IntArray, dual: IntArray, count: int) -> BoolArray:
 def _measured(
     pairs: LongArray, segments: FloatArray, far: FloatArray, ends: IntArray
 ) -> tuple[Matches, FloatArray, FloatArray]:
-    """The pairs of edges that match, their costs (M,), and their intervals (M, 2, 2) on both edges as shares of them."""
+    """The pairs of edges that match, their costs (M,), and their intervals (M, 2, 2) as shares of both edges."""
     is_match, gap, length, disagrees, bounds, intervals, cost = _measure(pairs, segments, far, ends)
     matches = Matches(pairs.astype(np.int32), bounds, gap, length, disagrees)
     return matches.select(is_match), cost[is_match], intervals[is_match]

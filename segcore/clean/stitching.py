@@ -5,7 +5,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from segcore.arrays import BoolArray, FloatArray, IntArray
-from segcore.clean.borders import open_edges
+from segcore.clean.borders import ends_of, open_edges
 from segcore.clean.seam_checks import seams_of
 from segcore.clean.seams import Matches, are_adjacent, find_matches
 from segcore.clean.topology import DualEdges, dual_edges, first_equal_row
@@ -41,10 +41,12 @@ def stitch(vertices: FloatArray, faces: IntArray, dual: DualEdges) -> Stitched:
     borders = open_edges(faces, dual)
     if len(borders) < 2:
         return Stitched(vertices, faces, dual, 0, 0.0)
-    matches = seams_of(find_matches(vertices, faces, dual, borders), faces, dual, borders)
+    ends = ends_of(borders, faces)
+    length = np.linalg.norm(vertices[ends[:, 1]] - vertices[ends[:, 0]], axis=1)
+    matches = seams_of(find_matches(vertices, faces, dual, borders), faces, dual, borders, length)
     if len(matches.gap) == 0:
         return Stitched(vertices, faces, dual, 0, 0.0)
-    group = _welded(matches, vertices, faces, borders)
+    group = _welded(matches, ends, length, vertices, faces)
     if len(group) and int(group.max()) + 1 < len(group):
         vertices, faces = _means(vertices, group), group[faces]
         dual = dual_edges(faces, len(vertices))
@@ -53,9 +55,18 @@ def stitch(vertices: FloatArray, faces: IntArray, dual: DualEdges) -> Stitched:
     return Stitched(vertices, faces, dual, joined, float(matches.gap.max()))
 
 
-def _welded(matches: Matches, vertices: FloatArray, faces: IntArray, borders: IntArray) -> IntArray:
-    """(V,) the vertex 0, 1, ... that replaces every vertex; those that meet at a seam become one. Their order is kept."""
-    pairs, distance, shorter = _meeting(matches, vertices, faces, borders)
+def _welded(matches: Matches, ends: IntArray, length: FloatArray, vertices: FloatArray, faces: IntArray) -> IntArray:
+    """(V,) the vertex 0, 1, ... that replaces every vertex: those that meet at a seam become one, in the same order.
+
+    Parameters
+    ----------
+    ends, length : (B, 2) and (B,) of the open edges.
+    """
+    one, other = ends[matches.edges[:, 0]], ends[matches.edges[:, 1]]
+    other = np.where(matches.disagrees[:, None], other, other[:, ::-1])
+    pairs = np.concatenate([np.stack([one[:, k], other[:, k]], axis=1) for k in (0, 1)])
+    distance = np.linalg.norm(vertices[pairs[:, 0]] - vertices[pairs[:, 1]], axis=1)
+    shorter = np.tile(length[matches.edges].min(axis=1), 2)
     near = distance <= np.minimum(_WELD_REACH * matches.gap.max(), _WELD_SHARE * shorter)
     joined, which = np.unique(pairs[near], return_inverse=True)
     component = connected_components(which.reshape(-1, 2).astype(np.int32), len(joined))
@@ -83,20 +94,6 @@ def _of_spoilt_faces(group: IntArray, faces: IntArray) -> BoolArray:
     of_spoilt = np.zeros(len(group), dtype=bool)
     of_spoilt[moved[spoilt]] = True
     return of_spoilt
-
-
-def _meeting(
-    matches: Matches, vertices: FloatArray, faces: IntArray, borders: IntArray
-) -> tuple[IntArray, FloatArray, FloatArray]:
-    """Pairs (P, 2) of ends of matched edges that may be one vertex, their distances and the shorter edge (P,)."""
-    face, corner = borders.T
-    ends = np.stack([faces[face, corner], faces[face, (corner + 1) % 3]], axis=1)
-    length = np.linalg.norm(vertices[ends[:, 1]] - vertices[ends[:, 0]], axis=1)
-    one, other = ends[matches.edges[:, 0]], ends[matches.edges[:, 1]]
-    other = np.where(matches.disagrees[:, None], other, other[:, ::-1])
-    pairs = np.concatenate([np.stack([one[:, k], other[:, k]], axis=1) for k in (0, 1)])
-    distance = np.linalg.norm(vertices[pairs[:, 0]] - vertices[pairs[:, 1]], axis=1)
-    return pairs, distance, np.tile(length[matches.edges].min(axis=1), 2)
 
 
 def _with_matches(dual: DualEdges, matches: Matches, faces: IntArray, borders: IntArray, group: IntArray) -> DualEdges:
