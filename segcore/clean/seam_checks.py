@@ -13,7 +13,7 @@ from segcore.graphs.surface_graph import connected_components, rows_of
 _LARGEST_GROWTH = 0.1  # share by which a seam may become longer if its tolerance is doubled; set by hand
 # Set by hand: a seam is at least so many mean gaps long, or the seams of one of its patches are at least this share of
 # the open edges of the patch.
-_SHORTEST_RUN = 10.0
+_SHORTEST_RUN = 40.0
 _ENCLOSED = 0.5
 
 
