@@ -44,7 +44,7 @@ def _paired(faces: IntArray, pairs: IntArray, ends: IntArray) -> BoolArray:
 
 
 def near_segments(points: FloatArray, segments: FloatArray, radius: FloatArray) -> LongArray:
-    """(M, 2) the pairs of a segment and a point beside it within its radius, ordered by segment and point.
+    """(M, 2) the pairs of a segment and a point beside it within its radius.
 
     A point is beside a segment if its perpendicular foot lies between the ends, to a hundredth of the length.
 
@@ -69,8 +69,7 @@ def near_segments(points: FloatArray, segments: FloatArray, radius: FloatArray) 
         order = np.argsort(key, kind="stable")
         pairs = _in_grid(points, segments[chosen], radius[chosen], order, key[order], low, cell, shape)
         found.append(np.stack([chosen[pairs[:, 0]], pairs[:, 1]], axis=1))
-    pairs = np.concatenate(found)
-    return pairs[np.lexsort((pairs[:, 1], pairs[:, 0]))]
+    return np.concatenate(found)
 
 
 @njit(cache=True)

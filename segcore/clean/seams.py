@@ -55,16 +55,17 @@ def find_matches(vertices: FloatArray, faces: IntArray, dual: DualEdges, borders
     segments = vertices[ends]
     length = np.linalg.norm(segments[:, 1] - segments[:, 0], axis=1)
     pairs = _neighbours(vertices, ends, segments, np.minimum(_LARGEST_SHARE * length, 2 * LARGEST_GAP))
-    pairs = pairs[~are_adjacent(face[pairs], dual.faces, len(faces))]
     far = vertices[faces[face, (corner + 2) % 3]]
     candidates, cost, intervals = _measured(pairs, segments, far, ends)
+    is_new = _first_of_equals(candidates.edges) & ~are_adjacent(face[candidates.edges], dual.faces, len(faces))
+    candidates, cost, intervals = candidates.select(is_new), cost[is_new], intervals[is_new]
     order = np.argsort(cost, kind="stable")
     chosen = _uncovered(candidates.edges[order], intervals[order], len(borders))
     return candidates.select(order[chosen])
 
 
 def _neighbours(vertices: FloatArray, ends: IntArray, segments: FloatArray, radius: FloatArray) -> LongArray:
-    """(P, 2) the pairs of different open edges of which an end of one lies beside the other."""
+    """(P, 2) the pairs of different open edges of which an end of one lies beside the other; pairs may be repeated."""
     used, which = np.unique(ends, return_inverse=True)
     which = which.reshape(-1, 2)
     near = near_segments(vertices[used], segments, radius)
@@ -75,8 +76,16 @@ def _neighbours(vertices: FloatArray, ends: IntArray, segments: FloatArray, radi
     edge = np.repeat(near[:, 0], count)
     within = np.arange(len(edge)) - np.repeat(np.cumsum(count) - count, count)
     other = order[np.repeat(start[near[:, 1]], count) + within] // 2
-    key = np.unique(np.minimum(edge, other) * len(ends) + np.maximum(edge, other))
-    return np.stack([key // len(ends), key % len(ends)], axis=1)
+    pairs = np.stack([np.minimum(edge, other), np.maximum(edge, other)], axis=1)
+    return pairs[edge != other]
+
+
+def _first_of_equals(pairs: IntArray) -> BoolArray:
+    """(P,) True for the first of all pairs that are equal."""
+    _, first = np.unique(pairs[:, 0] * (np.int64(pairs.max(initial=0)) + 1) + pairs[:, 1], return_index=True)
+    is_first = np.zeros(len(pairs), dtype=bool)
+    is_first[first] = True
+    return is_first
 
 
 def are_adjacent(pairs: IntArray, dual: IntArray, count: int) -> BoolArray:

@@ -1,8 +1,8 @@
 """The cleaned surface that the method works on, and the map from its faces to those of the input.
 
 Every mesh can be cleaned. Vertices at the same place, at open borders also within a tolerance, are welded. Faces that
-lose a corner by that, and repeated faces, are left out and represented by another face. Faces are flipped so that
-neighbours agree and closed parts face outward.
+lose a corner by that, and repeated faces, are left out and represented by another face. Patches that meet across cracks
+and at T-junctions are stitched. Faces are flipped so that neighbours agree and closed parts face outward.
 """
 
 from dataclasses import dataclass
@@ -32,12 +32,12 @@ class Surface:
     normals: FloatArray  # (F, 3) unit normals, zero for slivers without a reliable direction
     areas: FloatArray  # (F,)
     edge_faces: IntArray  # (E, 2) the two faces at a dual edge
-    edge_vertices: IntArray  # (E, 2) the two vertices of the mesh edge that it crosses
+    edge_vertices: IntArray  # (E, 2) the two ends of the mesh edge, or part of one at a T-junction, that it crosses
     face_of_input: IntArray  # (F_input,) the face that represents every input face
     unit: float  # length of one unit here, in units of the input
     is_flipped: BoolArray  # (F,) the face has the opposite orientation in the input
     stitched_edges: int = 0  # open edges that were joined across cracks and T-junctions
-    stitched_gap: float = 0.0  # the widest gap that was bridged
+    stitched_gap: float = 0.0  # the widest gap between two of them
 
     def face_graph(self) -> SurfaceGraph:
         """The face dual graph with weights and lengths 1 and the areas as volumes."""
@@ -52,7 +52,7 @@ def build_surface(mesh: Mesh) -> Surface:
     """
     unit, scaled = _normalized(mesh.vertices)
     corners = weld(mesh.vertices, mesh.faces)[mesh.faces]
-    kept, representative = _distinct_faces(corners)
+    kept, representative = distinct_faces(corners)
     vertices, faces = _compacted(scaled, corners[kept])
     joined = stitch(vertices, faces, dual_edges(faces, len(vertices)))
     vertices, dual = joined.vertices, joined.dual
@@ -89,7 +89,7 @@ def _compacted(positions: FloatArray, faces: IntArray) -> tuple[FloatArray, IntA
     return positions[used], (np.cumsum(used, dtype=np.int32) - 1)[faces]
 
 
-def _distinct_faces(corners: IntArray) -> tuple[IntArray, IntArray]:
+def distinct_faces(corners: IntArray) -> tuple[IntArray, IntArray]:
     """The faces that are kept, and the index among them that represents every face, -1 if it has lost a corner."""
     a, b, c = corners.T
     proper = (a != b) & (b != c) & (c != a)
