@@ -11,9 +11,10 @@ from segcore.clean.welding import WELD_TOLERANCE
 from segcore.graphs.surface_graph import connected_components, rows_of
 
 _LARGEST_GROWTH = 0.1  # share by which a seam may become longer if its tolerance is doubled; set by hand
-# Set by hand: a seam is at least so many mean gaps long, or the seams of one of its patches are at least this share of
-# the open edges of the patch.
+# Set by hand: the least length of a seam in mean gaps, also if one of its patches has to be turned, unless the seams of
+# one of its patches are at least a share of the open edges of the patch.
 _SHORTEST_RUN = 40.0
+_SHORTEST_TURNED_RUN = 400.0
 _ENCLOSED = 0.5
 
 
@@ -23,9 +24,9 @@ def seams_of(matches: Matches, faces: IntArray, dual: DualEdges, borders: IntArr
     The tolerance of a seam is found from the seam itself. A run is a set of matches between two patches (sets of faces
     that edges connect) that follow each other. Its tolerance is the largest gap in it so that a tolerance twice as
     large makes the run at most a tenth longer: two borders that were one are near over their whole length, and borders
-    that merely pass each other diverge. What is farther apart is left out. So are runs that are short for their gaps or
-    contradict the orientations of the input, unless most of what is open at one of the patches is closed by seams; and
-    what would give a patch two orientations.
+    that merely pass each other diverge. What is farther apart is left out. So are runs that are short for their gaps,
+    with a higher limit if they contradict the orientations of the input, unless half of what is open at one of the
+    patches is closed by seams; and what would give a patch two orientations.
 
     Parameters
     ----------
@@ -40,7 +41,8 @@ def seams_of(matches: Matches, faces: IntArray, dual: DualEdges, borders: IntArr
     between = np.sort(patch[sides], axis=1)
     run = _runs(matches, between, faces, borders)
     is_within = _within_tolerances(matches, run)
-    is_long = _is_long(matches, run, is_within) & ~turned
+    least = np.where(turned, _SHORTEST_TURNED_RUN, _SHORTEST_RUN)
+    is_long = _are_long(matches, run, is_within, least)
     share = _closed_share(matches.length * is_within, patch[borders[:, 0]], length, between)
     chosen = np.flatnonzero(is_within & (is_long | (share >= _ENCLOSED)))
     return matches.select(chosen[_orientable(between[chosen], turned[chosen], matches.length[chosen])])
@@ -54,12 +56,12 @@ def _within_tolerances(matches: Matches, run: IntArray) -> BoolArray:
     return is_within
 
 
-def _is_long(matches: Matches, run: IntArray, is_within: BoolArray) -> BoolArray:
-    """(M,) True if the matches of the run that are within its tolerance are long for their mean gap."""
+def _are_long(matches: Matches, run: IntArray, is_within: BoolArray, least: FloatArray) -> BoolArray:
+    """(M,) True if the matches of a run that are within its tolerance have a least length (M,) in their mean gaps."""
     length = group_sums(run, matches.length * is_within)
     moment = group_sums(run, matches.length * matches.gap * is_within)
-    long_enough: BoolArray = (length**2 >= _SHORTEST_RUN * moment)[run]
-    return long_enough
+    are_long: BoolArray = (length**2)[run] >= least * moment[run]
+    return are_long
 
 
 def _closed_share(matched: FloatArray, patch: IntArray, length: FloatArray, between: IntArray) -> FloatArray:

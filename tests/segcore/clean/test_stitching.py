@@ -75,6 +75,17 @@ def test_gaps_may_differ_along_a_mesh() -> None:
     assert components(Mesh(own.vertices + gap * rng.uniform(-1, 1, own.vertices.shape), own.faces)) == 1
 
 
+def test_half_pipes_that_face_each_other_wrongly_are_joined_into_a_pipe() -> None:
+    flat = sheet([0, 0, 0], [0.5, 0, 0], [0, 1, 0], (16, 5))
+    angle = 2 * np.pi * flat.vertices[:, 0]
+    half = np.stack([np.cos(angle), np.sin(angle), 3 * flat.vertices[:, 1]], axis=1)
+    other = half * [-1, -1, 1] + [0, 1e-4, 0]
+    surface = build_surface(shapes.joined(Mesh(half, flat.faces), Mesh(other, flat.faces[:, ::-1])).mesh)
+    assert connected_components(surface.edge_faces, len(surface.faces)).max() == 0
+    outward = np.einsum("ij,ij->i", surface.normals, surface.vertices[surface.faces].mean(axis=1) * [1, 1, 0])
+    assert (outward > 0).all() or (outward < 0).all()
+
+
 def test_every_triangle_may_be_a_patch() -> None:
     ball = shapes.icosphere(3)
     cut = patched(ball, np.arange(len(ball.faces), dtype=np.int32), 1e-3, np.random.default_rng(1), turn=True)
@@ -101,14 +112,16 @@ def test_a_t_junction_has_a_dual_edge_for_every_interval() -> None:
     np.testing.assert_allclose(np.linalg.norm(ends[:, 0] - ends[:, 1], axis=1), [1 / 3] * 3)
 
 
-def test_a_surface_without_seams_is_returned_as_it_is() -> None:
-    for mesh in (shapes.icosphere(2), tube(1.0, 0.0, 2.0, 24)):
-        dual = dual_edges(mesh.faces, len(mesh.vertices))
-        joined = stitch(mesh.vertices / 2, mesh.faces, dual)
-        if joined.edges == 0:
-            assert joined.faces is mesh.faces
-            assert joined.dual is dual
-    assert stitch(shapes.icosphere(1).vertices / 2, shapes.icosphere(1).faces, dual).edges == 0
+@pytest.mark.parametrize("faces", [320, 300], ids=["closed", "with a hole"])
+def test_a_surface_without_seams_is_returned_as_it_is(faces: int) -> None:
+    ball = shapes.icosphere(2)
+    dual = dual_edges(ball.faces[:faces], len(ball.vertices))
+    vertices, kept = ball.vertices / 2, ball.faces[:faces]
+    joined = stitch(vertices, kept, dual)
+    assert joined.vertices is vertices
+    assert joined.faces is kept
+    assert joined.dual is dual
+    assert (joined.edges, joined.gap) == (0, 0.0)
 
 
 APART = {
@@ -154,7 +167,7 @@ def test_a_strip_narrower_than_the_tolerance_is_not_joined_to_itself() -> None:
 
 def test_of_three_sheets_at_a_line_the_two_that_continue_each_other_are_joined() -> None:
     """The third one stands on the seam and keeps its border."""
-    left, right = sheet([0, 0, 0], [1, 0, 0], [0, 1, 0], (5, 2)), sheet([0, 0, 0], [1, 0, 0], [0, -1, 0], (6, 2))
+    left, right = sheet([0, 0, 0], [1, 0, 0], [0, 1, 0], (5, 2)), sheet([0, -1, 0], [1, 0, 0], [0, 1, 0], (6, 2))
     surface = build_surface(shapes.joined(left, right, sheet([0, 0, 0], [1, 0, 0], [0, 0, 1], (7, 2))).mesh)
     component = connected_components(surface.edge_faces, len(surface.faces))
     assert component[0] == component[len(left.faces)] != component[-1]
