@@ -4,8 +4,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from segcore.arrays import BoolArray, FloatArray, IntArray
-from segcore.clean.surface import Surface, build_surface
+from segcore.arrays import FloatArray
+from segcore.clean.surface import Surface, build_surface, distinct_faces
 from segcore.clean.topology import dual_edges
 from segcore.clean.welding import weld
 from segcore.coarsen.authored import MOST_AUTHORED, authored_parts
@@ -41,7 +41,7 @@ class StructureCounts:
 class MeshReport:
     """Counts and measures of a mesh as it was read. None of the defects prevents a segmentation.
 
-    Edges and components are counted after welding, without degenerate and duplicate faces.
+    Edges are counted after welding and before stitching, components after both, without degenerate and duplicate faces.
     """
 
     vertices: int
@@ -63,6 +63,8 @@ class MeshReport:
     volume: float | None  # in cubed units of the mesh; None if the surface is not closed
     groups: tuple[str, ...]  # names of the groups of the file
     structure: StructureCounts | None = None  # None in reports of earlier versions
+    stitched_edges: int = 0  # border edges that are joined to others across cracks and at T-junctions
+    stitched_gap: float = 0.0  # widest gap between two of them, in units of the mesh: the tolerance that was found
 
 
 def mesh_report(mesh: Mesh, surface: Surface | None = None) -> MeshReport:
@@ -76,10 +78,11 @@ def mesh_report(mesh: Mesh, surface: Surface | None = None) -> MeshReport:
     corners = weld(mesh.vertices, mesh.faces)[mesh.faces]
     a, b, c = corners.T
     proper = (a != b) & (b != c) & (c != a)
-    dual = dual_edges(surface.faces, len(surface.vertices))
+    faces = surface.faces if surface.stitched_edges == 0 else corners[distinct_faces(corners)[0]]
+    dual = dual_edges(faces, len(mesh.vertices))
     non_manifold = len(np.unique(dual.vertices[~dual.is_manifold], axis=0))
     pairs, chained = int(dual.is_manifold.sum()), int((~dual.is_manifold).sum())
-    border = 3 * len(surface.faces) - 2 * pairs - chained - non_manifold  # m chained faces have m - 1 dual edges
+    border = 3 * len(faces) - 2 * pairs - chained - non_manifold  # m chained faces have m - 1 dual edges
     used = np.zeros(len(mesh.vertices), dtype=bool)
     used[mesh.faces] = True
     representatives = np.zeros(len(mesh.vertices), dtype=bool)
@@ -96,7 +99,7 @@ def mesh_report(mesh: Mesh, surface: Surface | None = None) -> MeshReport:
         degenerate_faces=int((~proper).sum()),
         sliver_faces=_slivers(surface) if proper.any() else 0,
         duplicate_faces=int(proper.sum()) - len(surface.faces) if proper.any() else 0,
-        flipped_faces=_flipped(corners[proper], surface, proper) if proper.any() else 0,
+        flipped_faces=int(surface.is_flipped.sum()) if proper.any() else 0,
         components=counts.shells,
         border_edges=border if proper.any() else 0,
         non_manifold_edges=non_manifold,
@@ -107,6 +110,8 @@ def mesh_report(mesh: Mesh, surface: Surface | None = None) -> MeshReport:
         volume=_volume(surface) if is_closed else None,
         groups=mesh.appearance.group_names if mesh.appearance else (),
         structure=counts,
+        stitched_edges=surface.stitched_edges,
+        stitched_gap=surface.stitched_gap * surface.unit,
     )
 
 
@@ -156,14 +161,6 @@ def _polygons(mesh: Mesh) -> int:
 
 def _slivers(surface: Surface) -> int:
     return int((~surface.normals.any(axis=1)).sum())
-
-
-def _flipped(corners: IntArray, surface: Surface, proper: BoolArray) -> int:
-    """The number of faces with the opposite orientation in the surface."""
-    _, first = np.unique(surface.face_of_input[proper], return_index=True)
-    before, after = corners[first], surface.faces
-    # The surface renumbers the welded corners, but keeps their order.
-    return int(((before[:, 1] < before[:, 2]) != (after[:, 1] < after[:, 2])).sum())
 
 
 def _volume(surface: Surface) -> float:

@@ -1,8 +1,8 @@
 """The cleaned surface that the method works on, and the map from its faces to those of the input.
 
 Every mesh can be cleaned. Vertices at the same place, at open borders also within a tolerance, are welded. Faces that
-lose a corner by that, and repeated faces, are left out and represented by another face. Faces are flipped so that
-neighbours agree and closed parts face outward.
+lose a corner by that, and repeated faces, are left out and represented by another face. Patches that meet across cracks
+and at T-junctions are stitched. Faces are flipped so that neighbours agree and closed parts face outward.
 """
 
 from dataclasses import dataclass
@@ -10,8 +10,9 @@ from dataclasses import dataclass
 import numpy as np
 from scipy.spatial import KDTree
 
-from segcore.arrays import FloatArray, IntArray
+from segcore.arrays import BoolArray, FloatArray, IntArray, group_sums
 from segcore.clean.orientation import flipped, patch_volumes, reliable_normals
+from segcore.clean.stitching import stitch
 from segcore.clean.topology import DualEdges, consistent_orientation, dual_edges, first_equal_row
 from segcore.clean.welding import weld
 from segcore.graphs.surface_graph import SurfaceGraph, rows_of
@@ -31,9 +32,12 @@ class Surface:
     normals: FloatArray  # (F, 3) unit normals, zero for slivers without a reliable direction
     areas: FloatArray  # (F,)
     edge_faces: IntArray  # (E, 2) the two faces at a dual edge
-    edge_vertices: IntArray  # (E, 2) the two vertices of the mesh edge that it crosses
+    edge_vertices: IntArray  # (E, 2) the two ends of the mesh edge, or part of one at a T-junction, that it crosses
     face_of_input: IntArray  # (F_input,) the face that represents every input face
     unit: float  # length of one unit here, in units of the input
+    is_flipped: BoolArray  # (F,) the face has the opposite orientation in the input
+    stitched_edges: int = 0  # open edges that were joined across cracks and T-junctions
+    stitched_gap: float = 0.0  # the widest gap between two of them
     authored: IntArray | None = None  # (F,) the part of the structure of the file, if the cuts follow it
 
     def face_graph(self) -> SurfaceGraph:
@@ -49,13 +53,27 @@ def build_surface(mesh: Mesh) -> Surface:
     """
     unit, scaled = _normalized(mesh.vertices)
     corners = weld(mesh.vertices, mesh.faces)[mesh.faces]
-    kept, representative = _distinct_faces(corners)
+    kept, representative = distinct_faces(corners)
     vertices, faces = _compacted(scaled, corners[kept])
-    dual = dual_edges(faces, len(vertices))
-    faces = _oriented(vertices, faces, dual)
+    joined = stitch(vertices, faces, dual_edges(faces, len(vertices)))
+    vertices, dual = joined.vertices, joined.dual
+    is_flipped = _turned(vertices, joined.faces, dual)
+    faces = flipped(joined.faces, is_flipped)
     normals, areas = reliable_normals(vertices, faces)
     face_of_input = _with_lost_faces(representative, corners, scaled)
-    return Surface(vertices, faces, normals, areas, dual.faces, dual.vertices, face_of_input, unit)
+    return Surface(
+        vertices,
+        faces,
+        normals,
+        areas,
+        dual.faces,
+        dual.vertices,
+        face_of_input,
+        unit,
+        is_flipped,
+        joined.edges,
+        joined.gap,
+    )
 
 
 def _normalized(vertices: FloatArray) -> tuple[float, FloatArray]:
@@ -72,7 +90,7 @@ def _compacted(positions: FloatArray, faces: IntArray) -> tuple[FloatArray, IntA
     return positions[used], (np.cumsum(used, dtype=np.int32) - 1)[faces]
 
 
-def _distinct_faces(corners: IntArray) -> tuple[IntArray, IntArray]:
+def distinct_faces(corners: IntArray) -> tuple[IntArray, IntArray]:
     """The faces that are kept, and the index among them that represents every face, -1 if it has lost a corner."""
     a, b, c = corners.T
     proper = (a != b) & (b != c) & (c != a)
@@ -116,9 +134,17 @@ def _with_lost_faces(representative: IntArray, corners: IntArray, positions: Flo
     return complete
 
 
-def _oriented(vertices: FloatArray, faces: IntArray, dual: DualEdges) -> IntArray:
-    """Faces flipped so that each patch agrees within itself and encloses a positive volume."""
+def _turned(vertices: FloatArray, faces: IntArray, dual: DualEdges) -> BoolArray:
+    """(F,) True for faces to flip so that each patch agrees within itself and encloses a positive volume.
+
+    A patch that encloses next to nothing keeps the orientation that most of its area has.
+    """
     patch, is_flipped = consistent_orientation(rows_of(dual.faces, len(faces)), dual)
     area, volume = patch_volumes(vertices, faces, patch, is_flipped, int(patch.max()) + 1)
-    inside_out = volume < -_CLEARLY_INSIDE_OUT * np.maximum(area, np.finfo(float).tiny) ** 1.5
-    return flipped(faces, is_flipped != inside_out[patch])
+    clear = _CLEARLY_INSIDE_OUT * np.maximum(area, np.finfo(float).tiny) ** 1.5
+    inside_out = volume < -clear
+    if is_flipped.any():
+        flipped_area = group_sums(patch, reliable_normals(vertices, faces)[1] * is_flipped)
+        inside_out |= (np.abs(volume) <= clear) & (2.0 * flipped_area > area)
+    turned: BoolArray = is_flipped != inside_out[patch]
+    return turned

@@ -42,6 +42,9 @@ def _lines(name: str, report: MeshReport) -> list[str]:
         f"size {size}, area {report.area:g}" + ("" if report.volume is None else f", volume {report.volume:g}"),
         f"{_count(report.components, 'component')}, {'closed' if report.is_closed else 'not closed'}",
     ]
+    if report.stitched_edges:
+        edges = _count(report.stitched_edges, "border edge")
+        lines.append(f"{edges} stitched, across gaps of up to {report.stitched_gap:.3g}")
     lines += [f"{_count(number, what)}, {meaning}" for number, what, meaning in _defects(report) if number]
     if report.structure is not None and report.structure.has_parts:
         lines.append(f"structure: {report.structure.in_words()}")
