@@ -91,4 +91,6 @@ def _of_input(surface: Surface, tree: Tree) -> Hierarchy:
         face_count=face_count.astype(np.int32),
         face_leaf=leaf_of_input,
         automatic_segments=tree.automatic_segments,
+        step=tree.step,
+        limit_reached=tree.limit_reached,
     )
