@@ -13,6 +13,7 @@ from segcore.coarsen.clusters import Clusters, cluster_nodes
 from segcore.coarsen.contacts import Links
 from segcore.cut.bisection import bisect
 from segcore.cut.rules import split_rule
+from segcore.cut.siblings import sibling_steps
 from segcore.graphs.mesh_graph import MeshGraph
 from segcore.graphs.tree import Tree
 from segcore.hierarchy import Hierarchy
@@ -59,6 +60,7 @@ def segment(
     rule = split_rule(clusters, chosen, rng)
     after_splits = partial(progress.after_splits, chosen.max_segments)
     tree = bisect(clusters.graph, clusters.points, rule, chosen.max_segments, after_splits)
+    tree = replace(tree, step=sibling_steps(clusters.graph, clusters.points, tree))
     progress("label")
     tree = _over_faces(tree, clusters, nodes, links, surface)
     hierarchy = _of_input(surface, tree)
