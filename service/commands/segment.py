@@ -15,6 +15,7 @@ from segcore.levels import Fineness
 from service.commands.arguments import add_level, add_parameters
 from service.commands.console import ProgressBar, say
 from service.commands.outputs import add_outputs, check_outputs, output_options, write_file, write_model
+from service.commands.summary import level_summary
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
@@ -52,9 +53,8 @@ def run(choices: argparse.Namespace) -> None:
         hierarchy = segcore.segment(mesh, parameters, bar)
         segments = fineness.segments_of(hierarchy)
         _write(choices, mesh, hierarchy, segments)
-    chosen = "chosen automatically" if fineness.is_automatic else "as requested"
     say(f"{choices.mesh.name}: {len(mesh.faces)} faces, {len(mesh.vertices)} vertices")
-    say(f"{segments} segments, {chosen}; 1 to {hierarchy.max_segments} are possible")
+    say(level_summary(hierarchy, segments, fineness))
     for path in outputs:
         say(f"wrote {path}")
 
