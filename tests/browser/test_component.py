@@ -35,6 +35,19 @@ def test_a_file_of_one_level_is_shown_too(visit: Visit, job: str) -> None:
     assert evaluate(visit, "[v.parts.length, v.tree.maxSegments]") == [5, 5]
 
 
+def test_the_tree_is_that_of_the_service_at_all_levels_and_at_one(visit: Visit, job: str) -> None:
+    """Nodes inside a step are not in the file, but in the tree."""
+    facts = "v.tree.nodes.map((n) => [n.id, n.parent, n.children, n.level, n.label, n.faces, n.step, n.cutValue])"
+    embed(visit, job)
+    whole = evaluate(visit, facts)
+    nodes = visit.page.evaluate("(path) => fetch(path).then((a) => a.json())", f"v1/jobs/{job}/hierarchy")["nodes"]
+    names = ("id", "parent", "children", "level", "label", "faces", "step", "cut_value")
+    assert whole == [[-1 if name == "parent" and not node["id"] else node[name] for name in names] for node in nodes]
+    embed(visit, job, query="?segments=5")
+    part = evaluate(visit, facts)
+    assert [fact[:2] + fact[3:6] for fact in part] == [fact[:2] + fact[3:6] for fact in whole[:9]]
+
+
 def test_events_report_loading_hovering_and_selecting(visit: Visit, job: str) -> None:
     embed(visit, job)
     visit.page.evaluate(
@@ -53,7 +66,8 @@ def test_events_report_loading_hovering_and_selecting(visit: Visit, job: str) ->
     visit.page.wait_for_function("() => events.length > 1")
     visit.page.mouse.click(200, 150)
     events = visit.page.evaluate("events")
-    assert events[0] == ["cleave-load", {"maxSegments": 64, "automaticSegments": 7, "faces": 5120}]
+    loaded = {"maxSegments": 64, "automaticSegments": 7, "limitReached": True, "faces": 5120}
+    assert events[0] == ["cleave-load", loaded]
     assert [name for name, _ in events[1:]] == ["cleave-hover", "cleave-select"]
     assert events[2][1]["parts"] == [events[1][1]["part"]]
 

@@ -148,13 +148,13 @@ class Page {
     this.#viewer.setAttribute("src", source);
   }
 
-  #loaded({ automaticSegments, faces }: LoadDetail): void {
+  #loaded(detail: LoadDetail): void {
     const job = this.#job!;
     const name = job.input.file_name ?? "mesh";
-    this.#session = new Session(this.#viewer.tree!, automaticSegments, () => this.#changed());
+    this.#session = new Session(this.#viewer.tree!, detail, () => this.#changed());
     this.#viewer.setAttribute("label", name);
     byId("title").textContent = name;
-    byId("about").textContent = `${plural(faces, "face")} · ${bytes(job.input.size_bytes)}`;
+    byId("about").textContent = `${plural(detail.faces, "face")} · ${bytes(job.input.size_bytes)}`;
     document.title = `${stem(name)} – Cleave`;
     this.#start.show("none");
     this.#showWork(true);
