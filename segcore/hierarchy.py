@@ -1,11 +1,12 @@
 """The binary tree of cuts: labels at any number of segments without recomputation."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 
 import numpy as np
 
 from segcore.arrays import FloatArray, IntArray
 from segcore.errors import InvalidParameters
+from segcore.nary import nary_children, own_steps
 
 
 def renumbered_nodes(order: IntArray) -> IntArray:
@@ -29,6 +30,10 @@ class Hierarchy:
     Node 0 is the whole mesh. Split s (0, 1, ...) cuts node ``split_node[s]`` in two: the larger part becomes node
     2 s + 1 and the smaller one node 2 s + 2. After splits 0..s there are s + 2 segments. The node numbers therefore
     determine the order of the splits, the parents and the level at which a node appears.
+
+    The splits that cut off equal parts belong to one step. Steps have the numbers 0, 1, ... in the order of their first
+    splits. ``max_segments`` is the number at which the hierarchy ends: because no sensible cut is left, or because of
+    the limit that was set (``limit_reached``).
     """
 
     split_node: IntArray  # (S,) the node that split s cuts, split_node[s] <= 2 s
@@ -37,6 +42,13 @@ class Hierarchy:
     face_count: IntArray  # (2 S + 1,) input faces of every node
     face_leaf: IntArray  # (F,) the leaf node of every input face
     automatic_segments: int  # the number of segments chosen when none is given
+    step: IntArray = field(default_factory=lambda: own_steps(0))  # (S,) the step 0, 1, ... of each split; see ``nary``
+    limit_reached: bool | None = None  # whether a limit of the number left sensible cuts out; None: not known
+
+    def __post_init__(self) -> None:
+        """If no steps are given, every split is a step."""
+        if len(self.step) == 0:
+            object.__setattr__(self, "step", own_steps(len(self.split_node)))
 
     @property
     def max_segments(self) -> int:
@@ -54,6 +66,21 @@ class Hierarchy:
         children = np.full((self.node_count, 2), -1, dtype=np.int32)
         children[self.split_node] = 1 + np.arange(2 * len(self.split_node), dtype=np.int32).reshape(-1, 2)
         return children
+
+    @property
+    def nary_children(self) -> list[list[int]]:
+        """The children of every node in the tree of steps, see :func:`segcore.nary.nary_children`."""
+        return nary_children(self.split_node, self.step)
+
+    @property
+    def step_ends(self) -> IntArray:
+        """(T + 1,) the numbers of segments that are worth offering: 1, and those after the last split of each step.
+
+        In between, some of a set of equal parts are cut off and others are not.
+        """
+        last = np.zeros(int(self.step.max(initial=-1)) + 1, dtype=np.int32)
+        np.maximum.at(last, self.step, np.arange(2, self.max_segments + 1, dtype=np.int32))
+        return np.concatenate([np.array([1], dtype=np.int32), np.sort(last)])
 
     @property
     def parent(self) -> IntArray:

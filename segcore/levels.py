@@ -1,13 +1,14 @@
 """Levels of a hierarchy: a requested number of segments, and hierarchies whose first splits a user has selected."""
 
 from collections.abc import Collection
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
 from segcore.arrays import IntArray
 from segcore.errors import InvalidParameters
 from segcore.hierarchy import Hierarchy, renumbered_nodes
+from segcore.nary import numbered_steps
 
 
 @dataclass(frozen=True, slots=True)
@@ -49,7 +50,8 @@ def keep_splits(hierarchy: Hierarchy, splits: Collection[int]) -> Hierarchy:
     """The hierarchy with some splits moved to the front; its automatic number of segments makes exactly these splits.
 
     Split s makes the nodes 2 s + 1 and 2 s + 2. The other splits follow in their old order, so that every level is
-    still a cut through the same tree. Nodes and labels are renumbered.
+    still a cut through the same tree. Nodes and labels are renumbered. If only some splits of a step are moved, the
+    others become a step of their own.
 
     Parameters
     ----------
@@ -68,17 +70,21 @@ def keep_splits(hierarchy: Hierarchy, splits: Collection[int]) -> Hierarchy:
         if (made_by := (int(hierarchy.split_node[split]) - 1) // 2) >= 0 and made_by not in splits:
             raise InvalidParameters(f"Split {split} cuts a part that split {made_by} makes: give both or neither.")
     order = np.array([*chosen, *sorted(set(range(count)) - set(chosen))], dtype=np.int32)
-    return _reordered(hierarchy, order, len(chosen) + 1)
+    return _reordered(hierarchy, order, len(chosen))
 
 
-def _reordered(hierarchy: Hierarchy, order: IntArray, segments: int) -> Hierarchy:
+def _reordered(hierarchy: Hierarchy, order: IntArray, moved: int) -> Hierarchy:
+    """The hierarchy with its splits in another order, of which the first ``moved`` have been moved to the front."""
     new_node = renumbered_nodes(order)
     old_node = np.argsort(new_node)
-    return Hierarchy(
+    is_moved = np.arange(len(order)) < moved
+    return replace(
+        hierarchy,
         split_node=new_node[hierarchy.split_node[order]],
         cut_value=hierarchy.cut_value[order],
         area=hierarchy.area[old_node],
         face_count=hierarchy.face_count[old_node],
         face_leaf=new_node[hierarchy.face_leaf],
-        automatic_segments=segments,
+        automatic_segments=moved + 1,
+        step=numbered_steps(2 * hierarchy.step[order] + is_moved),
     )

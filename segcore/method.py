@@ -14,6 +14,7 @@ from segcore.coarsen.clusters import Clusters, cluster_nodes
 from segcore.coarsen.contacts import Links
 from segcore.cut.bisection import bisect
 from segcore.cut.rules import split_rule
+from segcore.cut.siblings import sibling_steps
 from segcore.graphs.mesh_graph import MeshGraph
 from segcore.graphs.tree import Tree
 from segcore.hierarchy import Hierarchy
@@ -65,6 +66,7 @@ def segment(
     rule = split_rule(surface, clusters, chosen, rng)
     after_splits = partial(progress.after_splits, chosen.max_segments)
     tree = bisect(clusters.graph, clusters.points, rule, chosen.max_segments, after_splits, clusters.authored)
+    tree = replace(tree, step=sibling_steps(clusters.graph, clusters.points, tree))
     progress("label")
     tree = _over_faces(tree, clusters, nodes, links, surface)
     hierarchy = _of_input(surface, tree)
@@ -97,4 +99,6 @@ def _of_input(surface: Surface, tree: Tree) -> Hierarchy:
         face_count=face_count.astype(np.int32),
         face_leaf=leaf_of_input,
         automatic_segments=tree.automatic_segments,
+        step=tree.step,
+        limit_reached=tree.limit_reached,
     )

@@ -4,7 +4,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from segcore.arrays import FloatArray
+from segcore.arrays import FloatArray, IntArray
 from segcore.clean.surface import Surface, build_surface, distinct_faces
 from segcore.clean.topology import dual_edges
 from segcore.clean.welding import weld

@@ -68,6 +68,10 @@ class JobDocument(BaseModel):
     mesh: MeshSummary | None = Field(description="Null until the job has succeeded.")
     max_segments: int | None = Field(description="The largest possible number of segments.")
     automatic_segments: int | None = Field(description="The number of segments if a request gives none.")
+    limit_reached: bool | None = Field(
+        description="Whether the hierarchy ends at max_segments because of the parameter of that name, although "
+        "sensible cuts are left. Null if that is not known, as in jobs of earlier versions."
+    )
     notes: list[str] = Field(
         description="Sentences on what limits the result, for people: for example that a file has more shells than "
         "segments can be."
@@ -142,6 +146,11 @@ class HierarchyNode(BaseModel):
     area: float = Field(description="In squared units of the mesh.")
     faces: int
     cut_value: float | None = Field(description="Of the cut that splits the node; null for a leaf.")
+    step: int | None = Field(description="Of the cut that splits the node; null for a leaf.")
+    nary_children: list[int] = Field(
+        description="Its children in the n-ary tree from node 0, in which equal parts are siblings: the nodes just "
+        "below the cuts of its step. Empty for a leaf and for a node inside a step, which the n-ary tree leaves out."
+    )
 
 
 class CurvePoint(BaseModel):
@@ -153,11 +162,22 @@ class CurvePoint(BaseModel):
         "components, high if the cut is arbitrary."
     )
     node: int = Field(description="The node that is split.")
+    step: int = Field(description="The step of the cut.")
 
 
 class HierarchyDocument(BaseModel):
     max_segments: int
     automatic_segments: int
+    limit_reached: bool | None = Field(
+        description="Whether the hierarchy ends because of the parameter max_segments, although sensible cuts are "
+        "left; null if that is not known."
+    )
+    steps: list[int] = Field(
+        description="The step of each cut. Cuts that part equal things, such as the legs of a table, have one step."
+    )
+    step_ends: list[int] = Field(
+        description="The numbers of segments that are worth offering: 1, and those after the last cut of each step."
+    )
     cut_values: list[float | None] = Field(description="Entry i belongs to the cut from i + 1 to i + 2 segments.")
     curve: list[CurvePoint] = Field(description="The same by number of segments: cuts after a jump are arbitrary.")
     nodes: list[HierarchyNode]
@@ -227,13 +247,12 @@ def _is_running(attempts: list[Attempt], activity: Activity | None) -> bool:
 
 
 def _result_fields(job: Job, outcome: Outcome | None) -> dict[str, Any]:
-    fields: dict[str, Any] = {
-        "mesh": None, "max_segments": None, "automatic_segments": None, "notes": [], "error": None,
-    }  # fmt: skip
+    levels = ("max_segments", "automatic_segments", "limit_reached")
+    fields: dict[str, Any] = {**dict.fromkeys(("mesh", *levels, "error")), "notes": []}
     match outcome:
-        case Succeeded(faces=faces, vertices=vertices, max_segments=most, automatic_segments=automatic, report=report):
+        case Succeeded(faces=faces, vertices=vertices, report=report):
             mesh = MeshSummary.model_validate({"faces": faces, "vertices": vertices, "report": report})
-            numbers = {"max_segments": most, "automatic_segments": automatic}
+            numbers = {name: getattr(outcome, name) for name in levels}
             return fields | numbers | {"mesh": mesh, "notes": _notes(job, mesh)}
         case Failed(code=code, message=message):
             return fields | {"error": JobError(code=code, message=message)}

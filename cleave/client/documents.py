@@ -35,6 +35,7 @@ class Job:
     faces: int | None
     max_segments: int | None
     automatic_segments: int | None
+    limit_reached: bool | None  # whether a limit of max_segments ended the hierarchy; None if that is not known
     error: JobError | None
     document: Mapping[str, Any]  # the complete JSON document
 
@@ -67,6 +68,7 @@ def job_from(document: Mapping[str, Any]) -> Job:
         faces=None if mesh is None else mesh["faces"],
         max_segments=document["max_segments"],
         automatic_segments=document["automatic_segments"],
+        limit_reached=document.get("limit_reached"),  # servers of earlier versions do not send it
         error=None if error is None else JobError(error["code"], error["message"]),
         document=document,
     )

@@ -115,7 +115,8 @@ class _GrowingTree:
     def finished(self) -> Tree:
         """Return the tree in the order of the rule."""
         values = np.array([split.value if split else 0.0 for split in self._splits])
-        tree = Tree(np.array(self._split_node, dtype=np.int32), values, self._leaf, 1)
+        limited = any(not late for late, _, _ in self._queue)
+        tree = Tree(np.array(self._split_node, dtype=np.int32), values, self._leaf, 1, limit_reached=limited)
         return self._rule.finished(tree, self._splits)
 
     def _split(self, node: int, split: Split | None) -> tuple[int, int]:

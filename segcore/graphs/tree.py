@@ -1,12 +1,13 @@
 """The binary tree of cuts of the nodes of a graph."""
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 
 from segcore.arrays import FloatArray, IntArray
 from segcore.hierarchy import renumbered_nodes
+from segcore.nary import numbered_steps, own_steps
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -25,6 +26,13 @@ class Tree:
     cut_value: FloatArray  # (S,) normalized cut times sqrt(total volume); 0 for splits between components
     leaf: IntArray  # (N,) the leaf of every node of the graph
     automatic_segments: int
+    step: IntArray = field(default_factory=lambda: own_steps(0))  # (S,) the step of each split; see ``segcore.nary``
+    limit_reached: bool = False  # whether the limit of the number of segments left sensible cuts out
+
+    def __post_init__(self) -> None:
+        """If no steps are given, every split is a step."""
+        if len(self.step) == 0:
+            object.__setattr__(self, "step", own_steps(len(self.split_node)))
 
     def reordered(self, order: Sequence[int], automatic_segments: int) -> "Tree":
         """Return the same splits in another order, parents before children.
@@ -35,7 +43,14 @@ class Tree:
         """
         splits = np.asarray(order, dtype=np.int32)
         number = renumbered_nodes(splits)
-        return Tree(number[self.split_node[splits]], self.cut_value[splits], number[self.leaf], automatic_segments)
+        return replace(
+            self,
+            split_node=number[self.split_node[splits]],
+            cut_value=self.cut_value[splits],
+            leaf=number[self.leaf],
+            automatic_segments=automatic_segments,
+            step=numbered_steps(self.step[splits]),
+        )
 
     def leaf_intervals(self) -> LeafIntervals:
         """Return the places of the leaves: those of the first child of a node come before those of the second."""

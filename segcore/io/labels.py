@@ -62,14 +62,22 @@ def write_json(target: BinaryIO, hierarchy: Hierarchy, segments: int | None = No
 def hierarchy_document(hierarchy: Hierarchy) -> dict[str, Any]:
     """Return the hierarchy as JSON values.
 
-    ``cut_values[i]`` is the value of the cut from i + 1 to i + 2 segments. A node has ``id``, ``parent`` (null for the
-    root), ``children`` (empty for a leaf), ``level`` (the smallest number of segments at which it is a segment),
-    ``label`` (its label at every level at which it is one), ``area`` (squared units of the mesh), ``faces`` and
-    ``cut_value`` (of the cut that splits it; null for a leaf). A cut value that is not finite is null.
+    ``cut_values[i]`` is the value of the cut from i + 1 to i + 2 segments and ``steps[i]`` its step; ``step_ends`` are
+    the numbers of segments at which no set of equal parts is cut off in part (see :mod:`segcore.nary`).
+    ``limit_reached`` says whether the hierarchy ends at a limit that was set (null if that is not known).
+
+    A node has ``id``, ``parent`` (null for the root), ``children`` (empty for a leaf), ``level`` (the smallest number
+    of segments at which it is a segment), ``label`` (its label at every level at which it is one), ``area`` (squared
+    units of the mesh), ``faces``, ``cut_value`` and ``step`` (of the cut that splits it; null for a leaf) and
+    ``nary_children`` (its children in the tree of steps, which starts with the root). A cut value that is not finite is
+    null.
     """
     return {
         "max_segments": hierarchy.max_segments,
         "automatic_segments": hierarchy.automatic_segments,
+        "limit_reached": hierarchy.limit_reached,
+        "steps": hierarchy.step.tolist(),
+        "step_ends": hierarchy.step_ends.tolist(),
         "cut_values": [finite_or_none(value) for value in hierarchy.cut_value.tolist()],
         "nodes": node_documents(hierarchy),
     }
@@ -77,7 +85,9 @@ def hierarchy_document(hierarchy: Hierarchy) -> dict[str, Any]:
 
 def node_documents(hierarchy: Hierarchy) -> list[dict[str, Any]]:
     """Return the ``nodes`` of :func:`hierarchy_document`; entry i is node i."""
-    cut_value = dict(zip(hierarchy.split_node.tolist(), hierarchy.cut_value.tolist(), strict=True))
+    nodes = hierarchy.split_node.tolist()
+    cut_value = dict(zip(nodes, hierarchy.cut_value.tolist(), strict=True))
+    step = dict(zip(nodes, hierarchy.step.tolist(), strict=True))
     columns = zip(
         hierarchy.parent.tolist(),
         hierarchy.children.tolist(),
@@ -85,6 +95,7 @@ def node_documents(hierarchy: Hierarchy) -> list[dict[str, Any]]:
         hierarchy.label.tolist(),
         hierarchy.area.tolist(),
         hierarchy.face_count.tolist(),
+        hierarchy.nary_children,
         strict=True,
     )
     return [
@@ -97,8 +108,10 @@ def node_documents(hierarchy: Hierarchy) -> list[dict[str, Any]]:
             "area": area,
             "faces": faces,
             "cut_value": finite_or_none(cut_value[node]) if node in cut_value else None,
+            "step": step.get(node),
+            "nary_children": siblings,
         }
-        for node, (parent, children, level, label, area, faces) in enumerate(columns)
+        for node, (parent, children, level, label, area, faces, siblings) in enumerate(columns)
     ]
 
 

@@ -3,12 +3,14 @@
 Format, version 1. A ZIP archive whose members are stored without compression, in this order, all dated 1980-01-01, so
 that equal results have equal bytes:
 
-    header.json           {"format": "cleave-result", "version": 1, "automatic_segments": int}
+    header.json           {"format": "cleave-result", "version": 1, "automatic_segments": int,
+                           "limit_reached": bool or null}
     vertices.npy          (V, 3) float64    faces.npy        (F, 3) int32
     source_polygon.npy    (F,) int32, absent if every polygon of the input is one face
     split_node.npy        (S,) int32        cut_value.npy    (S,) float64
     area.npy              (2 S + 1,) float64
     face_count.npy        (2 S + 1,) int32  face_leaf.npy    (F,) int32
+    step.npy              (S,) int32
 
 Then those that the appearance of the mesh has (A rows: one for each vertex, then the further ones):
 
@@ -19,6 +21,8 @@ Then those that the appearance of the mesh has (A rows: one for each vertex, the
 
 The arrays are little-endian, in C order, in NumPy's ``.npy`` format 1.0, and mean what the attributes of the same names
 of Mesh, Hierarchy and Appearance mean. A program may ignore unknown members. Nothing in the file is ever unpickled.
+Files of earlier versions of Cleave have no ``limit_reached``, which is then not known, and no ``step``: every split is
+a step.
 """
 
 import json
@@ -27,6 +31,7 @@ import os
 import re
 import zipfile
 from dataclasses import dataclass
+from types import NoneType
 from typing import Any, BinaryIO
 
 import numpy as np
@@ -37,22 +42,25 @@ from segcore.errors import InvalidMesh, InvalidParameters
 from segcore.hierarchy import Hierarchy
 from segcore.io.archive import member, write_array
 from segcore.mesh import Mesh
+from segcore.nary import numbered_steps
 
 _FORMAT, _VERSION = "cleave-result", 1
 _HEADER = "header.json"
-_LARGEST_HEADER = 4096  # bytes; the header has about 70
+_LARGEST_HEADER = 4096  # bytes; the header has about 100
 _NPY_HEADER = re.compile(
     rb"\x93NUMPY\x01\x00.."
     rb"\{'descr': '(?P<dtype>...)', 'fortran_order': False, 'shape': \((?P<shape>\d{1,12},(?: \d{1,12})?)\), \} *\n",
     re.DOTALL,
 )
 _MESH_ARRAYS = {"vertices": "<f8", "faces": "<i4", "source_polygon": "<i4"}
-_TREE_ARRAYS = {"split_node": "<i4", "cut_value": "<f8", "area": "<f8", "face_count": "<i4", "face_leaf": "<i4"}
+_TREE_ARRAYS = {
+    "split_node": "<i4", "cut_value": "<f8", "area": "<f8", "face_count": "<i4", "face_leaf": "<i4", "step": "<i4",
+}  # fmt: skip
 _LOOK_ARRAYS = {
     "normals": "<f4", "uvs": "<f4", "colors": "|u1", "corners": "<i4", "extra_vertex": "<i4", "face_group": "<i4",
 }  # fmt: skip
 _GROUP_NAMES = "group_names.json"
-_OPTIONAL = "source_polygon"
+_OPTIONAL = ("source_polygon", "step")
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -80,7 +88,12 @@ def write_result(target: BinaryIO, mesh: Mesh, hierarchy: Hierarchy) -> None:
             f"The hierarchy has {len(hierarchy.face_leaf)} faces and the mesh {len(mesh.faces)}: "
             "give the mesh that was segmented."
         )
-    header = {"format": _FORMAT, "version": _VERSION, "automatic_segments": hierarchy.automatic_segments}
+    header = {
+        "format": _FORMAT,
+        "version": _VERSION,
+        "automatic_segments": hierarchy.automatic_segments,
+        "limit_reached": hierarchy.limit_reached,
+    }
     with zipfile.ZipFile(target, "w", zipfile.ZIP_STORED) as archive:
         archive.writestr(member(_HEADER), json.dumps(header))
         for name, dtype in _MESH_ARRAYS.items():
@@ -140,15 +153,20 @@ def _check_sizes(archive: zipfile.ZipFile, file_size: int) -> None:
 def _unpack(archive: zipfile.ZipFile) -> Segmentation:
     header = _read_header(archive)
     present = set(archive.namelist())
-    mesh_arrays = {
-        name: _read_array(archive, name, dtype)
-        for name, dtype in _MESH_ARRAYS.items()
-        if name != _OPTIONAL or f"{name}.npy" in present
-    }
-    tree_arrays = {name: _read_array(archive, name, dtype) for name, dtype in _TREE_ARRAYS.items()}
-    look = _read_appearance(archive, present)
-    mesh = Mesh(mesh_arrays["vertices"], mesh_arrays["faces"], mesh_arrays.get(_OPTIONAL), look)
-    hierarchy = Hierarchy(**tree_arrays, automatic_segments=header["automatic_segments"])
+    mesh_arrays: dict[str, Any]
+    tree_arrays: dict[str, Any]
+    mesh_arrays, tree_arrays = (
+        {
+            name: _read_array(archive, name, dtype)
+            for name, dtype in arrays.items()
+            if name not in _OPTIONAL or f"{name}.npy" in present
+        }
+        for arrays in (_MESH_ARRAYS, _TREE_ARRAYS)
+    )
+    mesh = Mesh(**mesh_arrays, appearance=_read_appearance(archive, present))
+    hierarchy = Hierarchy(
+        **tree_arrays, automatic_segments=header["automatic_segments"], limit_reached=header.get("limit_reached")
+    )
     _check_tree(hierarchy, len(mesh.faces))
     return Segmentation(mesh, hierarchy)
 
@@ -165,7 +183,7 @@ def _read_appearance(archive: zipfile.ZipFile, present: set[str]) -> Appearance 
     return Appearance(**arrays, group_names=tuple(names))
 
 
-def _read_header(archive: zipfile.ZipFile) -> dict[str, int]:
+def _read_header(archive: zipfile.ZipFile) -> dict[str, Any]:
     header = _read_json(archive, _HEADER, _LARGEST_HEADER)
     if not isinstance(header, dict) or header.get("format") != _FORMAT:
         raise InvalidMesh("This ZIP archive is not a .cleave file: its header has another format.")
@@ -176,6 +194,8 @@ def _read_header(archive: zipfile.ZipFile) -> dict[str, int]:
         )
     if type(header.get("automatic_segments")) is not int:
         raise InvalidMesh("The header of the .cleave file has no automatic_segments: make the file again.")
+    if type(header.get("limit_reached")) not in (bool, NoneType):
+        raise InvalidMesh("limit_reached in the header of the .cleave file is not true, false or null: make it again.")
     return header
 
 
@@ -208,10 +228,11 @@ def _check_tree(hierarchy: Hierarchy, face_count: int) -> None:
     """Raise InvalidMesh if the hierarchy is not a binary tree over the faces."""
     splits = len(hierarchy.split_node)
     shapes = {"split_node": splits, "cut_value": splits, "area": 2 * splits + 1, "face_count": 2 * splits + 1}
-    for name, length in (shapes | {"face_leaf": face_count}).items():
+    for name, length in (shapes | {"face_leaf": face_count, "step": splits}).items():
         if getattr(hierarchy, name).shape != (length,):
             raise InvalidMesh(f"Array {name!r} of the .cleave file does not fit the others: make the file again.")
-    if not _is_tree(hierarchy) or not _counts_agree(hierarchy):
+    numbered = bool((numbered_steps(hierarchy.step) == hierarchy.step).all())
+    if not numbered or not _is_tree(hierarchy) or not _counts_agree(hierarchy):
         raise InvalidMesh("The tree of cuts in the .cleave file contradicts itself: make the file again.")
 
 

@@ -5,6 +5,8 @@ any and is short otherwise. Split by split, in the order of the tree, faces near
 farther away keep theirs, so that every part keeps its core. Only the faces of the bands are visited.
 """
 
+from dataclasses import replace
+
 import numpy as np
 
 from segcore.arrays import BoolArray, FloatArray, IntArray, group_sums
@@ -153,7 +155,7 @@ class _Drawing:
         leaf_at[place_of_node[leaves]] = leaves
         leaf = leaf_at[self._placement.place]
         number = _larger_first(tree, group_sums(leaf, self._volume, len(place_of_node)))
-        return Tree(number[tree.split_node], tree.cut_value, number[leaf], tree.automatic_segments)
+        return replace(tree, split_node=number[tree.split_node], leaf=number[leaf])
 
 
 def _larger_first(tree: Tree, volume: FloatArray) -> IntArray:

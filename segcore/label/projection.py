@@ -9,6 +9,7 @@ from segcore.graphs.cheeger import cut_of
 from segcore.graphs.connected_sides import with_connected_sides
 from segcore.graphs.surface_graph import SurfaceGraph
 from segcore.graphs.tree import LeafIntervals, Tree
+from segcore.nary import numbered_steps
 
 
 def project(tree: Tree, corners: IntArray, faces: SurfaceGraph) -> Tree:
@@ -32,6 +33,7 @@ def project(tree: Tree, corners: IntArray, faces: SurfaceGraph) -> Tree:
     parts = {0: _Part(np.arange(len(corners), dtype=np.int32), faces, 0)}
     split_node: list[int] = []
     cut_value: list[float] = []
+    kept: list[int] = []
     automatic = 1
     for split, node in enumerate(tree.split_node.tolist()):
         if node not in parts:
@@ -46,6 +48,7 @@ def project(tree: Tree, corners: IntArray, faces: SurfaceGraph) -> Tree:
             side = _connected(part.graph, side)
         split_node.append(part.node)
         cut_value.append(float(tree.cut_value[split]))
+        kept.append(split)
         larger, smaller = 2 * len(split_node) - 1, 2 * len(split_node)
         one_is_larger = part.graph.volume[side].sum() >= part.graph.volume[~side].sum()
         parts[one] = part.half(side, larger if one_is_larger else smaller)
@@ -55,7 +58,8 @@ def project(tree: Tree, corners: IntArray, faces: SurfaceGraph) -> Tree:
     leaf = np.zeros(len(corners), dtype=np.int32)
     for part in parts.values():
         leaf[part.faces] = part.node
-    return Tree(np.array(split_node, dtype=np.int32), np.array(cut_value), leaf, automatic)
+    step = numbered_steps(tree.step[kept])
+    return Tree(np.array(split_node, dtype=np.int32), np.array(cut_value), leaf, automatic, step, tree.limit_reached)
 
 
 @dataclass(frozen=True, slots=True, eq=False)

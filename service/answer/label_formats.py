@@ -35,8 +35,8 @@ def hierarchy_json(result: Segmentation) -> bytes:
     document = hierarchy_document(result.hierarchy)
     nodes = result.hierarchy.split_node.tolist()
     curve = [
-        {"segments": split + 2, "cut_value": value, "node": node}
-        for split, (value, node) in enumerate(zip(document["cut_values"], nodes, strict=True))
+        {"segments": split + 2, "cut_value": value, "node": node, "step": step}
+        for split, (value, node, step) in enumerate(zip(document["cut_values"], nodes, document["steps"], strict=True))
     ]
     return compact_json(document | {"curve": curve})
 

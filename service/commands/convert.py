@@ -8,6 +8,7 @@ from segcore.levels import Fineness
 from service.commands.arguments import add_level
 from service.commands.console import say
 from service.commands.outputs import add_outputs, check_outputs, output_options, write_model
+from service.commands.summary import level_summary
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
@@ -33,7 +34,6 @@ def run(choices: argparse.Namespace) -> None:
     segments = fineness.segments_of(result.hierarchy)
     for path in outputs:
         write_model(path, result.mesh, result.hierarchy, segments, output_options(choices))
-    chosen = "chosen automatically" if fineness.is_automatic else "as requested"
-    say(f"{segments} segments, {chosen}; 1 to {result.hierarchy.max_segments} are possible")
+    say(level_summary(result.hierarchy, segments, fineness))
     for path in outputs:
         say(f"wrote {path}")

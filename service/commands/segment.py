@@ -16,6 +16,7 @@ from segcore.report import StructureCounts, structure_counts, structure_note
 from service.commands.arguments import add_level, add_parameters, add_structure
 from service.commands.console import ProgressBar, say
 from service.commands.outputs import add_outputs, check_outputs, output_options, write_file, write_model
+from service.commands.summary import level_summary
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
@@ -55,9 +56,8 @@ def run(choices: argparse.Namespace) -> None:
         hierarchy = segcore.segment(mesh, parameters, bar, surface)
         segments = fineness.segments_of(hierarchy)
         _write(choices, mesh, hierarchy, segments)
-    chosen = "chosen automatically" if fineness.is_automatic else "as requested"
     say(f"{choices.mesh.name}: {len(mesh.faces)} faces, {len(mesh.vertices)} vertices")
-    say(f"{segments} segments, {chosen}; 1 to {hierarchy.max_segments} are possible")
+    say(level_summary(hierarchy, segments, fineness))
     for line in _structure_lines(structure_counts(mesh, surface), parameters):
         say(line)
     for path in outputs:

@@ -1,6 +1,12 @@
 """<cleave-viewer> in another page, as docs/reference/viewer.md describes it."""
 
+import io
+import json
+import struct
+
 from helpers.browser.visit import Visit
+from helpers.files.hierarchies import two_strips
+from segcore.io.gltf.writer import write_glb
 
 PAGE = """<!doctype html><html lang="en"><title>Another page</title>
 <script type="module" src="viewer/cleave-viewer.js"></script>
@@ -35,6 +41,51 @@ def test_a_file_of_one_level_is_shown_too(visit: Visit, job: str) -> None:
     assert evaluate(visit, "[v.parts.length, v.tree.maxSegments]") == [5, 5]
 
 
+def test_the_tree_is_that_of_the_service_at_all_levels_and_at_one(visit: Visit, job: str) -> None:
+    """Nodes inside a step are not in the file, but in the tree."""
+    facts = "v.tree.nodes.map((n) => [n.id, n.parent, n.children, n.level, n.label, n.faces, n.step, n.cutValue])"
+    embed(visit, job)
+    whole = evaluate(visit, facts)
+    nodes = visit.page.evaluate("(path) => fetch(path).then((a) => a.json())", f"v1/jobs/{job}/hierarchy")["nodes"]
+    names = ("id", "parent", "children", "level", "label", "faces", "step", "cut_value")
+    assert whole == [[-1 if name == "parent" and not node["id"] else node[name] for name in names] for node in nodes]
+    embed(visit, job, query="?segments=5")
+    part = evaluate(visit, facts)
+    assert [fact[:2] + fact[3:6] for fact in part] == [fact[:2] + fact[3:6] for fact in whole[:9]]
+
+
+def test_a_file_from_before_steps_is_shown(visit: Visit, job: str) -> None:
+    """Its nodes are those of the binary tree, and its extras have no splits."""
+    mesh, hierarchy = two_strips()
+    old = io.BytesIO()
+    write_glb(old, mesh, hierarchy, all_levels=True)
+    body = without_splits(old.getvalue())
+    visit.page.route(
+        "**/model.glb?levels=all", lambda route: route.fulfill(body=body, content_type="model/gltf-binary")
+    )
+    embed(visit, job)
+    assert evaluate(visit, "v.tree.nodes.map((n) => n.parent)") == [-1, 0, 0, 2, 2]
+    assert evaluate(visit, "v.tree.nodes.map((n) => n.cutValue)") == [0, None, 1.5, None, None]
+    assert evaluate(visit, "[v.parts, v.tree.stepEnds, v.tree.childrenIn(v.tree.cutAt(3), 0)]") == [
+        [1, 2],
+        [1, 2, 3],
+        [1, 2],
+    ]
+
+
+def without_splits(data: bytes) -> bytes:
+    """A GLB file without the extras that steps have brought."""
+    (length,) = struct.unpack_from("<I", data, 12)
+    document, rest = json.loads(data[20 : 20 + length]), data[20 + length :]
+    for name in ("split_node", "step", "cut_value", "limit_reached"):
+        del document["scenes"][0]["extras"][name]
+    for node in document["nodes"]:
+        del node["extras"]["node"], node["extras"]["step"]
+    text = json.dumps(document).encode()
+    text += b" " * (-len(text) % 4)
+    return struct.pack("<4sIIII", b"glTF", 2, 20 + len(text) + len(rest), len(text), 0x4E4F534A) + text + rest
+
+
 def test_events_report_loading_hovering_and_selecting(visit: Visit, job: str) -> None:
     embed(visit, job)
     visit.page.evaluate(
@@ -53,7 +104,8 @@ def test_events_report_loading_hovering_and_selecting(visit: Visit, job: str) ->
     visit.page.wait_for_function("() => events.length > 1")
     visit.page.mouse.click(200, 150)
     events = visit.page.evaluate("events")
-    assert events[0] == ["cleave-load", {"maxSegments": 64, "automaticSegments": 7, "faces": 5120}]
+    loaded = {"maxSegments": 64, "automaticSegments": 7, "limitReached": True, "faces": 5120}
+    assert events[0] == ["cleave-load", loaded]
     assert [name for name, _ in events[1:]] == ["cleave-hover", "cleave-select"]
     assert events[2][1]["parts"] == [events[1][1]["part"]]
 

@@ -40,10 +40,10 @@ def test_split_merge_undo_and_redo_change_only_the_part(visit: Visit, job: str) 
     visit.row(part).click()
     sent = len(visit.requests)
     visit.page.click("#split")
-    children = visit.viewer(f"[...v.tree.node({part}).children]")
+    children = visit.viewer(f"v.tree.childrenIn(v.cut, {part})")
     assert sorted(visit.parts()) == sorted({*before, *children} - {part})
     assert sorted(visit.selected()) == sorted(children)
-    assert visit.page.inner_text("#level-number") == "8"
+    assert visit.page.inner_text("#level-number") == str(6 + len(children))
     visit.page.click("#merge")
     assert visit.parts() == before
     visit.page.click("#undo")
@@ -52,6 +52,38 @@ def test_split_merge_undo_and_redo_change_only_the_part(visit: Visit, job: str) 
     visit.page.keyboard.press("Control+Shift+Z")
     assert sorted(visit.parts()) == sorted({*before, *children} - {part})
     assert visit.requests[sent:] == []
+
+
+def test_equal_parts_are_siblings_and_the_buttons_go_from_step_to_step(visit: Visit, job: str) -> None:
+    visit.open_job(job)
+    document = visit.page.evaluate("(path) => fetch(path).then((a) => a.json())", f"v1/jobs/{job}/hierarchy")
+    ball_and_arms = document["nodes"][0]["nary_children"]
+    assert visit.parts() == ball_and_arms
+    assert len(ball_and_arms) == 7
+    assert visit.page.eval_on_selector_all("#tree .row", "(rows) => rows.map((row) => row.ariaLevel)") == ["1"] * 7
+    ends = [1, 7, next(end for end in document["step_ends"] if end > 7)]
+    for button, end in (("more", ends[2]), ("less", ends[1]), ("less", ends[0]), ("more", ends[1])):
+        visit.page.click(f"#level-{button}")
+        assert visit.page.inner_text("#level-number") == str(end)
+
+
+def test_the_slider_reaches_the_numbers_within_a_step(visit: Visit, job: str) -> None:
+    visit.open_job(job)
+    visit.set_range("level", 4)
+    visit.settle()
+    assert len(visit.parts()) == 4
+    assert "all of them are at 7 parts" in visit.page.inner_text("#level-note")
+    assert len(visit.rows()) == 4
+    inner = visit.viewer("v.parts.find((id) => v.tree.isPassedOver(id))")
+    visit.row(inner).click()
+    visit.page.click("#split")
+    assert len(visit.parts()) == 7
+
+
+def test_the_page_says_where_the_hierarchy_ends_and_why(visit: Visit, job: str) -> None:
+    visit.open_job(job)
+    end = "The hierarchy ends at the limit of 64 parts: raise max_segments for more."
+    assert visit.page.inner_text("#level-end") == end
 
 
 def test_merging_two_parts_makes_the_smallest_group_that_contains_them(visit: Visit, job: str) -> None:

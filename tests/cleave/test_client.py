@@ -49,6 +49,7 @@ def test_a_job_can_be_followed_fetched_and_deleted(url: str, mesh: Path, tmp_pat
         assert client.submit(mesh, parameters={"max_segments": 5}, idempotency_key="one").id == job.id
         job = client.wait(job.id)
         assert (job.status, job.file_name, job.max_segments) == ("succeeded", "ball.off", 5)
+        assert job.limit_reached is True
         assert [other.id for other in client.jobs("succeeded")] == [job.id]
         assert client.hierarchy(job.id)["max_segments"] == 5
         client.download(job.id, "model.obj", tmp_path / "parts.obj", segments=3, name=["0:ball", "2:arm"])

@@ -7,6 +7,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
+from helpers.files.hierarchies import steps
 from segcore.errors import InvalidParameters
 from segcore.hierarchy import Hierarchy
 from segcore.levels import Fineness, keep_splits
@@ -34,6 +35,8 @@ def hierarchies(draw: st.DrawFn) -> Hierarchy:
         face_count=size,
         face_leaf=np.array(sorted(leaves), dtype=np.int32),
         automatic_segments=count + 1,
+        step=draw(steps(split_node)),
+        limit_reached=draw(st.booleans()),
     )
 
 
@@ -104,8 +107,20 @@ def test_keeping_the_first_splits_changes_nothing_but_the_automatic_number(hiera
     count = min(count, hierarchy.max_segments - 1)
     kept = keep_splits(hierarchy, range(count))
     assert kept.automatic_segments == count + 1
-    for field in fields(Hierarchy)[:-1]:
-        np.testing.assert_array_equal(getattr(kept, field.name), getattr(hierarchy, field.name))
+    for name in {field.name for field in fields(Hierarchy)} - {"automatic_segments", "step"}:
+        np.testing.assert_array_equal(getattr(kept, name), getattr(hierarchy, name))
+
+
+@given(closed_choices())
+def test_steps_that_are_kept_or_left_as_a_whole_stay_and_others_fall_in_two(choice: tuple[Hierarchy, set[int]]) -> None:
+    hierarchy, splits = choice
+    kept = keep_splits(hierarchy, splits)
+    order = [*sorted(splits), *sorted(set(range(hierarchy.max_segments - 1)) - splits)]
+    for i, a in enumerate(order):
+        for j, b in enumerate(order):
+            expected = hierarchy.step[a] == hierarchy.step[b] and (a in splits) == (b in splits)
+            assert (kept.step[i] == kept.step[j]) == expected
+    assert list(dict.fromkeys(kept.step.tolist())) == list(range(len(set(kept.step.tolist()))))
 
 
 @pytest.fixture

@@ -38,6 +38,7 @@ class Succeeded:
     vertices: int
     max_segments: int
     automatic_segments: int
+    limit_reached: bool | None = None  # as in Hierarchy; None in records of earlier versions
     report: dict[str, Any] | None = None  # a MeshReport as JSON; None in records of earlier versions
 
 

@@ -66,6 +66,7 @@ def segment_stored_mesh(store: JobStore, job: Job, limits: ReadLimits, clock: St
         vertices=len(mesh.vertices),
         max_segments=hierarchy.max_segments,
         automatic_segments=hierarchy.automatic_segments,
+        limit_reached=hierarchy.limit_reached,
         report=asdict(segcore.mesh_report(mesh, surface)),
     )
 

@@ -26,12 +26,13 @@ def write_glb(
 ) -> None:
     """Write a mesh as binary glTF 2.0, with a material for each segment and the hierarchy as nested nodes.
 
-    glTF node i is node i of the hierarchy, nested as there. The nodes that are segments at this level have the
-    geometry and are called ``segment k``, the nodes above them ``group i``. All share one POSITION accessor in input
-    vertex order (vertices that no face uses are moved to the centre of the others) and have every input face,
-    degenerate ones too, as slices of one index buffer. ``extras`` of a node: ``level``, ``label``, ``area`` (squared
-    units of the mesh), ``faces``, ``cut_value`` (null if nothing cuts it), and if it has faces, ``first_face`` and, of
-    a single level, ``segment``.
+    The glTF nodes are those of the tree of steps (:mod:`segcore.nary`), in the order of their numbers in the hierarchy:
+    equal parts are children of one node, and nodes that are passed over are left out. The nodes that are segments at
+    this level have the geometry and are called ``segment k``, the nodes above them ``group i``. All share one POSITION
+    accessor in input vertex order (vertices that no face uses are moved to the centre of the others) and have every
+    input face, degenerate ones too, as slices of one index buffer. ``extras`` of a node: ``node`` (its number in the
+    hierarchy), ``level``, ``label``, ``area`` (squared units of the mesh), ``faces``, ``cut_value`` and ``step`` (null
+    if nothing cuts it), and if it has faces, ``first_face`` and, of a single level, ``segment``.
 
     With ``all_levels`` the nodes are those of the whole hierarchy, and the leaves have the geometry. Their materials
     are those of this level, and KHR_materials_variants has the ones of every other: variant k - 1 is called
@@ -45,8 +46,10 @@ def write_glb(
     follow the V vertices of the input. ``extras.groups`` of a node with faces lists the groups of the input that its
     faces are in.
 
-    ``extras.input_faces`` of the scene names a buffer view of little-endian uint32 that maps the faces to the input:
-    triangle t of a node is input face ``input_faces[first_face + t]``.
+    ``extras`` of the scene has the splits of these levels, ``split_node``, ``step`` and ``cut_value``, and
+    ``limit_reached``, as in :class:`segcore.hierarchy.Hierarchy`. Its ``input_faces`` names a buffer view of
+    little-endian uint32 that maps the faces to the input: triangle t of a node is input face
+    ``input_faces[first_face + t]``.
 
     Coordinates that float32 would round visibly are stored relative to the centre; then the root node has the offset
     (and the unit, for meshes far smaller or larger than anything that float32 can square).

@@ -18,7 +18,7 @@ from segcore.io.slices import Slices
 
 _FEATURES, _METADATA = "EXT_mesh_features", "EXT_structural_metadata"
 _FLOAT, _ARRAY_BUFFER = 5126, 34962
-_NONE = -1  # the parent of the root, and the cut value of a node that nothing cuts
+_NONE = -1  # the parent of the root, and the cut value and the step of a node that nothing cuts
 _NUMBERS: dict[str, tuple[str, str, str]] = {
     "parent": ("INT32", "<i4", "Row of the node that this one was cut from."),
     "level": ("UINT32", "<u4", "Smallest number of segments at which the node is a segment."),
@@ -26,15 +26,16 @@ _NUMBERS: dict[str, tuple[str, str, str]] = {
     "faces": ("UINT32", "<u4", "Number of faces of the input."),
     "area": ("FLOAT64", "<f8", "Area in squared units of the mesh."),
     "cut_value": ("FLOAT64", "<f8", "Value of the cut that splits the node."),
+    "step": ("INT32", "<i4", "Step of the cut that splits the node."),
 }
-_OPTIONAL = ("parent", "cut_value")
+_OPTIONAL = ("parent", "cut_value", "step")
 
 
 def add_features(glb: GlbFile, hierarchy: Hierarchy, nodes: IntArray, slices: Slices, corners: IntArray) -> None:
     """Add the feature ids of its node to each primitive, and the table of all nodes to the document.
 
-    Row i of property table 0 is node i of the hierarchy: its name, parent, level, label, faces, area and cut value. An
-    infinite cut value is left out, as those of leaves are.
+    Row i of property table 0 is node i of the hierarchy: its name, parent, level, label, faces, area, cut value and
+    step. An infinite cut value is left out, as those of leaves are.
 
     Parameters
     ----------
@@ -111,9 +112,9 @@ def _table(glb: GlbFile, hierarchy: Hierarchy) -> dict[str, Any]:
 
 
 def _names(glb: GlbFile, entries: list[dict[str, Any]]) -> dict[str, int]:
-    """The names of the nodes of the document, and ``node i`` for the nodes below its segments."""
-    shown = [node["name"] for node in glb.document["nodes"]]
-    names = [*shown, *(f"node {entry['id']}" for entry in entries[len(shown) :])]
+    """The names of the nodes of the document, and ``node i`` for all others."""
+    shown = {node["extras"]["node"]: node["name"] for node in glb.document["nodes"]}
+    names = [shown.get(entry["id"], f"node {entry['id']}") for entry in entries]
     encoded = [name.encode() for name in names]
     offsets = np.cumsum([0, *map(len, encoded)]).astype("<u4")
     return {

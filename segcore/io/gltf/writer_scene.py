@@ -9,14 +9,16 @@ from numpy.typing import NDArray
 from segcore.arrays import FloatArray, IntArray
 from segcore.hierarchy import Hierarchy
 from segcore.io.gltf.writer_geometry import Placement
-from segcore.io.labels import node_documents
+from segcore.io.labels import finite_or_none, node_documents
 from segcore.io.palette import linear_rgb, segment_colors
 from segcore.io.slices import Slices
+from segcore.nary import nary_children
 
 _UNSIGNED_INT, _FLOAT = 5125, 5126
 _ARRAY_BUFFER, _ELEMENT_ARRAY_BUFFER = 34962, 34963
 _VARIANTS = "KHR_materials_variants"
 _FACE_BYTES = 12  # three uint32
+_FACTS = ("level", "label", "area", "faces", "cut_value", "step")
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -81,10 +83,15 @@ def scene_document(
 
 
 def _scene_extras(hierarchy: Hierarchy, drawing: Drawing) -> dict[str, Any]:
+    splits = len(drawing.nodes) - 1
     return {
         "segments": drawing.segments,
         "max_segments": hierarchy.max_segments,
         "automatic_segments": hierarchy.automatic_segments,
+        "limit_reached": hierarchy.limit_reached,
+        "split_node": hierarchy.split_node[:splits].tolist(),
+        "step": hierarchy.step[:splits].tolist(),
+        "cut_value": [finite_or_none(value) for value in hierarchy.cut_value[:splits].tolist()],
         "input_faces": {"bufferView": 2, "componentType": _UNSIGNED_INT, "count": len(drawing.of_face)},
     }
 
@@ -97,12 +104,19 @@ def _variants(count: int) -> dict[str, Any]:
 def _nodes(
     hierarchy: Hierarchy, drawing: Drawing, placement: Placement, slices: Slices, names: list[str]
 ) -> list[dict[str, Any]]:
+    """The nodes of the tree of steps, down to those that have geometry, in the order of their numbers."""
     part_of = {node: k for k, node in enumerate(drawing.nodes.tolist())}
-    nodes = []
-    for entry in node_documents(hierarchy)[: 2 * len(part_of) - 1]:
-        extras = {name: entry[name] for name in ("level", "label", "area", "faces", "cut_value")}
-        if (k := part_of.get(entry["id"])) is None:
-            nodes.append({"name": f"group {entry['id']}", "children": entry["children"], "extras": extras})
+    splits = len(part_of) - 1
+    children = nary_children(hierarchy.split_node[:splits], hierarchy.step[:splits])
+    entries = [entry for entry in node_documents(hierarchy)[: 2 * splits + 1] if _is_shown(entry, part_of, children)]
+    place = {entry["id"]: i for i, entry in enumerate(entries)}
+    nodes: list[dict[str, Any]] = []
+    for entry in entries:
+        node = entry["id"]
+        extras = {"node": node} | {name: entry[name] for name in _FACTS}
+        if (k := part_of.get(node)) is None:
+            below = [place[child] for child in children[node]]
+            nodes.append({"name": f"group {node}", "children": below, "extras": extras})
         else:
             extras |= {"first_face": int(slices.start[k])} | ({"segment": k} if drawing.variants is None else {})
             nodes.append({"name": names[k], "mesh": k, "extras": extras})
@@ -111,6 +125,11 @@ def _nodes(
     if placement.scale != 1.0:
         nodes[0]["scale"] = [placement.scale] * 3
     return nodes
+
+
+def _is_shown(entry: dict[str, Any], part_of: dict[int, int], children: list[list[int]]) -> bool:
+    """Whether a node has geometry or children; the others are passed over."""
+    return entry["id"] in part_of or bool(children[entry["id"]])
 
 
 def _mesh(drawing: Drawing, k: int, name: str) -> dict[str, Any]:

@@ -4,8 +4,20 @@ import numpy as np
 from hypothesis import strategies as st
 
 from helpers.files.polygon_soups import Soup, triangle_soups
+from segcore.arrays import IntArray
 from segcore.hierarchy import Hierarchy
 from segcore.mesh import Mesh, face_normals_and_areas
+from segcore.nary import numbered_steps
+
+
+@st.composite
+def steps(draw: st.DrawFn, split_node: list[int]) -> IntArray:
+    """Steps of the splits of a tree: each split has its own, that of the split above it, or any other."""
+    found: list[int] = []
+    for split, node in enumerate(split_node):
+        above = found[(node - 1) // 2] if node else split
+        found.append(draw(st.sampled_from([split, above, *found])))
+    return numbered_steps(np.array(found, dtype=np.int32))
 
 
 @st.composite
@@ -33,6 +45,8 @@ def hierarchies(draw: st.DrawFn, mesh: Mesh) -> Hierarchy:
         face_count=np.array([len(faces) for faces in faces_of], dtype=np.int32),
         face_leaf=face_leaf,
         automatic_segments=draw(st.integers(1, len(leaves))),
+        step=draw(steps(split_node)),
+        limit_reached=draw(st.sampled_from([True, False, None])),
     )
 
 

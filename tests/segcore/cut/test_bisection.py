@@ -76,3 +76,23 @@ def test_a_side_of_less_than_a_five_hundredth_waits_for_all_others():
     tree = grown(graph, 3)
     assert tree.leaf[1] != tree.leaf[2]
     assert tree.split_node[1] == np.flatnonzero(np.isin(np.arange(5), [1, 2]) & ~np.isin(np.arange(5), tree.leaf))[0]
+
+
+@settings(max_examples=40)
+@given(graphs())
+def test_the_limit_is_reached_if_and_only_if_it_leaves_a_cut_that_is_not_late(graph):
+    whole = grown(graph, 10_000)
+    assert not whole.limit_reached
+    segments = len(whole.split_node) + 1
+    for limit in {1, segments // 2, segments - 1} - {0}:
+        left = grown(graph, limit)
+        if len(left.split_node) + 1 == limit < segments:
+            sides = [np.bincount(left.leaf)[leaf] for leaf in set(left.leaf)]
+            assert left.limit_reached == (max(sides) > 1)
+
+
+def test_cuts_of_less_than_a_five_hundredth_do_not_count_as_left():
+    """Two segments of a chain of four nodes, the last two of which are tiny or not."""
+    edges, weight = [(0, 1), (1, 2), (2, 3)], np.array([0.5, 1.0, 0.9])
+    assert not grown(graph_of(edges, 4, weight, np.array([1.0, 1.0, 0.001, 0.001])), 2).limit_reached
+    assert grown(graph_of(edges, 4, weight, np.ones(4)), 2).limit_reached

@@ -1,3 +1,5 @@
+from dataclasses import replace
+
 import numpy as np
 from hypothesis import given
 from hypothesis import strategies as st
@@ -34,6 +36,11 @@ def test_reordering_keeps_the_parts(tree: Tree) -> None:
         split = split_of[waiting.pop()]
         order.append(split)
         waiting += [child for child in (2 * split + 1, 2 * split + 2) if child in split_of]
+    tree = replace(tree, step=np.arange(len(tree.split_node), dtype=np.int32) // 2, limit_reached=True)
     reordered = tree.reordered(order, 1)
+    pairs = [(order[i] // 2 == order[j] // 2) == (reordered.step[i] == reordered.step[j]) for i in order for j in order]
+    assert all(pairs)
+    assert list(dict.fromkeys(reordered.step.tolist())) == list(range((len(order) + 1) // 2))
+    assert reordered.limit_reached
     assert {part.tobytes() for part in members(reordered)} == {part.tobytes() for part in members(tree)}
     assert (reordered.split_node <= 2 * np.arange(len(order))).all()

@@ -2,6 +2,8 @@
 
 import io
 import json
+from dataclasses import replace
+from typing import Any
 
 import numpy as np
 import pytest
@@ -66,36 +68,33 @@ def test_the_hierarchy_document_is_one_tree(segmented: tuple[Mesh, Hierarchy, in
             assert node["cut_value"] is None
 
 
+def node(number: int, parent: int | None, children: list[int], **facts: float | None) -> dict[str, Any]:
+    return {"id": number, "parent": parent, "children": children, "nary_children": children, **facts}
+
+
+def test_nodes_of_one_step_have_their_children_in_common() -> None:
+    _, hierarchy = two_strips()
+    document = hierarchy_document(replace(hierarchy, step=np.zeros(2, dtype=np.int32), limit_reached=True))
+    assert [entry["nary_children"] for entry in document["nodes"]] == [[1, 3, 4], [], [], [], []]
+    assert [entry["children"] for entry in document["nodes"]] == [[1, 2], [], [3, 4], [], []]
+    assert (document["steps"], document["step_ends"], document["limit_reached"]) == ([0, 0], [1, 3], True)
+
+
 def test_the_hierarchy_document_of_a_small_tree() -> None:
     _, hierarchy = two_strips()
     assert hierarchy_document(hierarchy) == {
         "max_segments": 3,
         "automatic_segments": 2,
+        "limit_reached": None,
+        "steps": [0, 1],
+        "step_ends": [1, 2, 3],
         "cut_values": [0.0, 1.5],
         "nodes": [
-            {
-                "id": 0,
-                "parent": None,
-                "children": [1, 2],
-                "level": 1,
-                "label": 0,
-                "area": 2.0,
-                "faces": 4,
-                "cut_value": 0,
-            },
-            {"id": 1, "parent": 0, "children": [], "level": 2, "label": 0, "area": 1.0, "faces": 2, "cut_value": None},
-            {
-                "id": 2,
-                "parent": 0,
-                "children": [3, 4],
-                "level": 2,
-                "label": 1,
-                "area": 1.0,
-                "faces": 2,
-                "cut_value": 1.5,
-            },
-            {"id": 3, "parent": 2, "children": [], "level": 3, "label": 1, "area": 0.5, "faces": 1, "cut_value": None},
-            {"id": 4, "parent": 2, "children": [], "level": 3, "label": 2, "area": 0.5, "faces": 1, "cut_value": None},
+            node(0, None, [1, 2], level=1, label=0, area=2.0, faces=4, cut_value=0.0, step=0),
+            node(1, 0, [], level=2, label=0, area=1.0, faces=2, cut_value=None, step=None),
+            node(2, 0, [3, 4], level=2, label=1, area=1.0, faces=2, cut_value=1.5, step=1),
+            node(3, 2, [], level=3, label=1, area=0.5, faces=1, cut_value=None, step=None),
+            node(4, 2, [], level=3, label=2, area=0.5, faces=1, cut_value=None, step=None),
         ],
     }
 

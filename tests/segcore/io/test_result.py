@@ -1,8 +1,10 @@
 """The .cleave file: exact, the same bytes for the same result, never half read."""
 
+import base64
 import io
 import json
 import zipfile
+import zlib
 from pathlib import Path
 
 import numpy as np
@@ -18,7 +20,20 @@ from segcore.hierarchy import Hierarchy
 from segcore.io.result import Segmentation, read_result, write_result
 from segcore.mesh import Mesh
 
-ARRAYS = ("split_node", "cut_value", "area", "face_count", "face_leaf")
+# The result of the two strips as Cleave wrote it before there were steps.
+BEFORE_STEPS = zlib.decompress(
+    base64.b85decode(
+        b"c-pO1&5P4O6rc3VRCkv>RAFy1mnfu*+g(8xVap<3iV{H&p2Cn$-Do!H=A$4>kFGrytS7G?iXhap_#cSiU!Yz*d(_kVrk%-VvJF(5DX)_^^L~"
+        b"^0<$W2gVyT8^<0?9FPe=RkMCB650l{tJZ$1q?_gL+C{vi(4T}8DVf_tRylOS?JRaev=@dMj)VQ&jG9EBcO+LjrRCx^rh1K4Qv4R}>Oe$}VO#"
+        b"{MZAE2xIx2tbfv)9pT&&^qc$GfO_dy8q~&@mNAVbgZ>WVENjvqTTM?(sV_Gn}t4hP0xqh!unn81O(QD1KcH`U)#E&E8Ev~rLX+&xQG@SzxFa"
+        b"Vn)8?CjP>>AV(0Sp^nR>ooFiwfpS@S~)|JUgpL?qc-s<3lt0v5h&+}bn?=0l1on<{Wb5#X|MGh)6y$DhTDY0jn=_1wFf6xz3bq%NnUB?bh*J"
+        b"~5bcff21dGKxM%dusA3+H(J{PrPEuvOq;MWNZlP88D^GSeZ-A;WT_aW;PMiFE9j+wVCY8R%f2V9sRBtj2jTxtSZ2=KLJ}9?v4fuMa;SB?FJ<"
+        b"m}z;D8*-i_W;@Cw@N(c;Vu4p+$tIl(!gqHrzeon*loNE1&c6lW!nI>*N)oFL5~~wNODfcg*&ULPx6@*i=$8~&FN*z+_A)9f0`M99C%a!7No("
+        b"(fmDj3(+<*@sSK>5`*0BMrQfmUN1O&yZmd4WBF=Sp@6|kQHD^!v+l;-J}<)SP=-@y0eS(`@D*dMXT7BAZ`qf{oOu{6f!U-m%-i4kYC%9UyRg"
+        b"Wnf$gmQsue*s;Ww$="
+    )
+)
+ARRAYS = ("split_node", "cut_value", "area", "face_count", "face_leaf", "step")
 
 
 def result(mesh: Mesh, hierarchy: Hierarchy) -> bytes:
@@ -34,6 +49,7 @@ def assert_same(segmentation: Segmentation, mesh: Mesh, hierarchy: Hierarchy) ->
         assert array.flags.writeable
         assert array.tolist() == expected.tolist()
     assert segmentation.hierarchy.automatic_segments == hierarchy.automatic_segments
+    assert segmentation.hierarchy.limit_reached is hierarchy.limit_reached
     assert segmentation.mesh.vertices.tolist() == mesh.vertices.tolist()
     assert segmentation.mesh.faces.tolist() == mesh.faces.tolist()
 
@@ -67,10 +83,21 @@ def test_the_bytes_are_those_of_the_documented_form() -> None:
         assert {member.date_time for member in archive.infolist()} == {(1980, 1, 1, 0, 0, 0)}
         assert {member.compress_type for member in archive.infolist()} == {zipfile.ZIP_STORED}
         header = json.loads(archive.read("header.json"))
-        assert header == {"format": "cleave-result", "version": 1, "automatic_segments": 2}
+        expected = {"format": "cleave-result", "version": 1, "automatic_segments": 2, "limit_reached": None}
+        assert header == expected
         for name in ("vertices", "faces"):
             array = np.load(io.BytesIO(archive.read(f"{name}.npy")), allow_pickle=False)
             assert array.tolist() == getattr(mesh, name).tolist()
+
+
+def test_a_file_from_before_steps_is_read_with_a_step_for_each_split() -> None:
+    with zipfile.ZipFile(io.BytesIO(BEFORE_STEPS)) as archive:
+        assert "step.npy" not in archive.namelist()
+        assert "limit_reached" not in json.loads(archive.read("header.json"))
+    read = read_result(io.BytesIO(BEFORE_STEPS))
+    assert_same(read, *two_strips())
+    assert read.hierarchy.step.tolist() == [0, 1]
+    assert read.hierarchy.limit_reached is None
 
 
 def test_a_cut_file_is_refused() -> None:
@@ -128,6 +155,11 @@ def npy(array: np.ndarray) -> bytes:
         ("header.json", b'{"format": "other", "version": 1, "automatic_segments": 2}', "not a .cleave file"),
         ("header.json", b'{"format": "cleave-result", "version": 1, "automatic_segments": 2.0}', "automatic_segments"),
         ("header.json", b'{"format": "cleave-result", "version": 1, "automatic_segments": 4}', "contradicts itself"),
+        (
+            "header.json",
+            b'{"format": "cleave-result", "version": 1, "automatic_segments": 2, "limit_reached": 1}',
+            "limit_reached",
+        ),
         ("header.json", b"[" * 5000, "header"),
         ("header.json", None, "no member 'header.json'"),
         ("faces.npy", None, "no member 'faces.npy'"),
@@ -145,6 +177,9 @@ def npy(array: np.ndarray) -> bytes:
         ("split_node.npy", npy(np.array([0, 3], dtype=np.int32)), "contradicts itself"),
         ("split_node.npy", npy(np.array([0], dtype=np.int32)), "'cut_value'"),
         ("area.npy", npy(np.zeros((5, 1))), "'area'"),
+        ("step.npy", npy(np.zeros(1, dtype=np.int32)), "'step'"),
+        ("step.npy", npy(np.array([1, 0], dtype=np.int32)), "contradicts itself"),
+        ("step.npy", npy(np.array([0, -1], dtype=np.int32)), "contradicts itself"),
     ],
 )
 def test_a_file_that_contradicts_itself_or_this_version_is_refused(

@@ -29,7 +29,23 @@ def test_the_hierarchy_is_the_whole_tree(client: httpx.Client, finished_job: Cal
     document = client.get(f"{path}/hierarchy").json()
     assert len(document["nodes"]) == 2 * document["max_segments"] - 1
     assert document["nodes"][0]["faces"] == FACES
-    assert document["max_segments"] == client.get(path).json()["max_segments"]
+    job = client.get(path).json()
+    assert document["max_segments"] == job["max_segments"]
+    assert document["limit_reached"] is job["limit_reached"] is True
+
+
+def test_the_n_ary_tree_starts_at_the_root_and_has_every_leaf(
+    client: httpx.Client, finished_job: Callable[..., str]
+) -> None:
+    document = client.get(f"{finished_job()}/hierarchy").json()
+    nodes = document["nodes"]
+    leaves, waiting = [], [0]
+    while waiting:
+        node = nodes[waiting.pop()]
+        waiting += node["nary_children"]
+        leaves += [] if node["nary_children"] else [node["id"]]
+    assert sorted(leaves) == [node["id"] for node in nodes if not node["children"]]
+    assert document["step_ends"][-1] == document["max_segments"]
 
 
 def test_the_curve_has_a_point_for_every_cut(client: httpx.Client, finished_job: Callable[..., str]) -> None:
@@ -38,6 +54,8 @@ def test_the_curve_has_a_point_for_every_cut(client: httpx.Client, finished_job:
     assert [point["cut_value"] for point in document["curve"]] == document["cut_values"]
     for point in document["curve"]:
         assert document["nodes"][point["node"]]["cut_value"] == point["cut_value"]
+        assert document["nodes"][point["node"]]["step"] == point["step"]
+    assert [point["step"] for point in document["curve"]] == document["steps"]
 
 
 @pytest.mark.parametrize("result", ["labels", "hierarchy", "model.glb"])

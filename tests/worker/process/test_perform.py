@@ -42,6 +42,8 @@ def test_the_result_is_that_of_segcore(store: JobStore, settings: Settings, tmp_
     assert (result.hierarchy.labels(5) == expected.labels(5)).all()
     assert (outcome.faces, outcome.vertices) == (4 * 20 * 19, len(result.mesh.vertices))
     assert (outcome.max_segments, outcome.automatic_segments) == (expected.max_segments, expected.automatic_segments)
+    assert (outcome.limit_reached, result.hierarchy.limit_reached) == (True, True)
+    assert result.hierarchy.step.tolist() == expected.step.tolist()
     report = mesh_report(result.mesh)
     assert outcome.report is not None
     assert json.loads(json.dumps(asdict(report))) == outcome.report

@@ -67,15 +67,16 @@ export class Appearance {
     this.#values.set(values, 4 * (line * this.columns + (leaf % this.columns)));
   }
 
-  /** Return the offset of every part: each split moves its two sides apart, coarse splits first. */
+  /** Return the offset of every part: the splits of each step move their sides apart, coarse steps first. */
   #offsets(look: Look): Map<number, number[]> {
     const { tree } = this.#model;
     const offsets = new Map<number, number[]>([[0, [0, 0, 0]]]);
     if (look.explode === 0) return offsets;
-    const order = new Map(tree.splitsOf(look.cut).map((split, rank) => [tree.splitNode(split), rank]));
+    const steps = tree.splitsOf(look.cut).map((split) => tree.node(tree.splitNode(split)).step);
+    const order = new Map([...new Set(steps)].map((step, rank) => [step, rank]));
     tree.walk(look.cut, (id, isPart) => {
       if (isPart) return;
-      const begins = ((order.get(id) ?? 0) / Math.max(order.size, 1)) * (1 - FIRST_SPLIT_ENDS);
+      const begins = ((order.get(tree.node(id).step) ?? 0) / Math.max(order.size, 1)) * (1 - FIRST_SPLIT_ENDS);
       const open = smooth((look.explode - begins) / FIRST_SPLIT_ENDS);
       for (const child of tree.node(id).children) {
         const own = offsets.get(id)!;

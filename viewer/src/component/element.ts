@@ -12,6 +12,7 @@ export { type Cut, type PartTree, type TreeNode } from "./tree";
 export interface LoadDetail {
   readonly maxSegments: number;
   readonly automaticSegments: number;
+  readonly limitReached: boolean | null;
   readonly faces: number;
 }
 
@@ -275,6 +276,7 @@ export class CleaveViewer extends HTMLElement {
     const detail = {
       maxSegments: model.tree.maxSegments,
       automaticSegments: model.automaticSegments,
+      limitReached: model.limitReached,
       faces: model.index.length / 3,
     };
     this.#emit("cleave-load", detail satisfies LoadDetail);

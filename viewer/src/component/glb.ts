@@ -5,6 +5,8 @@ import { PartTree, type TreeNode } from "./tree";
 export interface Model {
   readonly tree: PartTree;
   readonly automaticSegments: number;
+  /** Whether the hierarchy ends at a limit although sensible cuts are left; null if that is not known. */
+  readonly limitReached: boolean | null;
   /** (3 V) xyz of every vertex. */
   readonly positions: Float32Array;
   /** (3 F) vertices of every face, sorted by leaf. */
@@ -55,17 +57,19 @@ function chunks(data: ArrayBuffer): { document: GltfDocument; binary: number } {
 }
 
 function modelOf(document: GltfDocument, data: ArrayBuffer, binary: number): Model {
-  const leaves = document.nodes.flatMap((node, id) => (node.mesh === undefined ? [] : [{ id, mesh: node.mesh }]));
+  const extras = document.scenes[0]?.extras ?? {};
+  const leaves = document.nodes.flatMap(({ mesh, extras: { node } }, i) => (mesh === undefined ? [] : [{ id: node ?? i, mesh }]));
   const primitives = leaves.map(({ mesh }) => at(at(document.meshes, mesh).primitives, 0));
   const starts = primitives.map(({ indices }) => (at(document.accessors, indices).byteOffset ?? 0) / (3 * WORD));
   const order = leaves.map((_, i) => i).sort((a, b) => at(starts, a) - at(starts, b));
   const indexView = at(document.bufferViews, at(document.accessors, at(primitives, 0).indices).bufferView);
   const positionAccessor = at(document.accessors, at(primitives, 0).attributes.POSITION);
   const positionView = at(document.bufferViews, positionAccessor.bufferView);
-  const automatic = document.scenes[0]?.extras["automatic_segments"];
+  const { automatic_segments: automatic, limit_reached: limit } = extras;
   return {
-    tree: new PartTree(document.nodes.map((_, id) => treeNode(document, id))),
+    tree: new PartTree(isSplits(extras) ? nodesOfSplits(extras, document) : document.nodes.map((_, id) => treeNode(document, id))),
     automaticSegments: typeof automatic === "number" ? automatic : leaves.length,
+    limitReached: typeof limit === "boolean" ? limit : null,
     positions: new Float32Array(data, binary + (positionView.byteOffset ?? 0), 3 * positionAccessor.count),
     index: new Uint32Array(data, binary + (indexView.byteOffset ?? 0), indexView.byteLength / WORD),
     leafNodes: order.map((i) => at(leaves, i).id),
@@ -74,6 +78,44 @@ function modelOf(document: GltfDocument, data: ArrayBuffer, binary: number): Mod
   };
 }
 
+/** The splits of the levels that a file has, in the extras of its scene. */
+interface Splits {
+  split_node: number[];
+  step: number[];
+  cut_value: (number | null)[];
+}
+
+function isSplits(extras: object): extras is Splits {
+  return ["split_node", "step", "cut_value"].every((name) => Array.isArray((extras as Record<string, unknown>)[name]));
+}
+
+/** Return the nodes of the binary tree; those of the file are the ones of the n-ary tree. */
+function nodesOfSplits({ split_node, step, cut_value }: Splits, document: GltfDocument): TreeNode[] {
+  const given = new Map(document.nodes.map(({ extras }) => [extras["node"], extras]));
+  const leaf = { children: [], area: 0, faces: 0, cutValue: null, step: null };
+  const nodes: Writable<TreeNode>[] = [{ ...leaf, id: 0, parent: -1, level: 1, label: 0 }];
+  split_node.forEach((cut, split) => {
+    const parent = at(nodes, cut);
+    for (const id of [2 * split + 1, 2 * split + 2]) {
+      const label = id % 2 === 1 ? parent.label : split + 1;
+      nodes.push({ ...leaf, id, parent: cut, level: split + 2, label });
+    }
+    parent.children = [2 * split + 1, 2 * split + 2];
+    parent.cutValue = cut_value[split] ?? null;
+    parent.step = at(step, split);
+  });
+  for (const node of nodes.toReversed()) {
+    const extras = given.get(node.id);
+    const below = node.children.map((child) => at(nodes, child));
+    node.area = Number(extras?.["area"] ?? below.reduce((sum, child) => sum + child.area, 0));
+    node.faces = Number(extras?.["faces"] ?? below.reduce((sum, child) => sum + child.faces, 0));
+  }
+  return nodes;
+}
+
+type Writable<T> = { -readonly [name in keyof T]: T[name] };
+
+/** Return a node of a file from before there were steps, whose nodes are those of the binary tree. */
 function treeNode(document: GltfDocument, id: number): TreeNode {
   const { extras, children } = at(document.nodes, id);
   const parent = id === 0 ? -1 : document.nodes.findIndex((node) => node.children?.includes(id));
@@ -87,6 +129,7 @@ function treeNode(document: GltfDocument, id: number): TreeNode {
     area: Number(extras["area"]),
     faces: Number(extras["faces"]),
     cutValue: extras["cut_value"] ?? null,
+    step: children === undefined ? null : Math.min(...children),
   };
 }
 

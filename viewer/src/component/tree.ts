@@ -16,6 +16,8 @@ export interface TreeNode {
   readonly faces: number;
   /** Value of the cut that splits the node; null for a leaf. */
   readonly cutValue: number | null;
+  /** Step of the cut that splits the node; null for a leaf. Cuts that separate equal parts have one step. */
+  readonly step: number | null;
 }
 
 /** The set of nodes that are split; it contains the parents of its nodes. The parts are the nodes just below. */
@@ -58,6 +60,43 @@ export class PartTree {
     return first === undefined ? -1 : (first - 1) / 2;
   }
 
+  /** The numbers of segments that are worth offering: 1, and those after the last split of each step. */
+  get stepEnds(): number[] {
+    const last = new Map<number | null, number>();
+    for (let split = 0; split < this.maxSegments - 1; split++) last.set(this.node(this.splitNode(split)).step, split + 2);
+    return [1, ...[...last.values()].sort((a, b) => a - b)];
+  }
+
+  /** Return the number of segments at the next step end, or at the one before, clipped to those there are. */
+  stepEndBeside(segments: number, by: 1 | -1): number {
+    const ends = this.stepEnds;
+    const end = by > 0 ? ends.find((end) => end > segments) : ends.findLast((end) => end < segments);
+    return end ?? (by > 0 ? this.maxSegments : 1);
+  }
+
+  /** Whether the cut of a node belongs to the step of the cut above it: its parts are shown beside those of its parent. */
+  isPassedOver(id: number): boolean {
+    const { parent, step } = this.node(id);
+    return parent >= 0 && step !== null && this.node(parent).step === step;
+  }
+
+  /** Return the node below which a node is shown; -1 for the whole mesh. */
+  groupOf(id: number): number {
+    let group = this.node(id).parent;
+    while (group >= 0 && this.isPassedOver(group)) group = this.node(group).parent;
+    return group;
+  }
+
+  /** Return the nodes that are shown below a node of a cut, sorted by label. */
+  childrenIn(cut: Cut, id: number): number[] {
+    const children: number[] = [];
+    const waiting = [...this.node(id).children];
+    for (let child = waiting.pop(); child !== undefined; child = waiting.pop())
+      if (cut.has(child) && this.isPassedOver(child)) waiting.push(...this.node(child).children);
+      else children.push(child);
+    return children.sort((a, b) => this.node(a).label - this.node(b).label);
+  }
+
   /** Return the cut with a number of segments, clipped to 1..maxSegments. */
   cutAt(segments: number): Cut {
     const count = Math.min(Math.max(Math.round(segments), 1), this.maxSegments) - 1;
@@ -93,14 +132,24 @@ export class PartTree {
   }
 
   /** Visit the nodes of a cut, parents first. */
-  walk(cut: Cut, visit: (id: number, isPart: boolean, depth: number) => void): void {
+  walk(cut: Cut, visit: (id: number, isPart: boolean) => void): void {
+    const waiting = [0];
+    for (let id = waiting.pop(); id !== undefined; id = waiting.pop()) {
+      const { children } = this.node(id);
+      const isPart = children.length === 0 || !cut.has(id);
+      visit(id, isPart);
+      if (!isPart) waiting.push(...children.toReversed());
+    }
+  }
+
+  /** Visit the nodes of a cut that are shown: those of the n-ary tree, in which equal parts are siblings. */
+  walkShown(cut: Cut, visit: (id: number, isPart: boolean, depth: number) => void): void {
     const waiting: [number, number][] = [[0, 0]];
     for (let entry = waiting.pop(); entry !== undefined; entry = waiting.pop()) {
       const [id, depth] = entry;
-      const { children } = this.node(id);
-      const isPart = children.length === 0 || !cut.has(id);
+      const isPart = this.node(id).children.length === 0 || !cut.has(id);
       visit(id, isPart, depth);
-      if (!isPart) for (const child of children.toReversed()) waiting.push([child, depth + 1]);
+      if (!isPart) for (const child of this.childrenIn(cut, id).toReversed()) waiting.push([child, depth + 1]);
     }
   }
 
@@ -122,9 +171,16 @@ export class PartTree {
     return this.parts(cut).filter((part) => this.contains(id, part));
   }
 
-  /** Return the cut with one more part split. */
+  /** Return the cut with one more part split, together with the parts below it that belong to the step. */
   split(cut: Cut, part: number): Cut {
-    return this.node(part).children.length === 0 ? cut : new Set([...cut, part]);
+    if (this.node(part).children.length === 0) return cut;
+    const split = new Set(cut);
+    const waiting = [part];
+    for (let id = waiting.pop(); id !== undefined; id = waiting.pop()) {
+      split.add(id);
+      waiting.push(...this.node(id).children.filter((child) => this.isPassedOver(child)));
+    }
+    return split;
   }
 
   /** Return the cut with all parts below a node merged. */
@@ -132,12 +188,12 @@ export class PartTree {
     return new Set([...cut].filter((other) => !this.contains(id, other)));
   }
 
-  /** Return the lowest node that contains all the given nodes; for a single node its parent. */
+  /** Return the lowest node of the n-ary tree that contains all the given nodes; for a single node its parent. */
   commonAncestor(ids: readonly number[]): number {
     const [first, ...others] = ids;
     if (first === undefined) return 0;
-    let above = others.length === 0 ? Math.max(this.node(first).parent, 0) : first;
-    while (!others.every((id) => this.contains(above, id))) above = this.node(above).parent;
+    let above = others.length === 0 ? Math.max(this.groupOf(first), 0) : first;
+    while (!others.every((id) => this.contains(above, id))) above = this.groupOf(above);
     return above;
   }
 }

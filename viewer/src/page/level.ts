@@ -25,8 +25,8 @@ export class LevelSlider {
       const now = session();
       now?.showLevel(now.automaticSegments);
     });
-    byId("level-less").addEventListener("click", () => this.#step(-1));
-    byId("level-more").addEventListener("click", () => this.#step(1));
+    byId("level-less").addEventListener("click", () => session()?.showStep(-1));
+    byId("level-more").addEventListener("click", () => session()?.showStep(1));
   }
 
   /** Draw the chart of a new result; ``notes`` are sentences on what limits it. */
@@ -47,6 +47,7 @@ export class LevelSlider {
     const mark = this.#chart.querySelector(".mark")!;
     mark.setAttribute("d", `M${session.automaticSegments - 1} 0V${HEIGHT}`);
     this.#automatic.querySelector("b")!.textContent = String(session.automaticSegments);
+    byId("level-end").textContent = endOf(session);
     this.update();
   }
 
@@ -65,17 +66,22 @@ export class LevelSlider {
     this.#note.textContent = [state, ...this.#notes].join(" ");
     this.#chart.querySelector("#level-clip rect")!.setAttribute("width", String(segments - 1));
   }
-
-  #step(by: number): void {
-    const session = this.#session();
-    if (session === null) return;
-    const segments = Math.min(Math.max(session.parts.length + by, 1), session.tree.maxSegments);
-    session.showLevel(segments);
-  }
 }
 
 function nextCut(session: Session, segments: number): string {
   const value = session.tree.cutValues[segments - 1];
   if (value === undefined) return "This is the finest level.";
+  const { tree } = session;
+  if (!tree.stepEnds.includes(segments))
+    return `Some of a group of equal parts are cut off: all of them are at ${plural(tree.stepEndBeside(segments, 1), "part")}.`;
   return `Value of the next cut: ${figure(value)}. Low values are clear borders.`;
+}
+
+/** Return where the hierarchy ends and why. */
+function endOf({ limitReached, tree }: Session): string {
+  const most = plural(tree.maxSegments, "part");
+  if (limitReached === null) return `The hierarchy ends at ${most}.`;
+  return limitReached
+    ? `The hierarchy ends at the limit of ${most}: raise max_segments for more.`
+    : `The hierarchy ends at ${most}: no sensible cut is left.`;
 }

@@ -148,14 +148,14 @@ class Page {
     this.#viewer.setAttribute("src", source);
   }
 
-  #loaded({ automaticSegments, faces }: LoadDetail): void {
+  #loaded(detail: LoadDetail): void {
     const job = this.#job!;
     const name = job.input.file_name ?? "mesh";
-    this.#session = new Session(this.#viewer.tree!, automaticSegments, () => this.#changed());
+    this.#session = new Session(this.#viewer.tree!, detail, () => this.#changed());
     this.#viewer.setAttribute("label", name);
     byId("title").textContent = name;
     const structure = structureOf(job.mesh?.report?.structure ?? null);
-    byId("about").textContent = [plural(faces, "face"), bytes(job.input.size_bytes), ...structure].join(" · ");
+    byId("about").textContent = [plural(detail.faces, "face"), bytes(job.input.size_bytes), ...structure].join(" · ");
     document.title = `${stem(name)} – Cleave`;
     this.#start.show("none");
     this.#showWork(true);

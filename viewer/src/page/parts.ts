@@ -41,7 +41,7 @@ export class PartsPanel {
     const focused = idOf(rowOf(document.activeElement));
     this.#rows.clear();
     // The root is omitted: it always contains all parts.
-    tree.walk(work.cut, (id, isPart, depth) => {
+    tree.walkShown(work.cut, (id, isPart, depth) => {
       if (isPart || id > 0) this.#rows.set(id, this.#row(session, id, isPart, Math.max(depth - 1, 0)));
     });
     this.#list.replaceChildren(...this.#rows.values());
@@ -147,7 +147,7 @@ export class PartsPanel {
       Home: () => this.#focus(this.#list.firstElementChild),
       End: () => this.#focus(this.#list.lastElementChild),
       ArrowRight: () => (isOpen ? this.#focus(row.nextElementSibling) : session.split([id])),
-      ArrowLeft: () => (isOpen ? session.mergeBelow(id) : this.#focus(this.#rows.get(tree.node(id).parent) ?? null)),
+      ArrowLeft: () => (isOpen ? session.mergeBelow(id) : this.#focus(this.#rows.get(tree.groupOf(id)) ?? null)),
       Enter: () => this.#select(session, id, event.shiftKey),
       " ": () => this.#select(session, id, true),
       h: () => this.#toggleHidden(session, id),

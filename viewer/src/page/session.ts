@@ -1,6 +1,6 @@
 /** The editing state of a result (cut, hidden parts, names) with undo, and its display modes. */
 
-import type { Cut, PartTree } from "../component/element";
+import type { Cut, LoadDetail, PartTree } from "../component/element";
 
 /** The state that undo restores. */
 export interface Work {
@@ -32,6 +32,8 @@ const MOST_STEPS = 200;
 export class Session {
   readonly tree: PartTree;
   readonly automaticSegments: number;
+  /** Whether the hierarchy ends at a limit although sensible cuts are left; null if that is not known. */
+  readonly limitReached: boolean | null;
   readonly #onChange: () => void;
   #work: Work;
   #modes: Modes = FIRST_MODES;
@@ -39,9 +41,10 @@ export class Session {
   #future: Work[] = [];
   #slidingFrom: Work | null = null;
 
-  constructor(tree: PartTree, automaticSegments: number, onChange: () => void) {
+  constructor(tree: PartTree, { automaticSegments, limitReached }: LoadDetail, onChange: () => void) {
     this.tree = tree;
     this.automaticSegments = automaticSegments;
+    this.limitReached = limitReached;
     this.#onChange = onChange;
     this.#work = { cut: tree.cutAt(automaticSegments), hidden: new Set(), names: new Map() };
   }
@@ -102,6 +105,11 @@ export class Session {
 
   showLevel(segments: number): void {
     this.#change(() => this.#recut(this.tree.cutAt(segments)));
+  }
+
+  /** Show the next level at which a step is complete, or the one before. */
+  showStep(by: 1 | -1): void {
+    this.showLevel(this.tree.stepEndBeside(this.parts.length, by));
   }
 
   split(ids: readonly number[]): void {

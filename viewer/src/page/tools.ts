@@ -91,8 +91,7 @@ export class Tools {
   /** Handle a key while the 3D view has the focus. */
   #key(event: KeyboardEvent): void {
     if (event.ctrlKey || event.metaKey || event.altKey) return;
-    const step = (by: number) =>
-      this.#with((now) => now.showLevel(Math.min(Math.max(now.parts.length + by, 1), now.tree.maxSegments)));
+    const step = (by: 1 | -1) => this.#with((now) => now.showStep(by));
     const actions: Record<string, () => void> = {
       s: () => this.#split(),
       m: () => this.#merge(),

@@ -3,6 +3,7 @@
 import io
 import json
 import struct
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
@@ -20,6 +21,7 @@ from segcore.errors import InvalidParameters
 from segcore.hierarchy import Hierarchy
 from segcore.io.gltf.writer import write_glb
 from segcore.mesh import Mesh
+from segcore.nary import nary_children
 
 Segmented = tuple[Mesh, Hierarchy, int]
 
@@ -58,21 +60,39 @@ def test_every_input_face_is_in_the_file_once_in_its_segment_and_in_input_order(
     assert sorted(order) == list(range(len(mesh.faces)))
 
 
+def shown_children(hierarchy: Hierarchy, segments: int) -> dict[int, list[int]]:
+    """The nodes of the n-ary tree of a level and their children."""
+    children = nary_children(hierarchy.split_node[: segments - 1], hierarchy.step[: segments - 1])
+    shown = {0, *(node for below in children for node in below)}
+    return {node: children[node] for node in sorted(shown)}
+
+
 @given(segmentations())
-def test_the_nodes_are_those_of_the_hierarchy(segmented: Segmented) -> None:
+def test_the_nodes_are_those_of_the_tree_of_steps(segmented: Segmented) -> None:
     mesh, hierarchy, segments = segmented
     nodes = document(glb(mesh, hierarchy, segments))["nodes"]
-    assert len(nodes) == 2 * segments - 1
+    expected = shown_children(hierarchy, segments)
+    assert [node["extras"]["node"] for node in nodes] == list(expected)
     segment_nodes = hierarchy.segment_nodes(segments).tolist()
-    for i, node in enumerate(nodes):
+    for node in nodes:
         extras = node["extras"]
+        i = extras["node"]
         assert (extras["level"], extras["faces"]) == (hierarchy.level[i], hierarchy.face_count[i])
         assert extras["area"] == hierarchy.area[i]
         if i in segment_nodes:
             assert node["name"] == f"segment {segment_nodes.index(i)}"
         else:
             assert node["name"] == f"group {i}"
-            assert node["children"] == hierarchy.children[i].tolist()
+            assert [nodes[child]["extras"]["node"] for child in node["children"]] == expected[i]
+
+
+def test_equal_parts_are_children_of_one_node() -> None:
+    mesh, hierarchy = two_strips()
+    one_step = replace(hierarchy, step=np.zeros(2, dtype=np.int32))
+    nodes = document(glb(mesh, one_step, 3))["nodes"]
+    assert [node["name"] for node in nodes] == ["group 0", "segment 0", "segment 1", "segment 2"]
+    assert nodes[0]["children"] == [1, 2, 3]
+    assert [node["extras"]["node"] for node in nodes] == [0, 1, 3, 4]
 
 
 @given(segmentations())
@@ -153,16 +173,23 @@ def test_with_all_levels_the_nodes_are_the_whole_hierarchy(segmented: Segmented)
     mesh, hierarchy, segments = segmented
     parsed = document(glb(mesh, hierarchy, segments, all_levels=True))
     cut_values = dict(zip(hierarchy.split_node.tolist(), hierarchy.cut_value.tolist(), strict=True))
-    assert len(parsed["nodes"]) == hierarchy.node_count
-    for i, node in enumerate(parsed["nodes"]):
+    expected = shown_children(hierarchy, hierarchy.max_segments)
+    nodes = parsed["nodes"]
+    assert [node["extras"]["node"] for node in nodes] == list(expected)
+    for node in nodes:
         extras = node["extras"]
+        i = extras["node"]
         assert (extras["level"], extras["label"]) == (hierarchy.level[i], hierarchy.label[i])
         assert (extras["faces"], extras["area"]) == (hierarchy.face_count[i], hierarchy.area[i])
         assert ("mesh" in node) == (i not in cut_values) == ("children" not in node)
         assert extras["cut_value"] == (cut_values[i] if np.isfinite(cut_values.get(i, np.inf)) else None)
         if "children" in node:
-            assert node["children"] == hierarchy.children[i].tolist()
+            assert [nodes[child]["extras"]["node"] for child in node["children"]] == expected[i]
     scene = parsed["scenes"][0]["extras"]
+    assert scene["split_node"] == hierarchy.split_node.tolist()
+    assert scene["step"] == hierarchy.step.tolist()
+    assert scene["cut_value"] == [value if np.isfinite(value) else None for value in hierarchy.cut_value.tolist()]
+    assert scene["limit_reached"] is hierarchy.limit_reached
     assert (scene["segments"], scene["max_segments"]) == (segments, hierarchy.max_segments)
     assert scene["automatic_segments"] == hierarchy.automatic_segments
 

@@ -65,8 +65,9 @@ def test_every_corner_of_every_face_has_the_id_of_its_node(segmented: Segmented,
     glb = Glb(written("glb", mesh, hierarchy, segments, all_levels=all_levels, features=True))
     assert {"EXT_mesh_features", "EXT_structural_metadata"} <= set(glb.document["extensionsUsed"])
     drawn = hierarchy.segment_nodes(hierarchy.max_segments if all_levels else segments).tolist()
-    for node, part in enumerate(glb.document["nodes"]):
+    for part in glb.document["nodes"]:
         if "mesh" in part:
+            node = part["extras"]["node"]
             (primitive,) = glb.document["meshes"][part["mesh"]]["primitives"]
             (feature,) = primitive["extensions"]["EXT_mesh_features"]["featureIds"]
             assert feature["propertyTable"] == 0
@@ -87,8 +88,8 @@ def test_the_property_table_is_the_whole_hierarchy(segmented: Segmented, all_lev
         assert {name: column[i] for name, column in columns.items() if name != "name"} == {
             name: entry[name] for name in columns if name != "name"
         }
-    shown = [node["name"] for node in glb.document["nodes"]]
-    assert columns["name"][: len(shown)] == shown
+    shown = {node["extras"]["node"]: node["name"] for node in glb.document["nodes"]}
+    assert columns["name"] == [shown.get(i, f"node {i}") for i in range(hierarchy.node_count)]
 
 
 @given(segmentations())
@@ -107,8 +108,9 @@ def test_features_change_nothing_else(segmented: Segmented) -> None:
 @given(looks())
 def test_feature_ids_follow_the_rows_of_the_appearance(looking: tuple[Mesh, Hierarchy]) -> None:
     glb = Glb(written("glb", *looking, 3, features=True))
-    for node, part in enumerate(glb.document["nodes"]):
+    for part in glb.document["nodes"]:
         if "mesh" in part:
+            node = part["extras"]["node"]
             (primitive,) = glb.document["meshes"][part["mesh"]]["primitives"]
             (feature,) = primitive["extensions"]["EXT_mesh_features"]["featureIds"]
             assert set(glb.feature_ids(primitive, feature).tolist()) == {node}
