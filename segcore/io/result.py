@@ -153,8 +153,6 @@ def _check_sizes(archive: zipfile.ZipFile, file_size: int) -> None:
 def _unpack(archive: zipfile.ZipFile) -> Segmentation:
     header = _read_header(archive)
     present = set(archive.namelist())
-    mesh_arrays: dict[str, Any]
-    tree_arrays: dict[str, Any]
     mesh_arrays, tree_arrays = (
         {
             name: _read_array(archive, name, dtype)
@@ -163,7 +161,8 @@ def _unpack(archive: zipfile.ZipFile) -> Segmentation:
         }
         for arrays in (_MESH_ARRAYS, _TREE_ARRAYS)
     )
-    mesh = Mesh(**mesh_arrays, appearance=_read_appearance(archive, present))
+    looks = _read_appearance(archive, present)
+    mesh = Mesh(mesh_arrays["vertices"], mesh_arrays["faces"], mesh_arrays.get("source_polygon"), looks)
     hierarchy = Hierarchy(
         **tree_arrays, automatic_segments=header["automatic_segments"], limit_reached=header.get("limit_reached")
     )
