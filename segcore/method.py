@@ -21,6 +21,8 @@ from segcore.label.projection import project
 from segcore.mesh import Mesh
 from segcore.parameters import SegmentationParameters
 from segcore.progress import OnProgress, Progress
+from segcore.symmetry.clusters import cluster_symmetrically, symmetrised
+from segcore.symmetry.images import mirror_image
 
 
 def segment(
@@ -53,12 +55,19 @@ def segment(
     progress("affinity")
     nodes = mesh_graph(surface, chosen)
     progress("coarsen")
-    clusters = cluster_nodes(nodes, chosen.clusters, rng)
+    mirror = mirror_image(surface) if chosen.is_symmetric else None
+    if mirror is None:
+        image = None
+        clusters = cluster_nodes(nodes, chosen.clusters, rng)
+    else:
+        clusters, image = cluster_symmetrically(nodes, mirror, chosen.clusters, rng)
     clusters, links = assemble(surface, nodes, clusters, chosen.max_segments)
+    if mirror is not None and image is not None:
+        clusters = symmetrised(clusters, image, mirror)
     progress("cut")
     rule = split_rule(clusters, chosen, rng)
     after_splits = partial(progress.after_splits, chosen.max_segments)
-    tree = bisect(clusters.graph, clusters.points, rule, chosen.max_segments, after_splits)
+    tree = bisect(clusters.graph, clusters.points, rule, chosen.max_segments, after_splits, image)
     progress("label")
     tree = _over_faces(tree, clusters, nodes, links, surface)
     hierarchy = _of_input(surface, tree)

@@ -68,7 +68,7 @@ class _Recorder(LearnedRule):
         self.target: list[float] = []
         self.pairs: list[float] = []
 
-    def best_split(self, segment: Segment) -> Split:
+    def best_split(self, segment: Segment, _image: IntArray | None = None) -> Split:
         candidates = self.candidates(segment)
         features = self.features(segment, candidates)
         self.rows += list(features)

@@ -38,11 +38,29 @@ def cluster_nodes(mesh_graph: MeshGraph, target: int, rng: np.random.Generator) 
         host_nodes = np.flatnonzero(is_host[component]).astype(np.int32)
         coarse, of_host = coarsen(graph.subgraph(host_nodes), target or graph.node_count, rng)
         of_node = _with_small_components(of_host, host_nodes, component, nearest_hosts(component, is_host, points))
-    volume = group_sums(of_node, graph.volume)
-    centres = np.stack([group_sums(of_node, graph.volume * points[:, axis]) / volume for axis in range(3)], axis=1)
-    thickness = mesh_graph.thickness
-    mean = None if thickness is None else group_sums(of_node, graph.volume * thickness) / volume
-    return Clusters(replace(coarse, volume=volume), of_node, centres, mean)
+    return _with_means(coarse, of_node, mesh_graph)
+
+
+def clusters_of(mesh_graph: MeshGraph, of_node: IntArray) -> Clusters:
+    """The clusters that are given by (N,) the cluster 0, 1, ... of every node of a mesh graph."""
+    graph = mesh_graph.graph
+    ends = of_node[graph.edges].astype(np.int64)
+    across = ends[:, 0] != ends[:, 1]
+    count = int(of_node.max()) + 1
+    keys, which = np.unique(ends[across].min(axis=1) * count + ends[across].max(axis=1), return_inverse=True)
+    edges = np.stack([keys // count, keys % count], axis=1).astype(np.int32)
+    weight, length = (group_sums(which, values[across], len(keys)) for values in (graph.weight, graph.length))
+    return _with_means(SurfaceGraph(edges, weight, graph.volume, length), of_node, mesh_graph)
+
+
+def _with_means(coarse: SurfaceGraph, of_node: IntArray, mesh_graph: MeshGraph) -> Clusters:
+    """Clusters with their volumes, and with the means of places and thickness over their nodes."""
+    volume = mesh_graph.graph.volume
+    points, thickness = mesh_graph.points, mesh_graph.thickness
+    total = group_sums(of_node, volume)
+    centres = np.stack([group_sums(of_node, volume * points[:, axis]) / total for axis in range(3)], axis=1)
+    mean = None if thickness is None else group_sums(of_node, volume * thickness) / total
+    return Clusters(replace(coarse, volume=total), of_node, centres, mean)
 
 
 def _with_small_components(of_host: IntArray, host_nodes: IntArray, component: IntArray, pairs: IntArray) -> IntArray:

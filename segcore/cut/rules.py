@@ -1,15 +1,16 @@
 """Rules for splitting: the choice among several cuts, the order of the splits, and the automatic number of segments."""
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Protocol
 
 import numpy as np
 
-from segcore.arrays import FloatArray
+from segcore.arrays import BoolArray, FloatArray, IntArray
 from segcore.coarsen.clusters import Clusters
 from segcore.cut.features import ClusterFields, Segment, cut_features
-from segcore.cut.order import best_order
+from segcore.cut.order import best_order_of_steps
+from segcore.cut.symmetric_cuts import second_of_pair, symmetric_cuts, symmetric_sweeps
 from segcore.graphs.cheeger import Cut
 from segcore.graphs.connected_sides import with_connected_sides
 from segcore.graphs.surface_graph import SurfaceGraph
@@ -33,20 +34,44 @@ class Split:
     value: float  # normalized cut, or the ratio that orders the splits, times sqrt(total volume)
     priority: float  # splits are made by increasing priority
     late: bool  # True if the smaller side is so small that the split comes after all others
+    image: BoolArray | None = (
+        None  # (N,) the second part that the same step cuts off, disjoint from the side of the cut
+    )
+
+    def with_image(self, image: IntArray) -> "Split":
+        """Return the split that also cuts off the mirror image of the side of the cut, if the two are a pair.
+
+        Parameters
+        ----------
+        image : (N,) the mirror image of every node.
+        """
+        return replace(self, image=second_of_pair(self.cut.side, image))
+
+    @property
+    def second(self) -> "Split":
+        """The split that cuts the image off the rest of a pair."""
+        assert self.image is not None
+        cut = self.cut
+        return replace(self, cut=Cut(self.image, cut.weight, cut.inside, cut.outside - cut.inside), image=None)
 
 
 class SplitRule(Protocol):
     """Chooses the splits of a tree."""
 
-    def best_split(self, segment: Segment) -> Split:
-        """Return the split of a segment of at least two nodes."""
+    def best_split(self, segment: Segment, image: IntArray | None = None) -> Split:
+        """Return the split of a segment of at least two nodes.
+
+        Parameters
+        ----------
+        image : (M,) the place in the segment of the mirror image of every node, if the segment is its own image.
+        """
 
     def finished(self, tree: Tree, splits: Sequence[Split | None]) -> Tree:
         """Return the tree in its final order with its automatic number of segments.
 
         Parameters
         ----------
-        splits : (S,) None for splits between components, which come first.
+        splits : (S,) None for splits between components, which come first. Splits of one step follow each other.
         """
 
 
@@ -65,9 +90,14 @@ class RatioRule:
         self._rng = rng
         self._total = graph.total_volume
 
-    def best_split(self, segment: Segment) -> Split:
+    def best_split(self, segment: Segment, image: IntArray | None = None) -> Split:
         cut = SOLVERS[self._parameters.solver](segment.graph, self._parameters, self._rng)
-        cut = with_connected_sides(segment.graph, cut)
+        symmetric = [] if image is None else symmetric_cuts(segment.graph, image, [cut.side])
+        if image is not None and symmetric:
+            return self._split(segment, min(symmetric, key=lambda cut: cut.ncut)).with_image(image)
+        return self._split(segment, with_connected_sides(segment.graph, cut))
+
+    def _split(self, segment: Segment, cut: Cut) -> Split:
         order = self._parameters.split_order
         value = (cut.ncc if order == "ncc" else cut.ncut) * np.sqrt(self._total)
         priority = -segment.graph.total_volume if order == "volume" else value
@@ -91,7 +121,10 @@ class LearnedRule:
         self._rng = rng
         self._total = fields.graph.total_volume
 
-    def best_split(self, segment: Segment) -> Split:
+    def best_split(self, segment: Segment, image: IntArray | None = None) -> Split:
+        symmetric = [] if image is None else self._symmetric_candidates(segment, image)
+        if image is not None and symmetric:
+            return self.best_of(symmetric, self.features(segment, symmetric)).with_image(image)
         candidates = self.candidates(segment)
         return self.best_of(candidates, self.features(segment, candidates))
 
@@ -111,6 +144,12 @@ class LearnedRule:
         connected = (with_connected_sides(segment.graph, cut) for cut in cuts)
         return list({cut.key: cut for cut in connected}.values())
 
+    def _symmetric_candidates(self, segment: Segment, image: IntArray) -> list[Cut]:
+        if self._parameters.solver == "flow":
+            return symmetric_sweeps(segment.graph, image)
+        cuts = candidate_cuts(segment.graph, self._parameters, self._rng)
+        return symmetric_cuts(segment.graph, image, [cut.side for cut in cuts])
+
     def features(self, segment: Segment, candidates: Sequence[Cut]) -> FloatArray:
         """(N, M) features of the candidates, see ``segcore.cut.features``."""
         return np.stack([cut_features(self._fields, segment, cut) for cut in candidates])
@@ -124,5 +163,5 @@ class LearnedRule:
         pairs = np.array([2.0 * split.cut.inside * split.cut.outside / self._total**2 for split in learned])
         kept = np.array([split.priority for split in learned])
         gain = np.where([split.late for split in learned], _LATE_GAIN, pairs * (1.0 - 2.0 * kept))
-        order, worthwhile = best_order(parent, gain, pairs)
+        order, worthwhile = best_order_of_steps(tree.steps[apart:] - apart, parent, gain, pairs)
         return tree.reordered([*range(apart), *(apart + s for s in order)], apart + worthwhile + 1)

@@ -25,6 +25,12 @@ class Tree:
     cut_value: FloatArray  # (S,) normalized cut times sqrt(total volume); 0 for splits between components
     leaf: IntArray  # (N,) the leaf of every node of the graph
     automatic_segments: int
+    step: IntArray | None = None  # (S,) 0, 1, ...: splits of one step are made together; None if each is a step
+
+    @property
+    def steps(self) -> IntArray:
+        """(S,) the step of every split."""
+        return np.arange(len(self.split_node), dtype=np.int32) if self.step is None else self.step
 
     def reordered(self, order: Sequence[int], automatic_segments: int) -> "Tree":
         """Return the same splits in another order, parents before children.
@@ -35,7 +41,13 @@ class Tree:
         """
         splits = np.asarray(order, dtype=np.int32)
         number = renumbered_nodes(splits)
-        return Tree(number[self.split_node[splits]], self.cut_value[splits], number[self.leaf], automatic_segments)
+        return Tree(
+            number[self.split_node[splits]],
+            self.cut_value[splits],
+            number[self.leaf],
+            automatic_segments,
+            _renumbered_steps(self.steps[splits]),
+        )
 
     def leaf_intervals(self) -> LeafIntervals:
         """Return the places of the leaves: those of the first child of a node come before those of the second."""
@@ -48,3 +60,9 @@ class Tree:
             first[2 * split + 1] = first[node]
             first[2 * split + 2] = first[node] + leaves[2 * split + 1]
         return LeafIntervals(first, first + leaves)
+
+
+def _renumbered_steps(step: IntArray) -> IntArray:
+    """(S,) 0, 1, ... in the order of the splits; those of a step follow each other."""
+    renumbered: IntArray = np.cumsum(np.diff(step, prepend=step[:1]) != 0, dtype=np.int32)
+    return renumbered

@@ -153,7 +153,7 @@ class _Drawing:
         leaf_at[place_of_node[leaves]] = leaves
         leaf = leaf_at[self._placement.place]
         number = _larger_first(tree, group_sums(leaf, self._volume, len(place_of_node)))
-        return Tree(number[tree.split_node], tree.cut_value, number[leaf], tree.automatic_segments)
+        return Tree(number[tree.split_node], tree.cut_value, number[leaf], tree.automatic_segments, tree.step)
 
 
 def _larger_first(tree: Tree, volume: FloatArray) -> IntArray:
