@@ -100,9 +100,9 @@ def _in_one_piece(graph: SurfaceGraph, of_node: IntArray, count: int) -> IntArra
     is_loose[order[np.unique(cluster[order], return_index=True)[1]]] = False
     one, other = np.concatenate([piece[graph.edges], piece[graph.edges][:, ::-1]]).T
     near = is_loose[one] & ~is_loose[other] & ((cluster[one] < count) == (cluster[other] < count))
-    keys, which = np.unique(one[near].astype(np.int64) * len(volume) + cluster[other[near]], return_inverse=True)
+    keys, which = np.unique(one[near].astype(np.int64) * (2 * count) + cluster[other[near]], return_inverse=True)
     border = group_sums(which, np.tile(graph.length, 2)[near])
-    joins, neighbour = keys // len(volume), keys % len(volume)
+    joins, neighbour = keys // (2 * count), keys % (2 * count)
     ascending = np.argsort(border, kind="stable")
     cluster[joins[ascending]] = neighbour[ascending]
     joined: IntArray = cluster[piece]

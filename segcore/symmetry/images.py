@@ -5,8 +5,10 @@ from dataclasses import dataclass
 import numpy as np
 from scipy.spatial import KDTree
 
-from segcore.arrays import BoolArray, FloatArray, IntArray
+from segcore.arrays import BoolArray, FloatArray, IntArray, group_sums
 from segcore.clean.surface import Surface
+from segcore.coarsen.assembly import NEGLIGIBLE
+from segcore.graphs.surface_graph import connected_components
 from segcore.mesh import face_centroids
 from segcore.symmetry.reflection import Reflection, find_reflection
 
@@ -33,28 +35,78 @@ def mirror_image(surface: Surface) -> MirrorImage | None:
 
 
 def image_under(surface: Surface, reflection: Reflection) -> MirrorImage | None:
-    """The mirror image of a surface under a reflection that maps it to itself; None if one half has no face.
+    """The mirror image of a surface under a reflection that maps it to itself.
 
     A face whose centroid is in the plane is in the first half. The image of a face is the face of the other half that
-    is nearest to its mirrored centroid, with the distance of the normals as a further coordinate.
+    is nearest to its mirrored centroid, with the distance of the normals as a further coordinate. The images of the
+    faces of one component are in one component.
+
+    Returns
+    -------
+    None if one half has no face, or if a component that is not negligible has no component as its image.
     """
     centres = face_centroids(surface.vertices, surface.faces)
     is_first = reflection.heights(centres) >= 0.0
     if is_first.all() or not is_first.any():
         return None
-    size = float(np.sqrt(surface.areas.sum()))
-    places = np.concatenate([centres, _NORMAL * size * surface.normals], axis=1)
-    images = np.concatenate(
-        [reflection.of_points(centres), _NORMAL * size * reflection.of_directions(surface.normals)], axis=1
-    )
-    of_face = np.empty(len(centres), dtype=np.int32)
-    for here in (is_first, ~is_first):
-        there = np.flatnonzero(~here)
-        of_face[here] = there[KDTree(places[there]).query(images[here])[1]]
+    places = _Places(surface, reflection, centres, is_first)
+    component = connected_components(surface.edge_faces, len(surface.faces))
+    of_face = places.nearest(np.arange(len(centres)), np.arange(len(centres)))
+    if component.max() > 0:
+        partner = _partners(component, component[of_face], surface.areas)
+        if partner is None:
+            return None
+        for c in np.unique(component[partner[component] != component[of_face]]).tolist():
+            here, there = np.flatnonzero(component == c), np.flatnonzero(component == partner[c])
+            of_face[here] = places.nearest(here, there, of_face[here])
     away = np.linalg.norm(centres[of_face] - reflection.of_points(centres), axis=1)
     exact = away <= _EXACT * np.sqrt(surface.areas)
-    return MirrorImage(reflection, is_first, of_face, bool(_share(surface.areas, exact) >= _MESHED_ALIKE))
+    alike = surface.areas[exact].sum() >= _MESHED_ALIKE * surface.areas.sum()
+    return MirrorImage(reflection, is_first, of_face, bool(alike))
 
 
-def _share(areas: FloatArray, chosen: BoolArray) -> float:
-    return float(areas[chosen].sum() / areas.sum())
+class _Places:
+    """The places of faces in the space of centroids and normals, and those of their images."""
+
+    def __init__(self, surface: Surface, reflection: Reflection, centres: FloatArray, is_first: BoolArray) -> None:
+        far = _NORMAL * float(np.sqrt(surface.areas.sum()))
+        normals = surface.normals
+        self._is_first = is_first
+        self._place = np.concatenate([centres, far * normals], axis=1)
+        self._image = np.concatenate([reflection.of_points(centres), far * reflection.of_directions(normals)], axis=1)
+
+    def nearest(self, faces: IntArray, among: IntArray, otherwise: IntArray | None = None) -> IntArray:
+        """(M,) the nearest of some faces to the image of every face (M,), in the other half.
+
+        Parameters
+        ----------
+        otherwise : (M,) the result if none of the faces to choose from is in the other half.
+        """
+        result = np.zeros(len(faces), dtype=np.int32) if otherwise is None else otherwise.copy()
+        for half in (True, False):
+            here, there = self._is_first[faces] == half, among[self._is_first[among] != half]
+            if len(there) > 0:
+                result[here] = there[KDTree(self._place[there]).query(self._image[faces[here]])[1]]
+        return result
+
+
+def _partners(component: IntArray, image: IntArray, areas: FloatArray) -> IntArray | None:
+    """(C,) the component that has most of the image of every component.
+
+    A negligible component whose partner has another partner is its own one. If there is such a component that is not
+    negligible, there are no partners.
+
+    Parameters
+    ----------
+    component, image : (F,) the component of every face, and that of its image.
+    """
+    count = int(component.max()) + 1
+    keys, which = np.unique(component.astype(np.int64) * count + image, return_inverse=True)
+    shared = group_sums(which, areas)
+    partner = np.empty(count, dtype=np.int32)
+    ascending = np.argsort(shared, kind="stable")
+    partner[keys[ascending] // count] = keys[ascending] % count
+    is_alone = partner[partner] != np.arange(count)
+    if (is_alone & (group_sums(component, areas) > NEGLIGIBLE * areas.sum())).any():
+        return None
+    return np.where(is_alone, np.arange(count), partner).astype(np.int32)

@@ -2,7 +2,9 @@
 
 Candidates are the planes through the centroid of the area that are normal to an axis of the coordinates or to a
 principal axis of the area. A candidate is tested on points spread evenly over the area: the image of a point has to lie
-on the surface, with the mirrored normal.
+on the surface, with the mirrored normal. Folds and layers close to each other can fail this test, because the points do
+not resolve them. A candidate that fails by little is therefore accepted as well if the images of the vertices are
+vertices.
 """
 
 from dataclasses import dataclass
@@ -10,7 +12,7 @@ from dataclasses import dataclass
 import numpy as np
 from scipy.spatial import KDTree
 
-from segcore.arrays import BoolArray, FloatArray, IntArray
+from segcore.arrays import BoolArray, FloatArray, IntArray, group_sums
 from segcore.clean.surface import Surface
 from segcore.coarsen.contacts import spread_points
 
@@ -24,6 +26,7 @@ _REACH = 2.5  # of an image from that point, in spacings
 _NORMALS = 0.8  # least cosine between the mirrored normal and that of the point
 _PROBABLE = 0.85  # share of the points that agree below which a candidate is given up
 SYMMETRIC = 0.98  # least share of the points that agree
+_VERTEX_DISTANCE = 0.2  # of the image of a vertex from a vertex, in the square root of the mean area of a face
 _REFINEMENTS = 3  # of a candidate that is nearly symmetric
 _BETTER = 0.005  # increase of the share by a refinement below which there is no further one
 _SAME_AXIS = 0.9999  # cosine from which two axes are one
@@ -113,6 +116,7 @@ class _Test:
         self._points = points.position
         self._normals = surface.normals[points.face]
         self._tree = KDTree(points.position)
+        self._surface = surface
 
     def accepted(self, candidate: Reflection) -> Reflection | None:
         """The candidate, refined if need be, if the surface is symmetric in it."""
@@ -124,6 +128,8 @@ class _Test:
             agrees, nearest = self._agrees(candidate, stride)
             share = float(agrees.mean())
             if share >= SYMMETRIC:
+                return candidate
+            if share >= _PROBABLE and self._maps_vertices(candidate):
                 return candidate
             if share < max(_PROBABLE, before + _BETTER):
                 return None
@@ -141,3 +147,11 @@ class _Test:
         spacing = self._size / np.sqrt(_POINTS)
         close = (distance <= _REACH * spacing) & (away <= _DISTANCE * self._size)
         return (close & (turned >= _NORMALS)).any(axis=1), near[:, 0]
+
+    def _maps_vertices(self, reflection: Reflection) -> bool:
+        """True if the images of almost all vertices, by the area of their faces, are next to vertices."""
+        vertices, faces, areas = self._surface.vertices, self._surface.faces, self._surface.areas
+        most = min(_DISTANCE * self._size, _VERTEX_DISTANCE * self._size / np.sqrt(len(faces)))
+        distance = np.asarray(KDTree(vertices).query(reflection.of_points(vertices), distance_upper_bound=most)[0])
+        area = group_sums(faces.ravel(), np.repeat(areas, 3), len(vertices))
+        return bool(area[distance <= most].sum() >= SYMMETRIC * area.sum())
