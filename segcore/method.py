@@ -22,7 +22,7 @@ from segcore.mesh import Mesh
 from segcore.parameters import SegmentationParameters
 from segcore.progress import OnProgress, Progress
 from segcore.symmetry.clusters import cluster_symmetrically, symmetrised
-from segcore.symmetry.images import mirror_image
+from segcore.symmetry.images import MirrorImage, mirror_image
 
 
 def segment(
@@ -69,16 +69,18 @@ def segment(
     after_splits = partial(progress.after_splits, chosen.max_segments)
     tree = bisect(clusters.graph, clusters.points, rule, chosen.max_segments, after_splits, image)
     progress("label")
-    tree = _over_faces(tree, clusters, nodes, links, surface)
+    tree = _over_faces(tree, clusters, nodes, links, surface, mirror)
     hierarchy = _of_input(surface, tree)
     progress("label", 1.0)
     return hierarchy
 
 
-def _over_faces(tree: Tree, clusters: Clusters, nodes: MeshGraph, links: Links, surface: Surface) -> Tree:
+def _over_faces(
+    tree: Tree, clusters: Clusters, nodes: MeshGraph, links: Links, surface: Surface, mirror: MirrorImage | None
+) -> Tree:
     """Carry a tree over the clusters over to the faces; if the nodes are the faces, draw its boundaries as well."""
     if nodes.corners is None:
-        return draw_boundaries(replace(tree, leaf=tree.leaf[clusters.of_node]), nodes, links, surface)
+        return draw_boundaries(replace(tree, leaf=tree.leaf[clusters.of_node]), nodes, links, surface, mirror)
     linked = surface.face_graph().with_edges(links.faces, links.length, links.length)
     return project(tree, clusters.of_node[nodes.corners], linked)
 

@@ -4,11 +4,12 @@ from dataclasses import replace
 
 import numpy as np
 
-from segcore.arrays import FloatArray, IntArray, group_sums
+from segcore.arrays import IntArray, group_sums
 from segcore.coarsen.clusters import Clusters, cluster_nodes, clusters_of
 from segcore.graphs.mesh_graph import MeshGraph
-from segcore.graphs.surface_graph import SurfaceGraph, connected_components
+from segcore.graphs.surface_graph import SurfaceGraph
 from segcore.symmetry.images import MirrorImage
+from segcore.symmetry.pieces import in_one_piece
 
 
 def cluster_symmetrically(
@@ -72,7 +73,7 @@ def _mirrored(graph: SurfaceGraph, mirror: MirrorImage, of_first: IntArray) -> I
         of_node = np.empty(graph.node_count, dtype=np.int32)
         of_node[first] = of_first
         of_node[second] = of_node[mirror.of_face[second]] + count
-        of_node = _in_one_piece(graph, of_node, count)
+        of_node = in_one_piece(graph, of_node, np.repeat(np.arange(2, dtype=np.int32), count))
         of_first = of_node[first]
         is_empty = np.bincount(of_node, minlength=2 * count)[count:] == 0
         if not is_empty.any():
@@ -81,32 +82,6 @@ def _mirrored(graph: SurfaceGraph, mirror: MirrorImage, of_first: IntArray) -> I
         place = of_node[mirror.of_face[first]] - count
         joined[of_first[::-1]] = np.where(is_empty[of_first], place, of_first)[::-1]
         of_first = np.unique(joined[of_first], return_inverse=True)[1].astype(np.int32)
-
-
-def _in_one_piece(graph: SurfaceGraph, of_node: IntArray, count: int) -> IntArray:
-    """Clusters of which all pieces but the largest have joined the neighbour with the longest border in their half.
-
-    Parameters
-    ----------
-    count : the number of clusters of a half; a cluster i >= count is in the second half.
-    """
-    a, b = graph.edges.T
-    piece = connected_components(graph.edges[of_node[a] == of_node[b]], graph.node_count)
-    volume = group_sums(piece, graph.volume)
-    cluster = np.empty(len(volume), dtype=np.int32)
-    cluster[piece] = of_node
-    order = np.lexsort((-volume, cluster))
-    is_loose = np.ones(len(volume), dtype=bool)
-    is_loose[order[np.unique(cluster[order], return_index=True)[1]]] = False
-    one, other = np.concatenate([piece[graph.edges], piece[graph.edges][:, ::-1]]).T
-    near = is_loose[one] & ~is_loose[other] & ((cluster[one] < count) == (cluster[other] < count))
-    keys, which = np.unique(one[near].astype(np.int64) * (2 * count) + cluster[other[near]], return_inverse=True)
-    border = group_sums(which, np.tile(graph.length, 2)[near])
-    joins, neighbour = keys // (2 * count), keys % (2 * count)
-    ascending = np.argsort(border, kind="stable")
-    cluster[joins[ascending]] = neighbour[ascending]
-    joined: IntArray = cluster[piece]
-    return joined
 
 
 def local_image(nodes: IntArray, image: IntArray) -> IntArray | None:
@@ -120,8 +95,3 @@ def local_image(nodes: IntArray, image: IntArray) -> IntArray | None:
     images = image[nodes]
     place = np.minimum(np.searchsorted(nodes, images), len(nodes) - 1)
     return place.astype(np.int32) if (nodes[place] == images).all() else None
-
-
-def mean_and_difference(values: FloatArray, image: IntArray) -> tuple[FloatArray, FloatArray]:
-    """The even and the odd part of a function: half of its sum with its mirror image, and of the difference."""
-    return 0.5 * (values + values[image]), 0.5 * (values - values[image])

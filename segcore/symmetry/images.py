@@ -51,13 +51,14 @@ def image_under(surface: Surface, reflection: Reflection) -> MirrorImage | None:
         return None
     places = _Places(surface, reflection, centres, is_first)
     component = connected_components(surface.edge_faces, len(surface.faces))
-    of_face = places.nearest(np.arange(len(centres)), np.arange(len(centres)))
+    faces = np.arange(len(centres), dtype=np.int32)
+    of_face = places.nearest(faces, faces)
     if component.max() > 0:
         partner = _partners(component, component[of_face], surface.areas)
         if partner is None:
             return None
         for c in np.unique(component[partner[component] != component[of_face]]).tolist():
-            here, there = np.flatnonzero(component == c), np.flatnonzero(component == partner[c])
+            here, there = faces[component == c], faces[component == partner[c]]
             of_face[here] = places.nearest(here, there, of_face[here])
     away = np.linalg.norm(centres[of_face] - reflection.of_points(centres), axis=1)
     exact = away <= _EXACT * np.sqrt(surface.areas)
