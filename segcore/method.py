@@ -9,7 +9,7 @@ from segcore.affinity.mesh_graphs import mesh_graph
 from segcore.arrays import group_sums
 from segcore.clean.surface import Surface, build_surface
 from segcore.coarsen.assembly import assemble
-from segcore.coarsen.clusters import Clusters, cluster_nodes
+from segcore.coarsen.clusters import Clusters
 from segcore.coarsen.contacts import Links
 from segcore.cut.bisection import bisect
 from segcore.cut.rules import split_rule
@@ -21,7 +21,7 @@ from segcore.label.projection import project
 from segcore.mesh import Mesh
 from segcore.parameters import SegmentationParameters
 from segcore.progress import OnProgress, Progress
-from segcore.symmetry.clusters import cluster_symmetrically, symmetrised
+from segcore.symmetry.clusters import clusters_with_images, symmetrised
 from segcore.symmetry.images import MirrorImage, mirror_image
 
 
@@ -56,18 +56,13 @@ def segment(
     nodes = mesh_graph(surface, chosen)
     progress("coarsen")
     mirror = mirror_image(surface) if chosen.is_symmetric else None
-    if mirror is None:
-        image = None
-        clusters = cluster_nodes(nodes, chosen.clusters, rng)
-    else:
-        clusters, image = cluster_symmetrically(nodes, mirror, chosen.clusters, rng)
+    clusters = clusters_with_images(nodes, mirror, chosen.clusters, rng)
     clusters, links = assemble(surface, nodes, clusters, chosen.max_segments)
-    if mirror is not None and image is not None:
-        clusters = symmetrised(clusters, image, mirror)
+    clusters = symmetrised(clusters, mirror)
     progress("cut")
     rule = split_rule(clusters, chosen, rng)
     after_splits = partial(progress.after_splits, chosen.max_segments)
-    tree = bisect(clusters.graph, clusters.points, rule, chosen.max_segments, after_splits, image)
+    tree = bisect(clusters.graph, clusters.points, rule, chosen.max_segments, after_splits, clusters.image)
     progress("label")
     tree = _over_faces(tree, clusters, nodes, links, surface, mirror)
     hierarchy = _of_input(surface, tree)

@@ -21,6 +21,7 @@ class Clusters:
     of_node: IntArray  # the cluster of every node of the mesh graph
     points: FloatArray  # (N, 3) their centres
     thickness: FloatArray | None  # (N,) their mean logarithm of the shape diameter over sqrt(total area), if measured
+    image: IntArray | None = None  # (N,) the mirror image of every cluster, if the surface is symmetric
 
 
 def cluster_nodes(mesh_graph: MeshGraph, target: int, rng: np.random.Generator) -> Clusters:

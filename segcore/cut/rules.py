@@ -92,9 +92,11 @@ class RatioRule:
 
     def best_split(self, segment: Segment, image: IntArray | None = None) -> Split:
         cut = SOLVERS[self._parameters.solver](segment.graph, self._parameters, self._rng)
-        symmetric = [] if image is None else symmetric_cuts(segment.graph, image, [cut.side])
-        if image is not None and symmetric:
-            return self._split(segment, min(symmetric, key=lambda cut: cut.ncut)).with_image(image)
+        if image is not None:
+            graph = segment.graph
+            symmetric = [*symmetric_cuts(graph, image, [cut.side]), *symmetric_sweeps(graph, image)]
+            if symmetric:
+                return self._split(segment, min(symmetric, key=lambda cut: cut.ncut)).with_image(image)
         return self._split(segment, with_connected_sides(segment.graph, cut))
 
     def _split(self, segment: Segment, cut: Cut) -> Split:
@@ -105,9 +107,8 @@ class RatioRule:
 
     def finished(self, tree: Tree, splits: Sequence[Split | None]) -> Tree:
         size = np.sqrt(self._total)
-        enough = (
-            s for s, split in enumerate(splits) if split and (split.late or split.cut.ncut * size >= AUTOMATIC_NCUT)
-        )
+        starts = np.flatnonzero(np.diff(tree.steps, prepend=-1)).tolist()  # the first splits of the steps
+        enough = (s for s in starts if (split := splits[s]) and (split.late or split.cut.ncut * size >= AUTOMATIC_NCUT))
         return tree.reordered(range(len(splits)), next(enough, len(splits)) + 1)
 
 

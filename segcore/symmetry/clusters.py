@@ -12,35 +12,42 @@ from segcore.symmetry.images import MirrorImage
 from segcore.symmetry.pieces import in_one_piece
 
 
-def cluster_symmetrically(
-    faces: MeshGraph, mirror: MirrorImage, target: int, rng: np.random.Generator
-) -> tuple[Clusters, IntArray]:
-    """About ``target`` connected clusters of faces (no coarsening if it is 0), and (N,) the image of every cluster.
+def clusters_with_images(
+    nodes: MeshGraph, mirror: MirrorImage | None, target: int, rng: np.random.Generator
+) -> Clusters:
+    """Coarsen a mesh graph to about ``target`` clusters, or not at all if it is 0; if it is symmetric, symmetrically.
 
     The first half is coarsened, and every face of the second half joins the image of the cluster of its image. No
     cluster lies in both halves: cluster i < N / 2 is in the first one, and its image is cluster i + N / 2.
-    """
-    first = np.flatnonzero(mirror.is_first).astype(np.int32)
-    half = MeshGraph(
-        faces.graph.subgraph(first),
-        faces.points[first],
-        None,
-        None if faces.thickness is None else faces.thickness[first],
-    )
-    of_first = cluster_nodes(half, (target + 1) // 2, rng).of_node
-    of_node = _mirrored(faces.graph, mirror, of_first)
-    count = (int(of_node.max()) + 1) // 2
-    image = np.roll(np.arange(2 * count, dtype=np.int32), count)
-    return clusters_of(faces, of_node), image
-
-
-def symmetrised(clusters: Clusters, image: IntArray, mirror: MirrorImage) -> Clusters:
-    """The clusters with the means of their own graph and its image: weights, lengths, volumes, places, thickness.
 
     Parameters
     ----------
-    image : (N,) the image of every cluster, an involution.
+    mirror : the mirror image of the surface, whose faces are the nodes; None if it is not symmetric.
     """
+    if mirror is None:
+        return cluster_nodes(nodes, target, rng)
+    first = np.flatnonzero(mirror.is_first).astype(np.int32)
+    half = MeshGraph(
+        nodes.graph.subgraph(first),
+        nodes.points[first],
+        None,
+        None if nodes.thickness is None else nodes.thickness[first],
+    )
+    of_first = cluster_nodes(half, (target + 1) // 2, rng).of_node
+    of_node = _mirrored(nodes.graph, mirror, of_first)
+    count = (int(of_node.max()) + 1) // 2
+    image = np.roll(np.arange(2 * count, dtype=np.int32), count)
+    return replace(clusters_of(nodes, of_node), image=image)
+
+
+def symmetrised(clusters: Clusters, mirror: MirrorImage | None) -> Clusters:
+    """Clusters with the means of their own graph and its image: weights, lengths, volumes, places and thickness.
+
+    Clusters without images, of a surface that is not symmetric, are returned as they are.
+    """
+    image = clusters.image
+    if mirror is None or image is None:
+        return clusters
     graph, points, thickness = clusters.graph, clusters.points, clusters.thickness
     count = graph.node_count
     both = np.concatenate([graph.edges, image[graph.edges]]).astype(np.int64)

@@ -15,6 +15,7 @@ from segcore.symmetry.reflection import Reflection, find_reflection
 # All set by hand.
 _NORMAL = 0.1  # distance, in sqrt(total area), that counts as much as a difference of normals of 1
 _EXACT = 0.1  # distance of an image from its face, in sqrt(area of the face), up to which the meshes coincide
+_IN_PLANE = 1e-9  # distance from the plane, in extents of the surface, that is rounding error
 _MESHED_ALIKE = 0.9  # share of the area with exact images from which the mesh is symmetric and not only the shape
 
 
@@ -46,7 +47,7 @@ def image_under(surface: Surface, reflection: Reflection) -> MirrorImage | None:
     None if one half has no face, or if a component that is not negligible has no component as its image.
     """
     centres = face_centroids(surface.vertices, surface.faces)
-    is_first = reflection.heights(centres) >= 0.0
+    is_first = reflection.heights(centres) >= -_IN_PLANE
     if is_first.all() or not is_first.any():
         return None
     places = _Places(surface, reflection, centres, is_first)

@@ -9,13 +9,22 @@ from segcore.graphs.surface_graph import SurfaceGraph, connected_components
 def in_one_piece(graph: SurfaceGraph, group: IntArray, kind: IntArray) -> IntArray:
     """(N,) groups of which all pieces but the largest have joined a neighbouring group of the same kind.
 
-    Of several neighbours the one with the longest border is taken. A piece without such a neighbour stays.
+    Of several neighbours the one with the longest border is taken. This is repeated, because a piece may have no other
+    neighbours than such pieces. A piece without a neighbour of its kind stays.
 
     Parameters
     ----------
     group : (N,) the group 0..K - 1 of every node.
     kind : (K,) of every group.
     """
+    while True:
+        joined = _joined_once(graph, group, kind)
+        if np.array_equal(joined, group):
+            return joined
+        group = joined
+
+
+def _joined_once(graph: SurfaceGraph, group: IntArray, kind: IntArray) -> IntArray:
     a, b = graph.edges.T
     piece = connected_components(graph.edges[group[a] == group[b]], graph.node_count)
     volume = group_sums(piece, graph.volume)
