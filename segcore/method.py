@@ -10,7 +10,7 @@ from segcore.arrays import group_sums
 from segcore.clean.surface import Surface, build_surface
 from segcore.coarsen.assembly import assemble
 from segcore.coarsen.authored import with_structure
-from segcore.coarsen.clusters import Clusters, cluster_nodes
+from segcore.coarsen.clusters import Clusters
 from segcore.coarsen.contacts import Links
 from segcore.cut.bisection import bisect
 from segcore.cut.rules import split_rule
@@ -23,6 +23,8 @@ from segcore.label.projection import project
 from segcore.mesh import Mesh
 from segcore.parameters import SegmentationParameters
 from segcore.progress import OnProgress, Progress
+from segcore.symmetry.clusters import clusters_with_images, symmetrised
+from segcore.symmetry.images import MirrorImage, mirror_image
 
 
 def segment(
@@ -60,24 +62,30 @@ def segment(
     progress("affinity")
     nodes = mesh_graph(surface, chosen)
     progress("coarsen")
-    clusters = cluster_nodes(nodes, chosen.clusters, rng)
+    mirror = mirror_image(surface) if chosen.is_symmetric and surface.authored is None else None
+    clusters = clusters_with_images(nodes, mirror, chosen.clusters, rng)
     clusters, links = assemble(surface, nodes, clusters, chosen.max_segments)
+    clusters = symmetrised(clusters, mirror)
     progress("cut")
     rule = split_rule(surface, clusters, chosen, rng)
     after_splits = partial(progress.after_splits, chosen.max_segments)
-    tree = bisect(clusters.graph, clusters.points, rule, chosen.max_segments, after_splits, clusters.authored)
+    tree = bisect(
+        clusters.graph, clusters.points, rule, chosen.max_segments, after_splits, clusters.authored, clusters.image
+    )
     tree = replace(tree, step=sibling_steps(clusters.graph, clusters.points, tree))
     progress("label")
-    tree = _over_faces(tree, clusters, nodes, links, surface)
+    tree = _over_faces(tree, clusters, nodes, links, surface, mirror)
     hierarchy = _of_input(surface, tree)
     progress("label", 1.0)
     return hierarchy
 
 
-def _over_faces(tree: Tree, clusters: Clusters, nodes: MeshGraph, links: Links, surface: Surface) -> Tree:
+def _over_faces(
+    tree: Tree, clusters: Clusters, nodes: MeshGraph, links: Links, surface: Surface, mirror: MirrorImage | None
+) -> Tree:
     """Carry a tree over the clusters over to the faces; if the nodes are the faces, draw its boundaries as well."""
     if nodes.corners is None:
-        return draw_boundaries(replace(tree, leaf=tree.leaf[clusters.of_node]), nodes, links, surface)
+        return draw_boundaries(replace(tree, leaf=tree.leaf[clusters.of_node]), nodes, links, surface, mirror)
     linked = surface.face_graph().with_edges(links.faces, links.length, links.length)
     return project(tree, clusters.of_node[nodes.corners], linked)
 

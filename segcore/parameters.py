@@ -101,6 +101,15 @@ class SegmentationParameters:
         """``order``, with "ncut" in place of "learned" if the affinity is not learned."""
         return "ncut" if self.order == "learned" and self.affinity != "learned" else self.order
 
+    @property
+    def is_symmetric(self) -> bool:
+        """True if a cut of a symmetric surface and its mirror image are one step."""
+        return (
+            self.graph == "faces"
+            and self.affinity in ("learned", "concavity")
+            and self.split_order in ("learned", "ncut")
+        )
+
     @classmethod
     def preset(cls, name: str) -> "SegmentationParameters":
         """The parameters of a named preset.

@@ -25,6 +25,7 @@ class Clusters:
     confidence: FloatArray | None  # (N,) share of the rays of the thickness that met the other side from inside
     body: IntArray  # (N,) the connected component of every cluster
     authored: IntArray | None = None  # (N,) the part of the structure of the file, if the cuts follow it
+    image: IntArray | None = None  # (N,) the mirror image of every cluster, if the surface is symmetric
 
 
 def cluster_nodes(mesh_graph: MeshGraph, target: int, rng: np.random.Generator) -> Clusters:
@@ -45,15 +46,34 @@ def cluster_nodes(mesh_graph: MeshGraph, target: int, rng: np.random.Generator) 
         coarse, of_host = coarsen(graph.subgraph(host_nodes), target or graph.node_count, rng)
         pairs = nearest_hosts(component, is_host, apart(points, authored))
         of_node = _with_small_components(of_host, host_nodes, component, pairs)
-    volume = group_sums(of_node, graph.volume)
-    centres = np.stack([group_sums(of_node, graph.volume * points[:, axis]) / volume for axis in range(3)], axis=1)
+    return _with_means(coarse, of_node, mesh_graph)
+
+
+def clusters_of(mesh_graph: MeshGraph, of_node: IntArray) -> Clusters:
+    """The clusters that are given by (N,) the cluster 0, 1, ... of every node of a mesh graph."""
+    graph = mesh_graph.graph
+    ends = of_node[graph.edges].astype(np.int64)
+    across = ends[:, 0] != ends[:, 1]
+    count = int(of_node.max()) + 1
+    keys, which = np.unique(ends[across].min(axis=1) * count + ends[across].max(axis=1), return_inverse=True)
+    edges = np.stack([keys // count, keys % count], axis=1).astype(np.int32)
+    weight, length = (group_sums(which, values[across], len(keys)) for values in (graph.weight, graph.length))
+    return _with_means(SurfaceGraph(edges, weight, graph.volume, length), of_node, mesh_graph)
+
+
+def _with_means(coarse: SurfaceGraph, of_node: IntArray, mesh_graph: MeshGraph) -> Clusters:
+    """Clusters with their volumes, and with the means of places and thickness over their nodes."""
+    volume = mesh_graph.graph.volume
+    points = mesh_graph.points
+    total = group_sums(of_node, volume)
+    centres = np.stack([group_sums(of_node, volume * points[:, axis]) / total for axis in range(3)], axis=1)
     thickness, confidence = (
-        None if values is None else group_sums(of_node, graph.volume * values) / volume
+        None if values is None else group_sums(of_node, volume * values) / total
         for values in (mesh_graph.thickness, mesh_graph.confidence)
     )
-    body = connected_components(coarse.edges, coarse.node_count)
-    of_cluster = None if authored is None else part_of_component(of_node, authored)
-    return Clusters(replace(coarse, volume=volume), of_node, centres, thickness, confidence, body, of_cluster)
+    authored = None if mesh_graph.authored is None else part_of_component(of_node, mesh_graph.authored)
+    body = connected_components(coarse.edges, len(total))
+    return Clusters(replace(coarse, volume=total), of_node, centres, thickness, confidence, body, authored)
 
 
 def _with_small_components(of_host: IntArray, host_nodes: IntArray, component: IntArray, pairs: IntArray) -> IntArray:

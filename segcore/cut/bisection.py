@@ -1,7 +1,7 @@
 """Best-first bisection of a graph into a tree of segments."""
 
 from collections.abc import Callable
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from heapq import heappop, heappush
 
 import numpy as np
@@ -12,6 +12,7 @@ from segcore.cut.fields import Segment
 from segcore.cut.rules import Split, SplitRule
 from segcore.graphs.surface_graph import SurfaceGraph, connected_components
 from segcore.graphs.tree import Tree
+from segcore.symmetry.clusters import local_image
 
 
 def bisect(
@@ -21,6 +22,7 @@ def bisect(
     max_segments: int,
     on_split: Callable[[float], None] = lambda _: None,
     authored: IntArray | None = None,
+    image: IntArray | None = None,
 ) -> Tree:
     """Separate the components of a graph, then repeatedly cut the segment of highest priority.
 
@@ -32,32 +34,71 @@ def bisect(
     on_split : called with the fraction of ``max_segments`` that is reached.
     authored : (N,) the authored part of every node, if the first splits separate these. Their number is then the
         automatic number of segments.
+    image : (N,) the mirror image of every node, an automorphism of the graph without a fixed point; None if there is
+        none. A cut and its image are one step.
 
     Notes
     -----
     Nodes keep their volumes in every segment. A cut whose smaller side has less than 0.2 % of the total volume comes
-    after all others.
+    after all others. The last step may be incomplete if it has more splits than there may be.
     """
     component = connected_components(graph.edges, graph.node_count)
-    tree = _GrowingTree(graph, rule)
-    for node, members in tree.part_components(component, group_by_part(points, component, authored)):
-        tree.add(node, Segment(members, graph.subgraph(members), 0, 0.0))
+    tree = _GrowingTree(graph, rule, max_segments, image)
+    for twins in tree.part_components(component, group_by_part(points, component, authored)):
+        tree.add(twins)
     while tree.segments < max_segments and tree.split_next():
         on_split(tree.segments / max_segments)
     finished = tree.finished()
     return finished if authored is None else replace(finished, automatic_segments=int(authored.max()) + 1)
 
 
+@dataclass(frozen=True, slots=True, eq=False)
+class _Copy:
+    """A segment as a node of the tree."""
+
+    node: int
+    nodes: IntArray  # (M,) of the graph; those of two copies at the same place are images of each other
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class _Twins:
+    """A segment and its images, which are split alike in one step."""
+
+    segment: Segment  # the first copy
+    copies: list[_Copy]
+    image: IntArray | None  # (M,) the place of the image of every node, if the segment is its own image
+
+    def part(self, side: BoolArray, nodes: list[int], split: Split) -> "_Twins":
+        """The twins of one side of a cut.
+
+        Parameters
+        ----------
+        nodes : of the tree, one for every copy; two for every copy if the image of the side is a part as well.
+        """
+        local = np.flatnonzero(side).astype(np.int32)
+        places = [local] if len(nodes) == len(self.copies) or self.image is None else [local, self.image[local]]
+        members = [copy.nodes[place] for copy in self.copies for place in places]
+        copies = [_Copy(node, part) for node, part in zip(nodes, members, strict=True)]
+        segment = self.segment
+        graph = segment.graph.subgraph(local)
+        part = Segment(copies[0].nodes, graph, segment.depth + 1, split.cut.ncut)
+        return _Twins(part, copies, None if self.image is None else local_image(local, self.image))
+
+
 class _GrowingTree:
     """The state of a best-first bisection."""
 
-    def __init__(self, graph: SurfaceGraph, rule: SplitRule) -> None:
+    def __init__(self, graph: SurfaceGraph, rule: SplitRule, max_segments: int, image: IntArray | None) -> None:
+        self._graph = graph
         self._rule = rule
+        self._max_segments = max_segments
+        self._image = image
         self._volume = graph.volume
         self._split_node: list[int] = []
         self._splits: list[Split | None] = []
+        self._step: list[int] = []
         self._queue: list[tuple[bool, float, int]] = []
-        self._segments: dict[int, Segment] = {}
+        self._waiting: dict[int, _Twins] = {}
         self._best: dict[int, Split] = {}
         self._leaf = np.zeros(graph.node_count, dtype=np.int32)
 
@@ -65,8 +106,8 @@ class _GrowingTree:
     def segments(self) -> int:
         return len(self._split_node) + 1
 
-    def part_components(self, component: IntArray, merges: IntArray) -> list[tuple[int, IntArray]]:
-        """Split groups of components in the reverse order of their merges; return every component's node and members.
+    def part_components(self, component: IntArray, merges: IntArray) -> list[_Twins]:
+        """Split groups of components in the reverse order of their merges; return the components.
 
         Parameters
         ----------
@@ -81,51 +122,98 @@ class _GrowingTree:
         node_of_group = np.zeros(2 * count - 1, dtype=np.int32)
         for i, (a, b) in reversed(list(enumerate(merges.tolist()))):
             larger, smaller = (a, b) if volume[a] >= volume[b] else (b, a)
-            node_of_group[larger], node_of_group[smaller] = self._split(int(node_of_group[count + i]), None)
+            node_of_group[larger], node_of_group[smaller] = self._split(
+                int(node_of_group[count + i]), None, self._next_step()
+            )
         members = np.split(np.argsort(component, kind="stable"), np.cumsum(np.bincount(component))[:-1])
-        return [(int(node_of_group[c]), members[c].astype(np.int32)) for c in range(count)]
+        copies = [_Copy(int(node_of_group[c]), members[c].astype(np.int32)) for c in range(count)]
+        return self._twins(component, copies)
 
-    def add(self, node: int, segment: Segment) -> None:
-        """Add a segment to the queue; find its best split now unless the split can only be a late one."""
-        self._segments[node] = segment
-        self._leaf[segment.nodes] = node
+    def _twins(self, component: IntArray, copies: list[_Copy]) -> list[_Twins]:
+        """The components, those that are images of each other together."""
+        if self._image is None:
+            return [_Twins(self._segment(copy), [copy], None) for copy in copies]
+        twins = []
+        for c, copy in enumerate(copies):
+            images = self._image[copy.nodes]
+            other = int(component[images[0]])
+            if other == c:
+                twins.append(_Twins(self._segment(copy), [copy], local_image(copy.nodes, self._image)))
+            elif c < other:
+                twins.append(_Twins(self._segment(copy), [copy, _Copy(copies[other].node, images)], None))
+        return twins
+
+    def _segment(self, copy: _Copy) -> Segment:
+        return Segment(copy.nodes, self._graph.subgraph(copy.nodes), 0, 0.0)
+
+    def add(self, twins: _Twins) -> None:
+        """Add segments to the queue; find their best split now unless the split can only be a late one."""
+        node, segment = twins.copies[0].node, twins.segment
+        self._waiting[node] = twins
+        for copy in twins.copies:
+            self._leaf[copy.nodes] = copy.node
         volume = segment.graph.total_volume
         if len(segment.nodes) == 1:
             return
         if volume >= self._rule.smallest_segment:
-            self._best[node] = self._rule.best_split(segment)
+            self._best[node] = self._rule.best_split(segment, twins.image)
             if not self._best[node].late:
                 heappush(self._queue, (False, self._best[node].priority, node))
                 return
         heappush(self._queue, (True, -volume, node))
 
     def split_next(self) -> bool:
-        """Make the next split; return False if every segment is a single node."""
+        """Make the next step; return False if every segment is a single node."""
         if not self._queue:
             return False
         _, _, node = heappop(self._queue)
-        segment = self._segments.pop(node)
-        split = self._best.pop(node, None) or self._rule.best_split(segment)
-        larger, smaller = self._split(node, split)
-        inside_larger = split.cut.side == (split.cut.inside >= split.cut.outside)
-        self.add(larger, _part(segment, inside_larger, split))
-        self.add(smaller, _part(segment, ~inside_larger, split))
+        twins = self._waiting.pop(node)
+        split = self._best.pop(node, None) or self._rule.best_split(twins.segment, twins.image)
+        for part in self._parts(twins, split):
+            self.add(part)
         return True
+
+    def _parts(self, twins: _Twins, split: Split) -> list[_Twins]:
+        """Make the same split of all copies; return the parts, the larger first."""
+        step = self._next_step()
+        cut_off, left = [], []
+        for copy in twins.copies:
+            node, rest = self._cut_off(copy.node, split, step)
+            cut_off.append(node)
+            if split.image is not None:
+                node, rest = self._cut_off(rest, split.second, step)
+                cut_off.append(node)
+            left.append(rest)
+        side = split.cut.side
+        if split.image is not None:
+            return [twins.part(~(side | split.image), left, split), twins.part(side, cut_off, split)]
+        if twins.image is not None and (side != side[twins.image]).all():
+            nodes = [node for both in zip(cut_off, left, strict=True) for node in both]
+            return [twins.part(side, nodes, split)]
+        parts = [twins.part(side, cut_off, split), twins.part(~side, left, split)]
+        return parts if split.cut.inside >= split.cut.outside else parts[::-1]
+
+    def _cut_off(self, node: int, split: Split, step: int) -> tuple[int, int]:
+        """Split a node unless the limit is reached; return the nodes of the side of the cut and of the rest."""
+        if self.segments >= self._max_segments:
+            return node, node
+        larger, smaller = self._split(node, split, step)
+        return (larger, smaller) if split.cut.inside >= split.cut.outside else (smaller, larger)
 
     def finished(self) -> Tree:
         """Return the tree in the order of the rule."""
         values = np.array([split.value if split else 0.0 for split in self._splits])
         limited = any(not late for late, _, _ in self._queue)
-        tree = Tree(np.array(self._split_node, dtype=np.int32), values, self._leaf, 1, limit_reached=limited)
+        step = np.array(self._step, dtype=np.int32)
+        tree = Tree(np.array(self._split_node, dtype=np.int32), values, self._leaf, 1, step, limited)
         return self._rule.finished(tree, self._splits)
 
-    def _split(self, node: int, split: Split | None) -> tuple[int, int]:
+    def _next_step(self) -> int:
+        return self._step[-1] + 1 if self._step else 0
+
+    def _split(self, node: int, split: Split | None, step: int) -> tuple[int, int]:
         """Append a split of a node; return its two children."""
         self._split_node.append(node)
         self._splits.append(split)
+        self._step.append(step)
         return 2 * len(self._split_node) - 1, 2 * len(self._split_node)
-
-
-def _part(segment: Segment, side: BoolArray, split: Split) -> Segment:
-    local = np.flatnonzero(side).astype(np.int32)
-    return Segment(segment.nodes[local], segment.graph.subgraph(local), segment.depth + 1, split.cut.ncut)

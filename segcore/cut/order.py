@@ -2,7 +2,9 @@
 
 from heapq import heapify, heappop, heappush
 
-from segcore.arrays import FloatArray, IntArray
+import numpy as np
+
+from segcore.arrays import FloatArray, IntArray, group_sums
 
 
 def best_order(parent: IntArray, gain: FloatArray, cost: FloatArray) -> tuple[list[int], int]:
@@ -52,3 +54,19 @@ def best_order(parent: IntArray, gain: FloatArray, cost: FloatArray) -> tuple[li
         for entry in waiting[block]:
             heappush(first, entry)
     return order, worthwhile
+
+
+def best_order_of_steps(step: IntArray, parent: IntArray, gain: FloatArray, cost: FloatArray) -> tuple[list[int], int]:
+    """``best_order`` of steps of one or more splits, which are made together; their gains and costs add up.
+
+    Parameters
+    ----------
+    step : (S,) 0, 1, ...: the step of every split; those of a step follow each other. The parent of the first of them
+        is the one that counts.
+    """
+    first = np.flatnonzero(np.diff(step, prepend=-1))
+    parent_step = np.append(step, -1)[parent[first]]
+    order, worthwhile = best_order(parent_step, group_sums(step, gain), group_sums(step, cost))
+    members = np.split(np.arange(len(step)), first[1:])
+    splits = [[int(s) for s in members[i]] for i in order]
+    return [s for group in splits for s in group], sum(len(group) for group in splits[:worthwhile])

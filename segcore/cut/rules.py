@@ -1,18 +1,19 @@
 """Rules for splitting: the choice among several cuts, the order of the splits, and the automatic number of segments."""
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Protocol
 
 import numpy as np
 
-from segcore.arrays import BoolArray, FloatArray
+from segcore.arrays import BoolArray, FloatArray, IntArray
 from segcore.clean.surface import Surface
 from segcore.coarsen.clusters import Clusters
 from segcore.cut.bodies import cuts_between_pieces
 from segcore.cut.features import FEATURES, cut_features
 from segcore.cut.fields import ClusterFields, Segment, SegmentFields, cluster_fields
-from segcore.cut.order import best_order
+from segcore.cut.order import best_order_of_steps
+from segcore.cut.symmetric_cuts import second_of_pair, symmetric_cuts, symmetric_sweeps
 from segcore.graphs.cheeger import Cut
 from segcore.graphs.connected_sides import with_connected_sides
 from segcore.graphs.surface_graph import SurfaceGraph
@@ -44,6 +45,23 @@ class Split:
     value: float  # normalized cut, or the ratio that orders the splits, times sqrt(total volume)
     priority: float  # splits are made by increasing priority
     late: bool  # True if the smaller side is so small that the split comes after all others
+    image: BoolArray | None = None  # (N,) the second part that the same step cuts off, disjoint from S
+
+    def with_image(self, image: IntArray) -> "Split":
+        """Return the split that also cuts off the mirror image of the side of the cut, if the two are a pair.
+
+        Parameters
+        ----------
+        image : (N,) the mirror image of every node.
+        """
+        return replace(self, image=second_of_pair(self.cut.side, image))
+
+    @property
+    def second(self) -> "Split":
+        """The split that cuts the image off the rest of a pair."""
+        assert self.image is not None
+        cut = self.cut
+        return replace(self, cut=Cut(self.image, cut.weight, cut.inside, cut.outside - cut.inside), image=None)
 
 
 class SplitRule(Protocol):
@@ -53,15 +71,20 @@ class SplitRule(Protocol):
     def smallest_segment(self) -> float:
         """Area below which every split of a segment is a late one."""
 
-    def best_split(self, segment: Segment) -> Split:
-        """Return the split of a segment of at least two nodes."""
+    def best_split(self, segment: Segment, image: IntArray | None = None) -> Split:
+        """Return the split of a segment of at least two nodes.
+
+        Parameters
+        ----------
+        image : (M,) the place in the segment of the mirror image of every node, if the segment is its own image.
+        """
 
     def finished(self, tree: Tree, splits: Sequence[Split | None]) -> Tree:
         """Return the tree in its final order with its automatic number of segments.
 
         Parameters
         ----------
-        splits : (S,) None for splits between components, which come first.
+        splits : (S,) None for splits between components, which come first. Splits of one step follow each other.
         """
 
 
@@ -86,9 +109,16 @@ class RatioRule:
     def smallest_segment(self) -> float:
         return 2.0 * SMALLEST_SIDE * self._total
 
-    def best_split(self, segment: Segment) -> Split:
+    def best_split(self, segment: Segment, image: IntArray | None = None) -> Split:
         cut = SOLVERS[self._parameters.solver](segment.graph, self._parameters, self._rng)
-        cut = with_connected_sides(segment.graph, cut)
+        if image is not None:
+            graph = segment.graph
+            symmetric = [*symmetric_cuts(graph, image, [cut.side]), *symmetric_sweeps(graph, image)]
+            if symmetric:
+                return self._split(segment, min(symmetric, key=lambda cut: cut.ncut)).with_image(image)
+        return self._split(segment, with_connected_sides(segment.graph, cut))
+
+    def _split(self, segment: Segment, cut: Cut) -> Split:
         order = self._parameters.split_order
         value = (cut.ncc if order == "ncc" else cut.ncut) * np.sqrt(self._total)
         priority = -segment.graph.total_volume if order == "volume" else value
@@ -96,9 +126,8 @@ class RatioRule:
 
     def finished(self, tree: Tree, splits: Sequence[Split | None]) -> Tree:
         size = np.sqrt(self._total)
-        enough = (
-            s for s, split in enumerate(splits) if split and (split.late or split.cut.ncut * size >= AUTOMATIC_NCUT)
-        )
+        starts = np.flatnonzero(np.diff(tree.step, prepend=-1)).tolist()  # the first splits of the steps
+        enough = (s for s in starts if (split := splits[s]) and (split.late or split.cut.ncut * size >= AUTOMATIC_NCUT))
         return tree.reordered(range(len(splits)), next(enough, len(splits)) + 1)
 
 
@@ -117,8 +146,10 @@ class LearnedRule:
         share = SMALLEST_SIDE if self._fields.bodies.count == 1 else SMALLEST_BODY
         return 2.0 * share * self._total
 
-    def best_split(self, segment: Segment) -> Split:
+    def best_split(self, segment: Segment, image: IntArray | None = None) -> Split:
         inside = self._fields.inside(segment)
+        if image is not None and (symmetric := self._symmetric_candidates(segment, inside, image)):
+            return self.best_of(symmetric, self.features(segment, inside, symmetric)).with_image(image)
         candidates = self.candidates(segment, inside)
         return self.best_of(candidates, self.features(segment, inside, candidates))
 
@@ -138,6 +169,14 @@ class LearnedRule:
         connected = [with_connected_sides(segment.graph, cut) for cut in cuts]
         between = cuts_between_pieces(segment.graph, inside.piece)
         return list({cut.key: cut for cut in connected + between}.values())
+
+    def _symmetric_candidates(self, segment: Segment, inside: SegmentFields, image: IntArray) -> list[Cut]:
+        graph = segment.graph
+        between = [cut.side for cut in cuts_between_pieces(graph, inside.piece)]
+        if self._parameters.solver == "flow":
+            return [*symmetric_sweeps(graph, image), *symmetric_cuts(graph, image, between)]
+        cuts = candidate_cuts(graph, self._parameters, self._rng)
+        return symmetric_cuts(graph, image, [*(cut.side for cut in cuts), *between])
 
     def features(self, segment: Segment, inside: SegmentFields, candidates: Sequence[Cut]) -> FloatArray:
         """(N, M) features of the candidates, see ``segcore.cut.features``."""
@@ -167,7 +206,7 @@ class LearnedRule:
         pairs = np.array([2.0 * split.cut.inside * split.cut.outside / self._total**2 for split in learned])
         kept = np.array([split.priority for split in learned])
         gain = pairs * (1.0 - 2.0 * kept)
-        order, worthwhile = best_order(parent, gain, pairs)
+        order, worthwhile = best_order_of_steps(tree.step[apart:] - apart, parent, gain, pairs)
         return tree.reordered([*range(apart), *(apart + s for s in order)], apart + worthwhile + 1)
 
 

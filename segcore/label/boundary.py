@@ -29,6 +29,8 @@ from segcore.label.leaves import (
     edges_around,
     move,
 )
+from segcore.label.mirrored import mirrored_places
+from segcore.symmetry.images import MirrorImage
 
 # The first two are compared with their neighbours in bench/RESULTS.md, "Constants and their neighbours", and their
 # effect is in "Boundaries" there. The others were set by hand.
@@ -38,7 +40,9 @@ _MOST_FACES = 16384  # in one band: that of a very fine mesh is narrower, becaus
 _ATTEMPTS = 3  # at a cut that keeps all parts of the hierarchy connected
 
 
-def draw_boundaries(tree: Tree, nodes: MeshGraph, links: Links, surface: Surface) -> Tree:
+def draw_boundaries(
+    tree: Tree, nodes: MeshGraph, links: Links, surface: Surface, mirror: MirrorImage | None = None
+) -> Tree:
     """Move the boundaries of a tree over the faces of a surface to minimum cuts nearby.
 
     The cost of a boundary is its length times (g + 0.1), g being the affinity. Every node of the tree that was
@@ -48,6 +52,7 @@ def draw_boundaries(tree: Tree, nodes: MeshGraph, links: Links, surface: Surface
     ----------
     nodes : the face dual graph of the surface.
     links : between its components.
+    mirror : the mirror image of the surface, if it is symmetric: one half gets the boundaries of the other.
     """
     if len(tree.split_node) == 0:
         return tree
@@ -61,6 +66,8 @@ def draw_boundaries(tree: Tree, nodes: MeshGraph, links: Links, surface: Surface
     drawing = _Drawing(tree, linked, Geometry(surface.edge_vertices, surface.vertices, nodes.points))
     for split in range(len(tree.split_node)):
         drawing.redraw(split)
+    if mirror is not None:
+        drawing.mirror(linked, mirror)
     return drawing.finished()
 
 
@@ -100,6 +107,11 @@ class _Drawing:
             if not broken.any():
                 return
             pinned |= broken
+
+    def mirror(self, graph: SurfaceGraph, mirror: MirrorImage) -> None:
+        """Copy the boundaries of the first half of a symmetric mesh to the second."""
+        placement = self._placement
+        placement.place[:] = mirrored_places(placement.place, placement.split_at, graph, mirror)
 
     def _bounds(self, split: int) -> Bounds:
         first, end = self._intervals.first, self._intervals.end

@@ -1,13 +1,20 @@
 import numpy as np
+import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
+from helpers.creatures import creature
 from helpers.graphs import is_connected, weighted_graph
+from helpers.meshes import rotation
 from helpers.trees import members
+from segcore.affinity.mesh_graphs import mesh_graph
+from segcore.clean.surface import build_surface
 from segcore.cut.bisection import bisect
-from segcore.cut.rules import AUTOMATIC_NCUT, RatioRule
+from segcore.cut.rules import AUTOMATIC_NCUT, RatioRule, split_rule
 from segcore.graphs.surface_graph import connected_components
 from segcore.parameters import SegmentationParameters
+from segcore.symmetry.clusters import clusters_with_images, symmetrised
+from segcore.symmetry.images import mirror_image
 
 
 def graph_of(pairs, count, weights=None, volume=None):
@@ -96,3 +103,77 @@ def test_cuts_of_less_than_a_five_hundredth_do_not_count_as_left():
     edges, weight = [(0, 1), (1, 2), (2, 3)], np.array([0.5, 1.0, 0.9])
     assert not grown(graph_of(edges, 4, weight, np.array([1.0, 1.0, 0.001, 0.001])), 2).limit_reached
     assert grown(graph_of(edges, 4, weight, np.ones(4)), 2).limit_reached
+
+
+def symmetric_tree(mesh, max_segments, **parameters):
+    """The tree of a symmetric body over its clusters, and the clusters."""
+    chosen = SegmentationParameters(**parameters)
+    surface = build_surface(mesh)
+    nodes, mirror = mesh_graph(surface, chosen), mirror_image(surface)
+    rng = np.random.default_rng(0)
+    clusters = symmetrised(clusters_with_images(nodes, mirror, 600, rng), mirror)
+    rule = split_rule(surface, clusters, chosen, rng)
+    return bisect(clusters.graph, clusters.points, rule, max_segments, image=clusters.image), clusters
+
+
+def labels_at(tree, splits):
+    """(N,) the node of the tree that every node of the graph is in after some splits."""
+    node = tree.leaf.copy()
+    parent = np.repeat(tree.split_node, 2)
+    while (deep := node > 2 * splits).any():
+        node[deep] = parent[node[deep] - 1]
+    return node
+
+
+@pytest.mark.parametrize(
+    "parameters",
+    [{"affinity": "learned"}, {"affinity": "concavity"}, {"affinity": "concavity", "solver": "fiedler"}],
+)
+@pytest.mark.parametrize("turn", [None, rotation(np.random.default_rng(2))])
+def test_after_every_step_the_segments_of_a_symmetric_body_are_symmetric(parameters, turn):
+    tree, clusters = symmetric_tree(creature(turn), 30, **parameters)
+    ends = 1 + np.flatnonzero(np.diff(tree.step, append=tree.step[-1] + 1))
+    for splits in [*ends[:-1], tree.automatic_segments - 1]:
+        labels = labels_at(tree, splits)
+        pairs = np.unique(np.stack([labels, labels[clusters.image]]), axis=1)
+        assert pairs.shape[1] == splits + 1  # every segment has one image
+    assert tree.automatic_segments - 1 in (0, *ends)
+    assert len(tree.split_node) == 29
+    np.testing.assert_array_equal(np.unique(tree.step), np.arange(tree.step[-1] + 1))
+    assert (np.diff(tree.step) >= 0).all()
+    for nodes in members(tree):
+        assert is_connected(clusters.graph, nodes)
+
+
+def test_the_two_cuts_of_a_step_have_one_value():
+    tree, _ = symmetric_tree(creature(), 30)
+    size = np.bincount(tree.step)
+    assert (size[:3] == 2).any()  # arms or legs come early
+    for step in np.flatnonzero(size == 2)[:-1]:
+        first, second = tree.cut_value[tree.step == step]
+        assert first == second
+
+
+def test_the_limit_is_reached_within_a_step():
+    for most in range(1, 9):
+        tree, _ = symmetric_tree(creature(), most)
+        assert len(tree.split_node) == most - 1
+
+
+def test_components_that_are_images_of_each_other_are_cut_alike():
+    """Two pairs of cliques with a bridge, apart from each other."""
+    clique = [(i, j) for i in range(5) for j in range(i)]
+    half = [*clique, *((i + 5, j + 5) for i, j in clique), (4, 5)]
+    pairs = [*half, *((i + 10, j + 10) for i, j in half)]
+    graph = graph_of(pairs, 20)
+    image = np.roll(np.arange(20, dtype=np.int32), 10)
+    points = np.arange(60, dtype=float).reshape(20, 3)
+    rule = RatioRule(graph, SegmentationParameters(order="ncut"), np.random.default_rng(0))
+    tree = bisect(graph, points, rule, 4, image=image)
+    np.testing.assert_array_equal(tree.step, [0, 1, 1])
+    assert len(np.unique(tree.leaf)) == 4
+    assert all(len(np.unique(tree.leaf[5 * i : 5 * i + 5])) == 1 for i in range(4))
+
+
+def test_without_images_every_split_is_a_step():
+    np.testing.assert_array_equal(grown(graph_of([(i, i + 1) for i in range(9)], 10), 6).steps, np.arange(5))

@@ -1,0 +1,104 @@
+"""Clusters of a symmetric surface: those of one half, their mirror images, and a graph that is symmetric as well."""
+
+from dataclasses import replace
+
+import numpy as np
+
+from segcore.arrays import IntArray, group_sums
+from segcore.coarsen.clusters import Clusters, cluster_nodes, clusters_of
+from segcore.graphs.mesh_graph import MeshGraph
+from segcore.graphs.surface_graph import SurfaceGraph
+from segcore.symmetry.images import MirrorImage
+from segcore.symmetry.pieces import in_one_piece
+
+
+def clusters_with_images(
+    nodes: MeshGraph, mirror: MirrorImage | None, target: int, rng: np.random.Generator
+) -> Clusters:
+    """Coarsen a mesh graph to about ``target`` clusters, or not at all if it is 0; if it is symmetric, symmetrically.
+
+    The first half is coarsened, and every face of the second half joins the image of the cluster of its image. No
+    cluster lies in both halves: cluster i < N / 2 is in the first one, and its image is cluster i + N / 2.
+
+    Parameters
+    ----------
+    mirror : the mirror image of the surface, whose faces are the nodes; None if it is not symmetric.
+    """
+    if mirror is None:
+        return cluster_nodes(nodes, target, rng)
+    first = np.flatnonzero(mirror.is_first).astype(np.int32)
+    half = MeshGraph(
+        nodes.graph.subgraph(first),
+        nodes.points[first],
+        None,
+        None if nodes.thickness is None else nodes.thickness[first],
+    )
+    of_first = cluster_nodes(half, (target + 1) // 2, rng).of_node
+    of_node = _mirrored(nodes.graph, mirror, of_first)
+    count = (int(of_node.max()) + 1) // 2
+    image = np.roll(np.arange(2 * count, dtype=np.int32), count)
+    return replace(clusters_of(nodes, of_node), image=image)
+
+
+def symmetrised(clusters: Clusters, mirror: MirrorImage | None) -> Clusters:
+    """Clusters with the means of their own graph and its image: weights, lengths, volumes, places and thickness.
+
+    Clusters without images, of a surface that is not symmetric, are returned as they are.
+    """
+    image = clusters.image
+    if mirror is None or image is None:
+        return clusters
+    graph, points, thickness = clusters.graph, clusters.points, clusters.thickness
+    count = graph.node_count
+    both = np.concatenate([graph.edges, image[graph.edges]]).astype(np.int64)
+    keys, which = np.unique(both.min(axis=1) * count + both.max(axis=1), return_inverse=True)
+    # Sums over an edge and its image have the same terms; the order of the two makes no difference.
+    weight, length = (0.5 * group_sums(which, np.tile(values, 2)) for values in (graph.weight, graph.length))
+    edges = np.stack([keys // count, keys % count], axis=1).astype(np.int32)
+    symmetric = SurfaceGraph(edges, weight, 0.5 * (graph.volume + graph.volume[image]), length)
+    return replace(
+        clusters,
+        graph=symmetric,
+        points=0.5 * (points + mirror.reflection.of_points(points[image])),
+        thickness=None if thickness is None else 0.5 * (thickness + thickness[image]),
+    )
+
+
+def _mirrored(graph: SurfaceGraph, mirror: MirrorImage, of_first: IntArray) -> IntArray:
+    """(F,) clusters 0..C - 1 of the first half, and C..2 C - 1 of the second half, all connected and none empty.
+
+    If a mesh is not symmetric itself, an image can be in several pieces or have no face. All pieces but the largest
+    then join a neighbour, and a cluster without an image joins the one that has its place in the second half.
+
+    Parameters
+    ----------
+    of_first : (F / 2,) the clusters of the faces of the first half.
+    """
+    first, second = np.flatnonzero(mirror.is_first), np.flatnonzero(~mirror.is_first)
+    while True:
+        count = int(of_first.max()) + 1
+        of_node = np.empty(graph.node_count, dtype=np.int32)
+        of_node[first] = of_first
+        of_node[second] = of_node[mirror.of_face[second]] + count
+        of_node = in_one_piece(graph, of_node, np.repeat(np.arange(2, dtype=np.int32), count))
+        of_first = of_node[first]
+        is_empty = np.bincount(of_node, minlength=2 * count)[count:] == 0
+        if not is_empty.any():
+            return of_node
+        joined = np.arange(count, dtype=np.int32)
+        place = of_node[mirror.of_face[first]] - count
+        joined[of_first[::-1]] = np.where(is_empty[of_first], place, of_first)[::-1]
+        of_first = np.unique(joined[of_first], return_inverse=True)[1].astype(np.int32)
+
+
+def local_image(nodes: IntArray, image: IntArray) -> IntArray | None:
+    """(M,) the places in ``nodes`` of their images; None if a set of nodes is not its own image.
+
+    Parameters
+    ----------
+    nodes : (M,) ascending.
+    image : (N,) the image of every node.
+    """
+    images = image[nodes]
+    place = np.minimum(np.searchsorted(nodes, images), len(nodes) - 1)
+    return place.astype(np.int32) if (nodes[place] == images).all() else None

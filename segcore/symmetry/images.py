@@ -1,0 +1,114 @@
+"""The mirror image of every face of a symmetric surface."""
+
+from dataclasses import dataclass
+
+import numpy as np
+from scipy.spatial import KDTree
+
+from segcore.arrays import BoolArray, FloatArray, IntArray, group_sums
+from segcore.clean.surface import Surface
+from segcore.coarsen.assembly import NEGLIGIBLE
+from segcore.graphs.surface_graph import connected_components
+from segcore.mesh import face_centroids
+from segcore.symmetry.reflection import Reflection, find_reflection
+
+# All set by hand.
+_NORMAL = 0.1  # distance, in sqrt(total area), that counts as much as a difference of normals of 1
+_EXACT = 0.1  # distance of an image from its face, in sqrt(area of the face), up to which the meshes coincide
+_IN_PLANE = 1e-9  # distance from the plane, in extents of the surface, that is rounding error
+_MESHED_ALIKE = 0.9  # share of the area with exact images from which the mesh is symmetric and not only the shape
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class MirrorImage:
+    """The two halves of a symmetric surface, and the image of every face in the other half."""
+
+    reflection: Reflection
+    is_first: BoolArray  # (F,) True for the faces of the first half, on the side of the normal
+    of_face: IntArray  # (F,) the nearest face of the other half to the image of every face
+    meshed_alike: bool  # the faces of the halves are images of each other, apart from a few
+
+
+def mirror_image(surface: Surface) -> MirrorImage | None:
+    """The mirror image of a surface, or None if the surface is not symmetric."""
+    reflection = find_reflection(surface)
+    return None if reflection is None else image_under(surface, reflection)
+
+
+def image_under(surface: Surface, reflection: Reflection) -> MirrorImage | None:
+    """The mirror image of a surface under a reflection that maps it to itself.
+
+    A face whose centroid is in the plane is in the first half. The image of a face is the face of the other half that
+    is nearest to its mirrored centroid, with the distance of the normals as a further coordinate. The images of the
+    faces of one component are in one component.
+
+    Returns
+    -------
+    None if one half has no face, or if a component that is not negligible has no component as its image.
+    """
+    centres = face_centroids(surface.vertices, surface.faces)
+    is_first = reflection.heights(centres) >= -_IN_PLANE
+    if is_first.all() or not is_first.any():
+        return None
+    places = _Places(surface, reflection, centres, is_first)
+    component = connected_components(surface.edge_faces, len(surface.faces))
+    faces = np.arange(len(centres), dtype=np.int32)
+    of_face = places.nearest(faces, faces)
+    if component.max() > 0:
+        partner = _partners(component, component[of_face], surface.areas)
+        if partner is None:
+            return None
+        for c in np.unique(component[partner[component] != component[of_face]]).tolist():
+            here, there = faces[component == c], faces[component == partner[c]]
+            of_face[here] = places.nearest(here, there, of_face[here])
+    away = np.linalg.norm(centres[of_face] - reflection.of_points(centres), axis=1)
+    exact = away <= _EXACT * np.sqrt(surface.areas)
+    alike = surface.areas[exact].sum() >= _MESHED_ALIKE * surface.areas.sum()
+    return MirrorImage(reflection, is_first, of_face, bool(alike))
+
+
+class _Places:
+    """The places of faces in the space of centroids and normals, and those of their images."""
+
+    def __init__(self, surface: Surface, reflection: Reflection, centres: FloatArray, is_first: BoolArray) -> None:
+        far = _NORMAL * float(np.sqrt(surface.areas.sum()))
+        normals = surface.normals
+        self._is_first = is_first
+        self._place = np.concatenate([centres, far * normals], axis=1)
+        self._image = np.concatenate([reflection.of_points(centres), far * reflection.of_directions(normals)], axis=1)
+
+    def nearest(self, faces: IntArray, among: IntArray, otherwise: IntArray | None = None) -> IntArray:
+        """(M,) the nearest of some faces to the image of every face (M,), in the other half.
+
+        Parameters
+        ----------
+        otherwise : (M,) the result if none of the faces to choose from is in the other half.
+        """
+        result = np.zeros(len(faces), dtype=np.int32) if otherwise is None else otherwise.copy()
+        for half in (True, False):
+            here, there = self._is_first[faces] == half, among[self._is_first[among] != half]
+            if len(there) > 0:
+                result[here] = there[KDTree(self._place[there]).query(self._image[faces[here]])[1]]
+        return result
+
+
+def _partners(component: IntArray, image: IntArray, areas: FloatArray) -> IntArray | None:
+    """(C,) the component that has most of the image of every component.
+
+    A negligible component whose partner has another partner is its own one. If there is such a component that is not
+    negligible, there are no partners.
+
+    Parameters
+    ----------
+    component, image : (F,) the component of every face, and that of its image.
+    """
+    count = int(component.max()) + 1
+    keys, which = np.unique(component.astype(np.int64) * count + image, return_inverse=True)
+    shared = group_sums(which, areas)
+    partner = np.empty(count, dtype=np.int32)
+    ascending = np.argsort(shared, kind="stable")
+    partner[keys[ascending] // count] = keys[ascending] % count
+    is_alone = partner[partner] != np.arange(count)
+    if (is_alone & (group_sums(component, areas) > NEGLIGIBLE * areas.sum())).any():
+        return None
+    return np.where(is_alone, np.arange(count), partner).astype(np.int32)

@@ -1,0 +1,44 @@
+"""Groups of nodes that have come apart, made connected again."""
+
+import numpy as np
+
+from segcore.arrays import IntArray, group_sums
+from segcore.graphs.surface_graph import SurfaceGraph, connected_components
+
+
+def in_one_piece(graph: SurfaceGraph, group: IntArray, kind: IntArray) -> IntArray:
+    """(N,) groups of which all pieces but the largest have joined a neighbouring group of the same kind.
+
+    Of several neighbours the one with the longest border is taken. This is repeated, because a piece may have no other
+    neighbours than such pieces. A piece without a neighbour of its kind stays.
+
+    Parameters
+    ----------
+    group : (N,) the group 0..K - 1 of every node.
+    kind : (K,) of every group.
+    """
+    while True:
+        joined = _joined_once(graph, group, kind)
+        if np.array_equal(joined, group):
+            return joined
+        group = joined
+
+
+def _joined_once(graph: SurfaceGraph, group: IntArray, kind: IntArray) -> IntArray:
+    a, b = graph.edges.T
+    piece = connected_components(graph.edges[group[a] == group[b]], graph.node_count)
+    volume = group_sums(piece, graph.volume)
+    of_piece = np.empty(len(volume), dtype=np.int32)
+    of_piece[piece] = group
+    order = np.lexsort((-volume, of_piece))
+    is_loose = np.ones(len(volume), dtype=bool)
+    is_loose[order[np.unique(of_piece[order], return_index=True)[1]]] = False
+    ends = piece[graph.edges]
+    one, other = np.concatenate([ends, ends[:, ::-1]]).T
+    near = is_loose[one] & ~is_loose[other] & (kind[of_piece[one]] == kind[of_piece[other]])
+    keys, which = np.unique(one[near].astype(np.int64) * len(kind) + of_piece[other[near]], return_inverse=True)
+    border = group_sums(which, np.tile(graph.length, 2)[near])
+    ascending = np.argsort(border, kind="stable")
+    of_piece[keys[ascending] // len(kind)] = keys[ascending] % len(kind)
+    joined: IntArray = of_piece[piece]
+    return joined
