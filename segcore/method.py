@@ -10,7 +10,7 @@ from segcore.arrays import group_sums
 from segcore.clean.surface import Surface, build_surface
 from segcore.coarsen.assembly import assemble
 from segcore.coarsen.authored import with_structure
-from segcore.coarsen.clusters import Clusters
+from segcore.coarsen.clusters import MOST_COMPONENTS, Clusters
 from segcore.coarsen.contacts import Links
 from segcore.cut.bisection import bisect
 from segcore.cut.rules import split_rule
@@ -64,13 +64,21 @@ def segment(
     progress("coarsen")
     mirror = mirror_image(surface) if chosen.is_symmetric and surface.authored is None else None
     clusters = clusters_with_images(nodes, mirror, chosen.clusters, rng)
-    clusters, links = assemble(surface, nodes, clusters, chosen.max_segments)
+    most_bodies = chosen.max_segments or MOST_COMPONENTS
+    clusters, links = assemble(surface, nodes, clusters, most_bodies)
     clusters = symmetrised(clusters, mirror)
     progress("cut")
     rule = split_rule(surface, clusters, chosen, rng)
-    after_splits = partial(progress.after_splits, chosen.max_segments)
     tree = bisect(
-        clusters.graph, clusters.points, rule, chosen.max_segments, after_splits, clusters.authored, clusters.image
+        clusters.graph,
+        clusters.points,
+        rule,
+        chosen.segment_limit,
+        partial(progress.after_splits, chosen.segment_limit),
+        authored=clusters.authored,
+        image=clusters.image,
+        body=clusters.body,
+        most_bodies=most_bodies,
     )
     tree = replace(tree, step=sibling_steps(clusters.graph, clusters.points, tree))
     progress("label")

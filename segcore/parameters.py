@@ -15,6 +15,9 @@ Solver: TypeAlias = Literal["flow", "fiedler", "inverse_power", "split_bregman",
 Order: TypeAlias = Literal["learned", "ncut", "ncc", "volume"]
 
 
+USUAL_SEGMENTS = 64  # at which the hierarchy ends; the learned models were trained on such hierarchies
+
+
 def _about(description: str, *, exception: int | None = None, **limits: float) -> dict[str, Any]:
     """Metadata of a field: its description, its limits in JSON Schema's words, and a value allowed outside them."""
     return {"description": description, "exception": exception, "limits": limits}
@@ -76,8 +79,14 @@ class SegmentationParameters:
             "learned); ncut and ncc take the least value of the cut, volume takes the largest segment."
         ),
     )
-    max_segments: int = field(
-        default=64, metadata=_about("Number of segments at which the hierarchy ends.", minimum=1, maximum=10_000)
+    max_segments: int | None = field(
+        default=None,
+        metadata=_about(
+            "Number of segments at which the hierarchy ends; null is 64, or the number of bodies, at most 1,024, if "
+            "that is more.",
+            minimum=1,
+            maximum=10_000,
+        ),
     )
     clusters: int = field(
         default=2500,
@@ -95,6 +104,11 @@ class SegmentationParameters:
             _check(name, getattr(self, name), schema)
         if self.graph == "vertices" and self.affinity in ("learned", "concavity"):
             raise InvalidParameters(f"affinity {self.affinity!r} needs the graph of the faces: choose graph 'faces'.")
+
+    @property
+    def segment_limit(self) -> int:
+        """``max_segments``, or the usual number if it is not given."""
+        return self.max_segments or USUAL_SEGMENTS
 
     @property
     def split_order(self) -> Order:

@@ -5,6 +5,7 @@ from typing import Any, Literal
 
 from pydantic import BaseModel, Field
 
+from segcore.parameters import USUAL_SEGMENTS
 from segcore.report import MeshReport, structure_note
 from service.answer.model_formats import model_links
 from service.problems import JobError
@@ -264,7 +265,7 @@ def _notes(job: Job, mesh: MeshSummary) -> list[str]:
     counts = mesh.report.structure if mesh.report else None
     if counts is None or "structure" not in job.parameters:
         return []
-    note = structure_note(counts, job.parameters["structure"], job.parameters["max_segments"])
+    note = structure_note(counts, job.parameters["structure"], job.parameters["max_segments"] or USUAL_SEGMENTS)
     return [] if note is None else [note]
 
 

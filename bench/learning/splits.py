@@ -19,14 +19,14 @@ from segcore.cut.features import FEATURES
 from segcore.cut.fields import ClusterFields, Segment, SegmentFields, cluster_fields
 from segcore.cut.rules import LearnedRule
 from segcore.mesh import face_normals_and_areas
-from segcore.parameters import SegmentationParameters
+from segcore.parameters import USUAL_SEGMENTS, SegmentationParameters
 
 if TYPE_CHECKING:
     from bench.learning.examples import Example
     from segcore.arrays import FloatArray, IntArray, LongArray
     from segcore.graphs.cheeger import Cut
 
-SEGMENTS = 64  # of the trees that are learned from: the default of max_segments
+
 # Exponent of the share of all pairs that a cut separates, in the weight of its row. Set by hand, between equal weights
 # (0) and weights by pairs (1), which the first cuts of each tree would dominate.
 _SIZE_EXPONENT = 0.75
@@ -48,7 +48,7 @@ def cut_rows(example: Example, seed: int = 0) -> Rows:
     count = clusters.graph.node_count
     people = [_areas(cluster, labels, area, count) for labels in example.read_people(len(mesh.faces))]
     rule = _Recorder(cluster_fields(surface, clusters), parameters, rng, people)
-    bisect(clusters.graph, clusters.points, rule, SEGMENTS)
+    bisect(clusters.graph, clusters.points, rule, USUAL_SEGMENTS)
     if not rule.rows:
         return Rows(np.empty((0, len(FEATURES))), np.empty(0), np.empty(0))
     weight = np.array(rule.pairs) ** _SIZE_EXPONENT

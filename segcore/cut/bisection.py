@@ -8,8 +8,10 @@ import numpy as np
 
 from segcore.arrays import BoolArray, FloatArray, IntArray, group_sums
 from segcore.coarsen.authored import group_by_part
+from segcore.cut.bodies import cuts_between_pieces, pieces_of
 from segcore.cut.fields import Segment
 from segcore.cut.rules import Split, SplitRule
+from segcore.cut.symmetric_cuts import symmetric_cuts
 from segcore.graphs.surface_graph import SurfaceGraph, connected_components
 from segcore.graphs.tree import Tree
 from segcore.symmetry.clusters import local_image
@@ -23,6 +25,8 @@ def bisect(
     on_split: Callable[[float], None] = lambda _: None,
     authored: IntArray | None = None,
     image: IntArray | None = None,
+    body: IntArray | None = None,
+    most_bodies: int = 0,
 ) -> Tree:
     """Separate the components of a graph, then repeatedly cut the segment of highest priority.
 
@@ -36,6 +40,8 @@ def bisect(
         automatic number of segments.
     image : (N,) the mirror image of every node, an automorphism of the graph without a fixed point; None if there is
         none. A cut and its image are one step.
+    body : (N,) the body of every node; None if there is one body.
+    most_bodies : if there are more bodies than ``max_segments``, they are parted until there are this many segments.
 
     Notes
     -----
@@ -48,6 +54,8 @@ def bisect(
         tree.add(twins)
     while tree.segments < max_segments and tree.split_next():
         on_split(tree.segments / max_segments)
+    if body is not None:
+        tree.part_bodies(body, most_bodies)
     finished = tree.finished()
     return finished if authored is None else replace(finished, automatic_segments=int(authored.max()) + 1)
 
@@ -149,9 +157,7 @@ class _GrowingTree:
     def add(self, twins: _Twins) -> None:
         """Add segments to the queue; find their best split now unless the split can only be a late one."""
         node, segment = twins.copies[0].node, twins.segment
-        self._waiting[node] = twins
-        for copy in twins.copies:
-            self._leaf[copy.nodes] = copy.node
+        self._place(twins)
         volume = segment.graph.total_volume
         if len(segment.nodes) == 1:
             return
@@ -161,6 +167,11 @@ class _GrowingTree:
                 heappush(self._queue, (False, self._best[node].priority, node))
                 return
         heappush(self._queue, (True, -volume, node))
+
+    def _place(self, twins: _Twins) -> None:
+        self._waiting[twins.copies[0].node] = twins
+        for copy in twins.copies:
+            self._leaf[copy.nodes] = copy.node
 
     def split_next(self) -> bool:
         """Make the next step; return False if every segment is a single node."""
@@ -172,6 +183,28 @@ class _GrowingTree:
         for part in self._parts(twins, split):
             self.add(part)
         return True
+
+    def part_bodies(self, body: IntArray, most: int) -> None:
+        """Make cuts between bodies alone, which need no eigenvectors, until there are ``most`` segments.
+
+        Parameters
+        ----------
+        body : (N,) the body of every node.
+        """
+        self._max_segments = max(self._max_segments, most)
+        left = [self._waiting[node] for _, _, node in sorted(self._queue, reverse=True)]
+        while left and self.segments < most:
+            twins = left.pop()
+            graph = twins.segment.graph
+            cuts = cuts_between_pieces(graph, pieces_of(graph, body[twins.segment.nodes]))
+            if twins.image is not None:
+                cuts = symmetric_cuts(graph, twins.image, [cut.side for cut in cuts])
+            if cuts:
+                split = self._rule.best_among(twins.segment, cuts)
+                parts = self._parts(twins, split if twins.image is None else split.with_image(twins.image))
+                for part in parts:
+                    self._place(part)
+                left += parts
 
     def _parts(self, twins: _Twins, split: Split) -> list[_Twins]:
         """Make the same split of all copies; return the parts, the larger first."""

@@ -79,6 +79,9 @@ class SplitRule(Protocol):
         image : (M,) the place in the segment of the mirror image of every node, if the segment is its own image.
         """
 
+    def best_among(self, segment: Segment, cuts: Sequence[Cut]) -> Split:
+        """Return the split of a segment by the best of some cuts."""
+
     def finished(self, tree: Tree, splits: Sequence[Split | None]) -> Tree:
         """Return the tree in its final order with its automatic number of segments.
 
@@ -118,6 +121,9 @@ class RatioRule:
                 return self._split(segment, min(symmetric, key=lambda cut: cut.ncut)).with_image(image)
         return self._split(segment, with_connected_sides(segment.graph, cut))
 
+    def best_among(self, segment: Segment, cuts: Sequence[Cut]) -> Split:
+        return self._split(segment, min(cuts, key=lambda cut: cut.ncut))
+
     def _split(self, segment: Segment, cut: Cut) -> Split:
         order = self._parameters.split_order
         value = (cut.ncc if order == "ncc" else cut.ncut) * np.sqrt(self._total)
@@ -153,6 +159,9 @@ class LearnedRule:
         candidates = self.candidates(segment, inside)
         return self.best_of(candidates, self.features(segment, inside, candidates))
 
+    def best_among(self, segment: Segment, cuts: Sequence[Cut]) -> Split:
+        return self.best_of(cuts, self.features(segment, self._fields.inside(segment), cuts))
+
     def best_of(self, candidates: Sequence[Cut], features: FloatArray) -> Split:
         """Return the candidate of least learned share and normalized cut; a late one only if there is no other."""
         kept = self._kept(features)
@@ -166,7 +175,8 @@ class LearnedRule:
     def candidates(self, segment: Segment, inside: SegmentFields) -> list[Cut]:
         """Return different cuts of a segment, each with connected sides."""
         cuts = candidate_cuts(segment.graph, self._parameters, self._rng)
-        connected = [with_connected_sides(segment.graph, cut) for cut in cuts]
+        different = {cut.key: cut for cut in cuts}.values()
+        connected = [with_connected_sides(segment.graph, cut) for cut in different]
         between = cuts_between_pieces(segment.graph, inside.piece)
         return list({cut.key: cut for cut in connected + between}.values())
 
@@ -180,7 +190,7 @@ class LearnedRule:
 
     def features(self, segment: Segment, inside: SegmentFields, candidates: Sequence[Cut]) -> FloatArray:
         """(N, M) features of the candidates, see ``segcore.cut.features``."""
-        return np.stack([cut_features(self._fields, segment, inside, cut) for cut in candidates])
+        return cut_features(self._fields, segment, inside, candidates)
 
     def _kept(self, features: FloatArray) -> FloatArray:
         """(N,) the share of the pairs across each candidate that people keep together."""

@@ -74,12 +74,14 @@ def _parameters(choices: argparse.Namespace) -> segcore.SegmentationParameters:
         return parameters
     if segments < 1:
         raise segcore.InvalidParameters(f"The number of segments must be at least 1, not {segments}.")
-    return replace(parameters, max_segments=max(parameters.max_segments, segments))
+    if segments <= parameters.segment_limit:
+        return parameters
+    return replace(parameters, max_segments=segments)
 
 
 def _structure_lines(counts: StructureCounts, parameters: segcore.SegmentationParameters) -> list[str]:
     """Return what structure the file has if it is of several parts, and how it limits the hierarchy."""
-    note = structure_note(counts, parameters.structure, parameters.max_segments)
+    note = structure_note(counts, parameters.structure, parameters.segment_limit)
     return ([f"structure of the file: {counts.in_words()}"] if counts.has_parts else []) + ([note] if note else [])
 
 

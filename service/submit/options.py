@@ -77,8 +77,8 @@ class JobOptions:
             If the parameters are not valid, or the level does not exist with them.
         """
         parameters = requested_parameters(form.parameters, self.parameters)
-        if self.segments is not None and self.segments > parameters.max_segments:
-            raise InvalidParameters(f"segments must be at most max_segments = {parameters.max_segments}.")
+        if self.segments is not None and self.segments > parameters.segment_limit:
+            raise InvalidParameters(f"segments must be at most max_segments = {parameters.segment_limit}.")
         return JobRequest(
             parameters=parameters,
             mesh_format=mesh_format,
