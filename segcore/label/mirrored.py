@@ -27,6 +27,8 @@ def mirrored_places(place: IntArray, split_at: IntArray, graph: SurfaceGraph, mi
     source = place[mirror.of_face]
     copied = ~mirror.is_first & (image[source] >= 0) & (image[place] >= 0)
     proposed = np.where(copied, image[source], place).astype(np.int32)
+    if np.array_equal(proposed, place):
+        return place
     proposed = in_one_piece(graph, proposed, np.zeros(count, dtype=np.int32))
     pieces, pieces_before = (_pieces(graph, leaf) for leaf in (proposed, place))
     crossed, crossed_before = (_crossed(graph, leaf, split_at) for leaf in (proposed, place))

@@ -17,8 +17,9 @@ def clusters_with_images(
 ) -> Clusters:
     """Coarsen a mesh graph to about ``target`` clusters, or not at all if it is 0; if it is symmetric, symmetrically.
 
-    The first half is coarsened, and every face of the second half joins the image of the cluster of its image. No
-    cluster lies in both halves: cluster i < N / 2 is in the first one, and its image is cluster i + N / 2.
+    The first half is coarsened, and every face of the second half joins the image of the cluster of its image. Cluster
+    i < N / 2 is in the first half, and its image is cluster i + N / 2. No cluster lies in both halves, unless a piece of
+    one half is connected to the other half alone.
 
     Parameters
     ----------
@@ -68,7 +69,8 @@ def _mirrored(graph: SurfaceGraph, mirror: MirrorImage, of_first: IntArray) -> I
     """(F,) clusters 0..C - 1 of the first half, and C..2 C - 1 of the second half, all connected and none empty.
 
     If a mesh is not symmetric itself, an image can be in several pieces or have no face. All pieces but the largest
-    then join a neighbour, and a cluster without an image joins the one that has its place in the second half.
+    then join a neighbour, in the same half if there is one there, and a cluster without an image joins the one that has
+    its place in the second half.
 
     Parameters
     ----------
@@ -84,7 +86,7 @@ def _mirrored(graph: SurfaceGraph, mirror: MirrorImage, of_first: IntArray) -> I
         of_first = of_node[first]
         is_empty = np.bincount(of_node, minlength=2 * count)[count:] == 0
         if not is_empty.any():
-            return of_node
+            return in_one_piece(graph, of_node, np.zeros(2 * count, dtype=np.int32))
         joined = np.arange(count, dtype=np.int32)
         place = of_node[mirror.of_face[first]] - count
         joined[of_first[::-1]] = np.where(is_empty[of_first], place, of_first)[::-1]

@@ -29,7 +29,7 @@ def limb_of_face(mesh: Mesh) -> IntArray:
     """(F,) 0 for the faces of the ball, 1 + i for those of limb i."""
     centres = mesh.corners.mean(axis=1)
     towards = (centres / np.linalg.norm(centres, axis=1, keepdims=True)) @ LIMBS.T
-    limb: IntArray = np.where(np.linalg.norm(centres, axis=1) > 1.5, 1 + towards.argmax(axis=1), 0).astype(np.int32)
+    limb: IntArray = np.where(towards.max(axis=1) > 0.86, 1 + towards.argmax(axis=1), 0).astype(np.int32)
     return limb
 
 

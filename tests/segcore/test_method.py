@@ -4,6 +4,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from hypothesis.extra import numpy as npst
 
+from helpers.creatures import creature, limb_of_face, mirrored_labels
 from helpers.meshes import agreement, areas, exploded, pieces_of_labels, rotation
 from segcore import shapes
 from segcore.mesh import Mesh
@@ -197,3 +198,20 @@ def test_vertices_that_are_all_but_equal_give_every_face_a_label():
     )
     faces = np.array([[3, 7, 4], [6, 5, 0], [1, 0, 4], [5, 3, 3], [7, 5, 6], [3, 5, 1]])
     assert len(segment(Mesh(vertices.astype(float), faces)).labels()) == len(faces)
+
+
+@pytest.mark.parametrize("turn", [None, rotation(np.random.default_rng(4))])
+@pytest.mark.parametrize("affinity", ["learned", "concavity"])
+def test_a_symmetric_body_gets_symmetric_parts_whatever_its_meshing(turn, affinity):
+    mesh = creature(turn, subdivisions=5)
+    result = segment(mesh, SegmentationParameters(affinity=affinity))
+    labels = result.labels()
+    assert agreement(labels, limb_of_face(mesh), areas(mesh)) > 0.95
+    assert agreement(labels, mirrored_labels(mesh, labels), areas(mesh)) > (0.998 if turn is None else 0.985)
+
+
+def test_the_presets_of_the_paper_know_no_symmetry():
+    assert SegmentationParameters().is_symmetric
+    assert SegmentationParameters(affinity="concavity", order="ncut").is_symmetric
+    for other in ({"preset": "chahhou2014"}, {"affinity": "minima_rule"}, {"order": "ncc"}, {"order": "volume"}):
+        assert not SegmentationParameters.from_mapping(other).is_symmetric

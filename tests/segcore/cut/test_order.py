@@ -4,7 +4,7 @@ import numpy as np
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from segcore.cut.order import best_order
+from segcore.cut.order import best_order, best_order_of_steps
 
 
 @st.composite
@@ -48,3 +48,19 @@ def test_a_split_that_makes_a_good_one_possible_is_drawn_forward():
 def test_worth_is_weighed_against_cost():
     order, _ = best_order(np.array([-1, -1]), np.array([3.0, 2.0]), np.array([3.0, 1.0]))
     assert order == [1, 0]
+
+
+@settings(max_examples=200)
+@given(forests(), st.integers(0, 1000))
+def test_splits_of_a_step_stay_together_and_are_worth_what_all_of_them_are(forest, seed):
+    """Each split of a forest becomes a step of one or two splits, the second of which is below the first."""
+    parent, gain = forest
+    size = np.random.default_rng(seed).integers(1, 3, len(gain))
+    step = np.repeat(np.arange(len(gain), dtype=np.int32), size)
+    first = np.cumsum(size) - size
+    parents = np.where(np.diff(step, prepend=-1) > 0, np.append(first, -1)[parent[step]], np.arange(len(step)) - 1)
+    order, worthwhile = best_order_of_steps(step, parents.astype(np.int32), (gain / size)[step], (1.0 / size)[step])
+    expected, least = best_order(parent, gain, np.ones(len(gain)))
+    np.testing.assert_array_equal(step[order], np.repeat(expected, size[expected]))
+    assert worthwhile == size[expected[:least]].sum()
+    assert sorted(order) == list(range(len(step)))
