@@ -7,6 +7,7 @@ import numpy as np
 
 from segcore.affinity.mesh_graphs import mesh_graph
 from segcore.arrays import group_sums
+from segcore.clean.refinement import Refinement, refine, undivided
 from segcore.clean.surface import Surface, build_surface
 from segcore.coarsen.assembly import assemble
 from segcore.coarsen.clusters import Clusters, cluster_nodes
@@ -17,7 +18,8 @@ from segcore.graphs.mesh_graph import MeshGraph
 from segcore.graphs.tree import Tree
 from segcore.hierarchy import Hierarchy
 from segcore.label.boundary import draw_boundaries
-from segcore.label.projection import project
+from segcore.label.pieces import links_of_faces, of_whole_faces, whole_faces
+from segcore.label.projection import Votes, project
 from segcore.mesh import Mesh
 from segcore.parameters import SegmentationParameters
 from segcore.progress import OnProgress, Progress
@@ -51,27 +53,43 @@ def segment(
     progress("clean")
     surface = surface or build_surface(mesh)
     progress("affinity")
-    nodes = mesh_graph(surface, chosen)
+    refinement = refine(surface) if _refines(chosen) else undivided(surface)
+    nodes = mesh_graph(refinement.surface, chosen, refinement.is_piece)
     progress("coarsen")
     clusters = cluster_nodes(nodes, chosen.clusters, rng)
-    clusters, links = assemble(surface, nodes, clusters, chosen.max_segments)
+    clusters, links = assemble(refinement.surface, nodes, clusters, chosen.max_segments)
     progress("cut")
     rule = split_rule(clusters, chosen, rng)
     after_splits = partial(progress.after_splits, chosen.max_segments)
     tree = bisect(clusters.graph, clusters.points, rule, chosen.max_segments, after_splits)
     progress("label")
-    tree = _over_faces(tree, clusters, nodes, links, surface)
+    tree = _over_faces(tree, clusters, nodes, links, surface, refinement)
     hierarchy = _of_input(surface, tree)
     progress("label", 1.0)
     return hierarchy
 
 
-def _over_faces(tree: Tree, clusters: Clusters, nodes: MeshGraph, links: Links, surface: Surface) -> Tree:
+import os
+_REF = os.environ.get("REF", "1") == "1"
+_TWICE = os.environ.get("TWICE", "1") == "1"
+def _refines(chosen: SegmentationParameters) -> bool:
+    return _REF and chosen.graph == "faces" and chosen.affinity in ("learned", "concavity")
+
+
+def _over_faces(tree: Tree, clusters: Clusters, nodes: MeshGraph, links: Links, surface: Surface, refinement: Refinement) -> Tree:
     """Carry a tree over the clusters over to the faces; if the nodes are the faces, draw its boundaries as well."""
     if nodes.corners is None:
-        return draw_boundaries(replace(tree, leaf=tree.leaf[clusters.of_node]), nodes, links, surface)
+        tree = replace(tree, leaf=tree.leaf[clusters.of_node])
+        if refinement.surface is not surface:
+            if _TWICE:
+                tree = draw_boundaries(tree, nodes, links, refinement.surface)
+            faces = whole_faces(nodes, refinement, surface)
+            links = links_of_faces(links, refinement)
+            tree = of_whole_faces(tree, faces, links, refinement, nodes.graph.volume)
+            nodes = faces
+        return draw_boundaries(tree, nodes, links, surface)
     linked = surface.face_graph().with_edges(links.faces, links.length, links.length)
-    return project(tree, clusters.of_node[nodes.corners], linked)
+    return project(tree, Votes.of_corners(clusters.of_node[nodes.corners]), linked)
 
 
 def _of_input(surface: Surface, tree: Tree) -> Hierarchy:
