@@ -17,8 +17,7 @@ from segcore.cut.rules import split_rule
 from segcore.graphs.mesh_graph import MeshGraph
 from segcore.graphs.tree import Tree
 from segcore.hierarchy import Hierarchy
-from segcore.label.boundary import draw_boundaries
-from segcore.label.pieces import links_of_faces, of_whole_faces, whole_faces
+from segcore.label.pieces import draw_on_whole_faces
 from segcore.label.projection import Votes, project
 from segcore.mesh import Mesh
 from segcore.parameters import SegmentationParameters
@@ -53,7 +52,7 @@ def segment(
     progress("clean")
     surface = surface or build_surface(mesh)
     progress("affinity")
-    refinement = refine(surface) if _refines(chosen) else undivided(surface)
+    refinement = refine(surface) if chosen.measures_shape else undivided(surface)
     nodes = mesh_graph(refinement.surface, chosen, refinement.is_piece)
     progress("coarsen")
     clusters = cluster_nodes(nodes, chosen.clusters, rng)
@@ -63,31 +62,19 @@ def segment(
     after_splits = partial(progress.after_splits, chosen.max_segments)
     tree = bisect(clusters.graph, clusters.points, rule, chosen.max_segments, after_splits)
     progress("label")
-    tree = _over_faces(tree, clusters, nodes, links, surface, refinement)
+    tree = _over_faces(tree, clusters, nodes, links, refinement, surface)
     hierarchy = _of_input(surface, tree)
     progress("label", 1.0)
     return hierarchy
 
 
-import os
-_REF = os.environ.get("REF", "1") == "1"
-_TWICE = os.environ.get("TWICE", "1") == "1"
-def _refines(chosen: SegmentationParameters) -> bool:
-    return _REF and chosen.graph == "faces" and chosen.affinity in ("learned", "concavity")
-
-
-def _over_faces(tree: Tree, clusters: Clusters, nodes: MeshGraph, links: Links, surface: Surface, refinement: Refinement) -> Tree:
+def _over_faces(
+    tree: Tree, clusters: Clusters, nodes: MeshGraph, links: Links, refinement: Refinement, surface: Surface
+) -> Tree:
     """Carry a tree over the clusters over to the faces; if the nodes are the faces, draw its boundaries as well."""
     if nodes.corners is None:
         tree = replace(tree, leaf=tree.leaf[clusters.of_node])
-        if refinement.surface is not surface:
-            if _TWICE:
-                tree = draw_boundaries(tree, nodes, links, refinement.surface)
-            faces = whole_faces(nodes, refinement, surface)
-            links = links_of_faces(links, refinement)
-            tree = of_whole_faces(tree, faces, links, refinement, nodes.graph.volume)
-            nodes = faces
-        return draw_boundaries(tree, nodes, links, surface)
+        return draw_on_whole_faces(tree, nodes, links, refinement, surface)
     linked = surface.face_graph().with_edges(links.faces, links.length, links.length)
     return project(tree, Votes.of_corners(clusters.of_node[nodes.corners]), linked)
 

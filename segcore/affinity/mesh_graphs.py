@@ -3,7 +3,7 @@
 import numpy as np
 
 from segcore.affinity.affinities import FACE_AFFINITIES, VERTEX_AFFINITIES
-from segcore.affinity.flatness import cohesion
+from segcore.affinity.flatness import cohesive_weights
 from segcore.arrays import BoolArray, IntArray, at_least
 from segcore.clean.edge_geometry import edge_lengths
 from segcore.clean.surface import Surface
@@ -19,9 +19,7 @@ _SMALLEST_FACE = 1e-4  # least volume of a face in mean areas
 _SHORTEST_EDGE = 1e-2  # least length of an edge in mean lengths
 
 
-def mesh_graph(
-    surface: Surface, parameters: SegmentationParameters, is_piece: BoolArray | None = None
-) -> MeshGraph:
+def mesh_graph(surface: Surface, parameters: SegmentationParameters, is_piece: BoolArray | None = None) -> MeshGraph:
     """The graph of a surface that the parameters select, weighted by the affinity that they select.
 
     Parameters
@@ -38,14 +36,17 @@ def face_dual_graph(
 ) -> MeshGraph:
     """The face dual graph: W = edge length times affinity, the volume of a node is the area of its face.
 
+    Inside flat and smoothly bent faces the affinities "learned" and "concavity" are raised, see
+    ``segcore.affinity.flatness``.
+
     Areas are at least 1e-4 of the mean area and lengths at least 1e-2 of the mean length, so that degenerate faces and
     edges have a positive weight and a face that is nearly a point is not the cheapest cut.
     """
     affinity = FACE_AFFINITIES[parameters.affinity](surface, parameters)
     length = at_least(edge_lengths(surface), _SHORTEST_EDGE)
     weight = length * affinity.value
-    if parameters.affinity in ("learned", "concavity"):
-        weight = cohesion(surface, weight, length, is_piece)
+    if parameters.measures_shape:
+        weight = cohesive_weights(surface, weight, length, is_piece)
     graph = SurfaceGraph(surface.edge_faces, weight, at_least(surface.areas, _SMALLEST_FACE), length)
     centroids = face_centroids(surface.vertices, surface.faces)
     return MeshGraph(graph, centroids, None, affinity.thickness)
