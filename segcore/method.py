@@ -7,6 +7,7 @@ import numpy as np
 
 from segcore.affinity.mesh_graphs import mesh_graph
 from segcore.arrays import group_sums
+from segcore.clean.refinement import Refinement, refine, undivided
 from segcore.clean.surface import Surface, build_surface
 from segcore.coarsen.assembly import assemble
 from segcore.coarsen.authored import with_structure
@@ -18,8 +19,8 @@ from segcore.cut.siblings import sibling_steps
 from segcore.graphs.mesh_graph import MeshGraph
 from segcore.graphs.tree import Tree
 from segcore.hierarchy import Hierarchy
-from segcore.label.boundary import draw_boundaries
-from segcore.label.projection import project
+from segcore.label.pieces import draw_on_whole_faces
+from segcore.label.projection import Votes, project
 from segcore.mesh import Mesh
 from segcore.parameters import SegmentationParameters
 from segcore.progress import OnProgress, Progress
@@ -60,15 +61,17 @@ def segment(
     progress("clean")
     surface = with_structure(surface or build_surface(mesh), mesh, chosen.structure)
     progress("affinity")
-    nodes = mesh_graph(surface, chosen)
+    refinement = refine(surface) if chosen.measures_shape else undivided(surface)
+    nodes = mesh_graph(refinement.surface, chosen, refinement.is_piece)
     progress("coarsen")
-    mirror = mirror_image(surface) if chosen.is_symmetric and surface.authored is None else None
+    is_symmetric = chosen.is_symmetric and surface.authored is None
+    mirror = mirror_image(refinement.surface) if is_symmetric else None
     clusters = clusters_with_images(nodes, mirror, chosen.clusters, rng)
     most_bodies = chosen.max_segments or MOST_COMPONENTS
-    clusters, links = assemble(surface, nodes, clusters, most_bodies)
+    clusters, links = assemble(refinement.surface, nodes, clusters, most_bodies)
     clusters = symmetrised(clusters, mirror)
     progress("cut")
-    rule = split_rule(surface, clusters, chosen, rng)
+    rule = split_rule(refinement.surface, clusters, chosen, rng)
     tree = bisect(
         clusters.graph,
         clusters.points,
@@ -82,20 +85,27 @@ def segment(
     )
     tree = replace(tree, step=sibling_steps(clusters.graph, clusters.points, tree))
     progress("label")
-    tree = _over_faces(tree, clusters, nodes, links, surface, mirror)
+    tree = _over_faces(tree, clusters, nodes, links, refinement, surface, mirror)
     hierarchy = _of_input(surface, tree)
     progress("label", 1.0)
     return hierarchy
 
 
 def _over_faces(
-    tree: Tree, clusters: Clusters, nodes: MeshGraph, links: Links, surface: Surface, mirror: MirrorImage | None
+    tree: Tree,
+    clusters: Clusters,
+    nodes: MeshGraph,
+    links: Links,
+    refinement: Refinement,
+    surface: Surface,
+    mirror: MirrorImage | None,
 ) -> Tree:
     """Carry a tree over the clusters over to the faces; if the nodes are the faces, draw its boundaries as well."""
     if nodes.corners is None:
-        return draw_boundaries(replace(tree, leaf=tree.leaf[clusters.of_node]), nodes, links, surface, mirror)
+        tree = replace(tree, leaf=tree.leaf[clusters.of_node])
+        return draw_on_whole_faces(tree, nodes, links, refinement, surface, mirror)
     linked = surface.face_graph().with_edges(links.faces, links.length, links.length)
-    return project(tree, clusters.of_node[nodes.corners], linked)
+    return project(tree, Votes.of_corners(clusters.of_node[nodes.corners]), linked)
 
 
 def _of_input(surface: Surface, tree: Tree) -> Hierarchy:

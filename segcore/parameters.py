@@ -111,6 +111,11 @@ class SegmentationParameters:
         return self.max_segments or USUAL_SEGMENTS
 
     @property
+    def measures_shape(self) -> bool:
+        """True for the affinities that bending and thickness decide, and not the paper's or none."""
+        return self.graph == "faces" and self.affinity in ("learned", "concavity")
+
+    @property
     def split_order(self) -> Order:
         """``order``, with "ncut" in place of "learned" if the affinity is not learned."""
         return "ncut" if self.order == "learned" and self.affinity != "learned" else self.order

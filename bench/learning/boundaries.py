@@ -11,6 +11,7 @@ from bench.assets.dataset import NO_PART
 from bench.learning.rows import Rows
 from segcore.affinity.boundary_features import edge_features, patch_fields
 from segcore.affinity.measurements import measure
+from segcore.clean.refinement import refine
 from segcore.clean.surface import build_surface
 
 if TYPE_CHECKING:
@@ -36,9 +37,11 @@ def boundary_rows(example: Example, seed: int = 0) -> Rows:
         If a file of the mesh cannot be used.
     """
     mesh = example.read_mesh()
-    surface = build_surface(mesh)
+    whole = build_surface(mesh)
+    refinement = refine(whole)
+    surface = refinement.surface
     measured = measure(surface, seed)
-    people = [_on_surface(surface, labels) for labels in example.read_people(len(mesh.faces))]
+    people = [on_surface(whole, labels)[refinement.parent] for labels in example.read_people(len(mesh.faces))]
     share = cut_share(surface, people)
     known = np.all([(labels[surface.edge_faces] != NO_PART).all(axis=1) for labels in people], axis=0)
     length = np.where(known, measured.edges.length, 0.0)
@@ -72,7 +75,7 @@ def cut_share(surface: Surface, people: list[LongArray]) -> FloatArray:
     return share / max(len(people), 1)
 
 
-def _on_surface(surface: Surface, labels: LongArray) -> LongArray:
+def on_surface(surface: Surface, labels: LongArray) -> LongArray:
     """(F,) labels of the faces of the surface, from the labels of the input faces."""
     on_surface = np.zeros(len(surface.faces), dtype=np.int64)
     on_surface[surface.face_of_input] = labels

@@ -8,22 +8,23 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from bench.assets.dataset import NO_PART
+from bench.learning.boundaries import on_surface
 from bench.learning.rows import Rows
 from segcore.affinity.mesh_graphs import mesh_graph
 from segcore.arrays import group_sums
+from segcore.clean.refinement import refine
 from segcore.clean.surface import build_surface
 from segcore.coarsen.assembly import assemble
-from segcore.coarsen.clusters import MOST_COMPONENTS, cluster_nodes
+from segcore.coarsen.clusters import MOST_COMPONENTS, Clusters, cluster_nodes
 from segcore.cut.bisection import bisect
 from segcore.cut.features import FEATURES
 from segcore.cut.fields import ClusterFields, Segment, SegmentFields, cluster_fields
 from segcore.cut.rules import LearnedRule
-from segcore.mesh import face_normals_and_areas
 from segcore.parameters import USUAL_SEGMENTS, SegmentationParameters
 
 if TYPE_CHECKING:
     from bench.learning.examples import Example
-    from segcore.arrays import FloatArray, IntArray, LongArray
+    from segcore.arrays import FloatArray, LongArray
     from segcore.graphs.cheeger import Cut
 
 
@@ -40,13 +41,15 @@ def cut_rows(example: Example, seed: int = 0) -> Rows:
     mesh = example.read_mesh()
     parameters = SegmentationParameters(seed=seed, affinity="learned")
     rng = np.random.default_rng(seed)
-    surface = build_surface(mesh)
-    nodes = mesh_graph(surface, parameters)
+    whole = build_surface(mesh)
+    refinement = refine(whole)
+    surface = refinement.surface
+    nodes = mesh_graph(surface, parameters, refinement.is_piece)
     clusters, _ = assemble(surface, nodes, cluster_nodes(nodes, parameters.clusters, rng), MOST_COMPONENTS)
-    _, area = face_normals_and_areas(mesh.corners)
-    cluster = clusters.of_node[surface.face_of_input]
-    count = clusters.graph.node_count
-    people = [_areas(cluster, labels, area, count) for labels in example.read_people(len(mesh.faces))]
+    people = [
+        _areas(clusters, on_surface(whole, labels)[refinement.parent], surface.areas)
+        for labels in example.read_people(len(mesh.faces))
+    ]
     rule = _Recorder(cluster_fields(surface, clusters), parameters, rng, people)
     bisect(clusters.graph, clusters.points, rule, USUAL_SEGMENTS)
     if not rule.rows:
@@ -55,18 +58,18 @@ def cut_rows(example: Example, seed: int = 0) -> Rows:
     return Rows(np.stack(rule.rows), np.array(rule.target), weight / weight.sum())
 
 
-def _areas(cluster: IntArray, labels: LongArray, area: FloatArray, count: int) -> FloatArray:
+def _areas(clusters: Clusters, labels: LongArray, areas: FloatArray) -> FloatArray:
     """(N, K) area of every cluster in every segment of a person, without the faces of no part.
 
     Parameters
     ----------
-    cluster, labels, area : (F,) of the input faces.
-    count : N.
+    labels, areas : (F,) of the faces of the surface.
     """
     known = labels != NO_PART
     distinct, segment = np.unique(labels[known], return_inverse=True)
-    cell = cluster[known].astype(np.int64) * len(distinct) + segment
-    return group_sums(cell, area[known], count * len(distinct)).reshape(count, len(distinct))
+    cell = clusters.of_node[known].astype(np.int64) * len(distinct) + segment
+    count = clusters.graph.node_count
+    return group_sums(cell, areas[known], count * len(distinct)).reshape(count, len(distinct))
 
 
 class _Recorder(LearnedRule):

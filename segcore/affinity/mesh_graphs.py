@@ -3,7 +3,8 @@
 import numpy as np
 
 from segcore.affinity.affinities import FACE_AFFINITIES, VERTEX_AFFINITIES
-from segcore.arrays import IntArray, at_least
+from segcore.affinity.flatness import cohesive_weights
+from segcore.arrays import BoolArray, IntArray, at_least
 from segcore.clean.edge_geometry import edge_lengths
 from segcore.clean.surface import Surface
 from segcore.clean.topology import mesh_edges
@@ -19,20 +20,35 @@ _SMALLEST_FACE = 1e-4  # least volume of a face in mean areas
 _SHORTEST_EDGE = 1e-2  # least length of an edge in mean lengths
 
 
-def mesh_graph(surface: Surface, parameters: SegmentationParameters) -> MeshGraph:
-    """The graph of a surface that the parameters select, weighted by the affinity that they select."""
-    return _GRAPHS[parameters.graph](surface, parameters)
+def mesh_graph(surface: Surface, parameters: SegmentationParameters, is_piece: BoolArray | None = None) -> MeshGraph:
+    """The graph of a surface that the parameters select, weighted by the affinity that they select.
+
+    Parameters
+    ----------
+    is_piece : (F,) True for faces that are pieces of a face that was divided; None if there are none.
+    """
+    if parameters.graph == "vertices":
+        return vertex_graph(surface, parameters)
+    return face_dual_graph(surface, parameters, is_piece)
 
 
-def face_dual_graph(surface: Surface, parameters: SegmentationParameters) -> MeshGraph:
+def face_dual_graph(
+    surface: Surface, parameters: SegmentationParameters, is_piece: BoolArray | None = None
+) -> MeshGraph:
     """The face dual graph: W = edge length times affinity, the volume of a node is the area of its face.
+
+    Inside flat and smoothly bent faces the affinities "learned" and "concavity" are raised, see
+    ``segcore.affinity.flatness``.
 
     Areas are at least 1e-4 of the mean area and lengths at least 1e-2 of the mean length, so that degenerate faces and
     edges have a positive weight and a face that is nearly a point is not the cheapest cut.
     """
     affinity = FACE_AFFINITIES[parameters.affinity](surface, parameters)
     length = at_least(edge_lengths(surface), _SHORTEST_EDGE)
-    graph = SurfaceGraph(surface.edge_faces, length * affinity.value, at_least(surface.areas, _SMALLEST_FACE), length)
+    weight = length * affinity.value
+    if parameters.measures_shape:
+        weight = cohesive_weights(surface, weight, length, is_piece)
+    graph = SurfaceGraph(surface.edge_faces, weight, at_least(surface.areas, _SMALLEST_FACE), length)
     centroids = face_centroids(surface.vertices, surface.faces)
     return MeshGraph(graph, centroids, None, affinity.thickness, affinity.confidence, surface.authored)
 
@@ -49,9 +65,6 @@ def vertex_graph(surface: Surface, parameters: SegmentationParameters) -> MeshGr
     graph = SurfaceGraph(edges, affinity, degrees, np.ones(len(edges)))
     authored = None if surface.authored is None else part_of_component(corners.ravel(), np.repeat(surface.authored, 3))
     return MeshGraph(graph, surface.vertices[vertex], corners, authored=authored)
-
-
-_GRAPHS = {"faces": face_dual_graph, "vertices": vertex_graph}
 
 
 def _vertices_of_components(surface: Surface) -> tuple[IntArray, IntArray]:

@@ -18,8 +18,8 @@ def clusters_with_images(
     """Coarsen a mesh graph to about ``target`` clusters, or not at all if it is 0; if it is symmetric, symmetrically.
 
     The first half is coarsened, and every face of the second half joins the image of the cluster of its image. Cluster
-    i < N / 2 is in the first half, and its image is cluster i + N / 2. No cluster lies in both halves, unless a piece of
-    one half is connected to the other half alone.
+    i < N / 2 is in the first half, and its image is cluster i + N / 2. No cluster lies in both halves, unless a piece
+    of one half is connected to the other half alone.
 
     Parameters
     ----------

@@ -7,7 +7,7 @@ from helpers.trees import members, two_sides
 from segcore import shapes
 from segcore.clean.surface import build_surface
 from segcore.graphs.tree import Tree
-from segcore.label.projection import _connected, project
+from segcore.label.projection import Votes, _connected, project
 
 SURFACE = build_surface(shapes.icosphere(1))
 FACES = SURFACE.face_graph()
@@ -29,7 +29,7 @@ def trees(draw):
 @settings(max_examples=60)
 @given(trees())
 def test_every_node_of_the_tree_over_the_faces_is_a_connected_set_of_faces(tree):
-    projected = project(tree, SURFACE.faces, FACES)
+    projected = project(tree, Votes.of_corners(SURFACE.faces), FACES)
     for faces in members(projected):
         assert faces.any()
         assert is_connected(FACES, faces)
@@ -39,7 +39,7 @@ def test_every_node_of_the_tree_over_the_faces_is_a_connected_set_of_faces(tree)
 def test_a_clean_cut_of_the_vertices_is_kept():
     upper = SURFACE.vertices[:, 2] > 0.01
     tree = two_sides(upper)
-    projected = project(tree, SURFACE.faces, FACES)
+    projected = project(tree, Votes.of_corners(SURFACE.faces), FACES)
     votes = upper[SURFACE.faces].sum(axis=1) >= 2
     assert len(set(projected.leaf[votes])) == len(set(projected.leaf[~votes])) == 1
     np.testing.assert_array_equal(projected.split_node, [0])
@@ -58,7 +58,7 @@ def test_each_side_of_a_cut_keeps_most_of_its_faces_when_it_is_made_connected(se
 
 def test_a_split_that_no_face_follows_is_left_out():
     tree = two_sides(np.arange(42) != 7)
-    projected = project(tree, SURFACE.faces, FACES)
+    projected = project(tree, Votes.of_corners(SURFACE.faces), FACES)
     assert len(projected.split_node) == 0
     assert projected.automatic_segments == 1
 

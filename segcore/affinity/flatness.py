@@ -1,0 +1,109 @@
+"""Flat and smoothly bent faces of CAD models and low-poly meshes, which a cut should go around."""
+
+from typing import NamedTuple
+
+import numpy as np
+from numba import njit
+
+from segcore.arrays import BoolArray, FloatArray, IntArray, LongArray, group_sums
+from segcore.clean.edge_geometry import dihedral_angles, edge_lengths
+from segcore.clean.surface import Surface
+from segcore.graphs.surface_graph import Rows, connected_components
+
+# How they were chosen is in docs/algorithm.md, "Constants" of section 2.
+COHESION = 2.0  # factor on the affinity inside flat and convex smooth faces
+_EVENNESS = 0.5  # exponent of the affinity inside all smooth faces
+_FLAT = np.deg2rad(1.0)  # largest angle of a normal of a flat region to that of its largest face
+_SMOOTH = np.deg2rad(15.0)  # largest dihedral angle between the strips of a bent face
+_LEAST_SHARE = 0.005  # area of a flat region in the area of its component
+_LEAST_BEND = np.deg2rad(3.0)  # mean angle along the outline of a flat region
+
+
+class _Kinds(NamedTuple):
+    """Which dual edges lie inside smooth faces."""
+
+    flat: BoolArray  # (E,) flat or convex
+    hollow: BoolArray  # (E,) concave
+
+
+def cohesive_weights(
+    surface: Surface, weight: FloatArray, length: FloatArray, is_piece: BoolArray | None = None
+) -> FloatArray:
+    """(E,) weights of the dual edges, raised inside flat and smoothly bent faces.
+
+    Inside them the affinity g becomes 2 sqrt(g), and sqrt(g) if the face is bent inwards. An edge lies inside such a
+    face if both its sides belong to one flat region, or if both are pieces of divided faces and its dihedral angle is
+    below 15 degrees. A flat region is a connected set of faces whose normals are within 1 degree of that of its largest
+    face, with at least 0.5 % of the area of its component and an outline along which the surface bends by 3 degrees on
+    average: any small piece of a finely meshed round surface is as flat, but has no such outline.
+
+    Parameters
+    ----------
+    weight, length : (E,) of the dual edges; the affinity is their ratio.
+    is_piece : (F,) True for pieces of faces that were divided; None if there are none.
+    """
+    kinds = _kinds(surface, is_piece)
+    cohesive = weight.copy()
+    for chosen, factor in ((kinds.flat, COHESION), (kinds.hollow, 1.0)):
+        affinity = weight[chosen] / length[chosen]
+        cohesive[chosen] = factor * length[chosen] * affinity**_EVENNESS
+    return cohesive
+
+
+def _kinds(surface: Surface, is_piece: BoolArray | None) -> _Kinds:
+    dihedral = dihedral_angles(surface)
+    a, b = surface.edge_faces.T
+    region = flat_regions(surface)
+    flat = (region[a] == region[b]) & _are_large(surface, region, dihedral)[region[a]]
+    if is_piece is None:
+        return _Kinds(flat, np.zeros_like(flat))
+    smooth = (np.abs(dihedral) < _SMOOTH) & is_piece[a] & is_piece[b] & ~flat
+    return _Kinds(flat | (smooth & (dihedral > -_FLAT)), smooth & (dihedral <= -_FLAT))
+
+
+def flat_regions(surface: Surface) -> IntArray:
+    """(F,) the flat region 0, 1, ... of every face, grown from its largest face; most are single faces."""
+    order = np.argsort(-surface.areas, kind="stable")
+    return _grown(order, surface.face_graph().rows(), surface.normals, float(np.cos(_FLAT)))
+
+
+def _are_large(surface: Surface, region: IntArray, dihedral: FloatArray) -> BoolArray:
+    """(R,) True for the regions that are large beside their component and have a bent outline."""
+    component = connected_components(surface.edge_faces, len(surface.faces))
+    count = int(region.max()) + 1
+    of_component = np.zeros(count)
+    of_component[region] = group_sums(component, surface.areas)[component]
+    area = group_sums(region, surface.areas, count)
+    a, b = region[surface.edge_faces].T
+    outline = a != b
+    length = edge_lengths(surface)[outline]
+    bend = length * np.abs(dihedral[outline])
+    around = [group_sums(a[outline], of, count) + group_sums(b[outline], of, count) for of in (length, bend)]
+    large: BoolArray = (area >= _LEAST_SHARE * of_component) & (around[1] >= _LEAST_BEND * around[0])
+    return large
+
+
+@njit(cache=True)
+def _grown(order: LongArray, rows: Rows, normals: FloatArray, cosine: float) -> IntArray:
+    """(F,) regions grown breadth-first from the faces that have none yet, in an order (F,)."""
+    region = np.full(len(order), -1, np.int32)
+    queue = np.empty(len(order), np.int32)
+    regions = 0
+    for seed in order:
+        if region[seed] >= 0:
+            continue
+        region[seed] = regions
+        queue[0] = seed
+        head, tail = 0, 1
+        x, y, z = normals[seed, 0], normals[seed, 1], normals[seed, 2]
+        while head < tail:
+            f = queue[head]
+            head += 1
+            for p in range(rows.start[f], rows.start[f + 1]):
+                g = rows.neighbour[p]
+                if region[g] < 0 and x * normals[g, 0] + y * normals[g, 1] + z * normals[g, 2] >= cosine:
+                    region[g] = regions
+                    queue[tail] = g
+                    tail += 1
+        regions += 1
+    return region

@@ -1,0 +1,72 @@
+"""A tree over the pieces of divided faces, carried over to the whole faces."""
+
+from dataclasses import replace
+
+import numpy as np
+
+from segcore.arrays import IntArray, LongArray, at_least, group_sums
+from segcore.clean.edge_geometry import edge_lengths
+from segcore.clean.refinement import Refinement
+from segcore.clean.surface import Surface
+from segcore.coarsen.assembly import CONTACT
+from segcore.coarsen.contacts import Links
+from segcore.graphs.mesh_graph import MeshGraph
+from segcore.graphs.surface_graph import SurfaceGraph
+from segcore.graphs.tree import Tree
+from segcore.label.boundary import draw_boundaries
+from segcore.label.projection import Votes, project
+from segcore.mesh import face_centroids
+from segcore.symmetry.images import MirrorImage, mirror_image
+
+_SHORTEST_EDGE = 1e-2  # least length of an edge in mean lengths, as in affinity/mesh_graphs.py
+
+
+def draw_on_whole_faces(
+    tree: Tree,
+    pieces: MeshGraph,
+    links: Links,
+    refinement: Refinement,
+    surface: Surface,
+    mirror: MirrorImage | None = None,
+) -> Tree:
+    """The tree over the faces of a surface from one over the pieces of its refinement.
+
+    The boundaries are drawn on the pieces first. Then, split by split, every face takes the side of most of its area,
+    both sides are made connected, and the boundaries are drawn again between the faces.
+
+    Parameters
+    ----------
+    pieces : the face dual graph of the refined surface.
+    links : between components of the refined surface.
+    mirror : the mirror image of the refined surface, if it is symmetric.
+    """
+    if refinement.surface is surface:
+        return draw_boundaries(tree, pieces, links, surface, mirror)
+    drawn = draw_boundaries(tree, pieces, links, refinement.surface, mirror)
+    faces = whole_faces(pieces, refinement, surface)
+    links = replace(links, faces=refinement.parent[links.faces])
+    linked = faces.graph.with_edges(links.faces, CONTACT * links.length, links.length)
+    number = np.arange(pieces.graph.node_count, dtype=np.int32)
+    projected = project(drawn, Votes(refinement.parent, number, pieces.graph.volume), linked)
+    return draw_boundaries(projected, faces, links, surface, mirror_image(surface) if mirror else None)
+
+
+def whole_faces(pieces: MeshGraph, refinement: Refinement, surface: Surface) -> MeshGraph:
+    """The face dual graph of a surface; affinities are means over the edges of the pieces, weighted by length."""
+    key = _keys(surface.edge_faces)
+    of_pieces = _keys(refinement.parent[pieces.graph.edges])
+    different, which = np.unique(np.concatenate([key, of_pieces]), return_inverse=True)
+    pair, pair_of_pieces = which[: len(key)], which[len(key) :]
+    weight = group_sums(pair_of_pieces, pieces.graph.weight, len(different))
+    border = group_sums(pair_of_pieces, pieces.graph.length, len(different))
+    length = at_least(edge_lengths(surface), _SHORTEST_EDGE)
+    volume = group_sums(refinement.parent, pieces.graph.volume)
+    graph = SurfaceGraph(surface.edge_faces, length * (weight[pair] / border[pair]), volume, length)
+    return MeshGraph(graph, face_centroids(surface.vertices, surface.faces), None)
+
+
+def _keys(pairs: IntArray) -> LongArray:
+    """(N,) one number for every unordered pair of faces (N, 2)."""
+    low, high = pairs.min(axis=1).astype(np.int64), pairs.max(axis=1).astype(np.int64)
+    key: LongArray = (low << 32) | high
+    return key
