@@ -4,7 +4,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from helpers.graphs import graph_of, graphs, laplacian
-from segcore.graphs.cheeger import Criterion, cut_of, cut_weight, ncc, ncut, sweep
+from segcore.graphs.cheeger import Criterion, cut_of, cut_weight, ncc, ncut, sweep, valleys
 from segcore.graphs.surface_graph import SurfaceGraph
 
 
@@ -47,3 +47,22 @@ def test_the_criteria_differ() -> None:
     values = np.array([0.0, 1.0, 2.0])
     assert sweep(graph, values, "ncc").side.tolist() == [False, False, True]
     assert sweep(graph, values, "ncut").side.tolist() == [False, True, True]
+
+
+def test_valleys_are_the_lightest_cuts_along_a_function() -> None:
+    """A path of 200 nodes with two thin places: the sweep finds one, the valleys are both, the lighter one first."""
+    weight = np.ones(199)
+    weight[59], weight[139] = 0.2, 0.1
+    graph = graph_of([(i, i + 1) for i in range(199)], weight, np.ones(200))
+    values = np.arange(200.0)
+    found = [int(cut.side.sum()) for cut in valleys(graph, values, 3)]
+    assert found[:2] == [60, 140]
+    assert [int(cut.side.sum()) for cut in valleys(graph, -values, 1)] == [140]
+    assert valleys(graph, values, 1)[0].weight == pytest.approx(0.1)
+
+
+def test_a_cut_near_an_end_is_no_valley() -> None:
+    weight = np.ones(199)
+    weight[1] = 0.1
+    graph = graph_of([(i, i + 1) for i in range(199)], weight, np.ones(200))
+    assert all(cut.side.sum() < 190 for cut in valleys(graph, np.arange(200.0), 5))
