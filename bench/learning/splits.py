@@ -39,7 +39,7 @@ def cut_rows(example: Example, seed: int = 0) -> Rows:
     Pairs of points count by area. Cuts that separate no pair of points with a label are left out.
     """
     mesh = example.read_mesh()
-    parameters = SegmentationParameters(seed=seed, affinity="learned")
+    parameters = SegmentationParameters(seed=seed, max_segments=USUAL_SEGMENTS)
     rng = np.random.default_rng(seed)
     whole = build_surface(mesh)
     refinement = refine(whole)

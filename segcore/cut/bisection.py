@@ -54,6 +54,7 @@ def bisect(
         tree.add(twins)
     while tree.segments < max_segments and tree.split_next():
         on_split(tree.segments / max_segments)
+    tree.limit_reached = tree.is_sensible_left
     if body is not None:
         tree.part_bodies(body, most_bodies)
     finished = tree.finished()
@@ -101,6 +102,7 @@ class _GrowingTree:
         self._rule = rule
         self._max_segments = max_segments
         self._image = image
+        self.limit_reached = False
         self._volume = graph.volume
         self._split_node: list[int] = []
         self._splits: list[Split | None] = []
@@ -174,8 +176,8 @@ class _GrowingTree:
             self._leaf[copy.nodes] = copy.node
 
     def split_next(self) -> bool:
-        """Make the next step; return False if every segment is a single node."""
-        if not self._queue:
+        """Make the next step; return False if no sensible one is left."""
+        if not self.is_sensible_left:
             return False
         _, _, node = heappop(self._queue)
         twins = self._waiting.pop(node)
@@ -183,6 +185,11 @@ class _GrowingTree:
         for part in self._parts(twins, split):
             self.add(part)
         return True
+
+    @property
+    def is_sensible_left(self) -> bool:
+        """Whether a split is left that is worth making and not a late one."""
+        return bool(self._queue) and self._rule.is_sensible(*self._queue[0][:2])
 
     def part_bodies(self, body: IntArray, most: int) -> None:
         """Make cuts between bodies alone, which need no eigenvectors, until there are ``most`` segments.
@@ -236,9 +243,8 @@ class _GrowingTree:
     def finished(self) -> Tree:
         """Return the tree in the order of the rule."""
         values = np.array([split.value if split else 0.0 for split in self._splits])
-        limited = any(not late for late, _, _ in self._queue)
         step = np.array(self._step, dtype=np.int32)
-        tree = Tree(np.array(self._split_node, dtype=np.int32), values, self._leaf, 1, step, limited)
+        tree = Tree(np.array(self._split_node, dtype=np.int32), values, self._leaf, 1, step, self.limit_reached)
         return self._rule.finished(tree, self._splits)
 
     def _next_step(self) -> int:

@@ -27,6 +27,8 @@ AUTOMATIC_NCUT = 1.44  # normalized cut times sqrt(total area) at which splittin
 SMALLEST_SIDE = 0.002  # share of the total area below which a part is cut off only after all others
 SMALLEST_BODY = 0.0002  # share of the total area below which even a whole body is cut off only after all others
 NCUT_WEIGHT = 0.4  # of the normalized cut beside the learned share in the comparison of candidates
+# Learned share of kept pairs beyond which a cut is no sensible part any more; set by hand: nine of ten pairs.
+MOST_KEPT = 0.9
 # Factors on the learned share q of a cut between bodies, and on 1 - q of a cut through a body of several. Bodies are
 # parted before they are cut. Compared in bench/RESULTS.md, "Constants and their neighbours".
 BETWEEN_BODIES = 0.7
@@ -79,6 +81,9 @@ class SplitRule(Protocol):
         image : (M,) the place in the segment of the mirror image of every node, if the segment is its own image.
         """
 
+    def is_sensible(self, late: bool, priority: float, /) -> bool:
+        """Whether a split of a priority is worth making."""
+
     def best_among(self, segment: Segment, cuts: Sequence[Cut]) -> Split:
         """Return the split of a segment by the best of some cuts."""
 
@@ -121,6 +126,9 @@ class RatioRule:
                 return self._split(segment, min(symmetric, key=lambda cut: cut.ncut)).with_image(image)
         return self._split(segment, with_connected_sides(segment.graph, cut))
 
+    def is_sensible(self, _late: bool, _priority: float, /) -> bool:
+        return True
+
     def best_among(self, segment: Segment, cuts: Sequence[Cut]) -> Split:
         return self._split(segment, min(cuts, key=lambda cut: cut.ncut))
 
@@ -158,6 +166,9 @@ class LearnedRule:
             return self.best_of(symmetric, self.features(segment, inside, symmetric)).with_image(image)
         candidates = self.candidates(segment, inside)
         return self.best_of(candidates, self.features(segment, inside, candidates))
+
+    def is_sensible(self, late: bool, priority: float, /) -> bool:
+        return self._parameters.max_segments is not None or (not late and priority <= MOST_KEPT)
 
     def best_among(self, segment: Segment, cuts: Sequence[Cut]) -> Split:
         return self.best_of(cuts, self.features(segment, self._fields.inside(segment), cuts))
