@@ -23,7 +23,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     parser.description = "Segment one mesh and write the outputs; without outputs, only a summary is printed."
     parser.add_argument("mesh", type=Path, metavar="MESH", help="the mesh file")
     add_level(parser, "chosen by the mesh")
-    parser.add_argument("--max-segments", type=int, metavar="N", help="number of segments of the hierarchy (64, or K)")
+    parser.add_argument("--max-segments", type=int, metavar="N", help="end of the hierarchy (64, or K, or bodies)")
     parser.add_argument("--preset", metavar="NAME", help="a published method, such as chahhou2014")
     add_structure(parser)
     add_parameters(parser, "solver=inverse_power")
