@@ -28,8 +28,8 @@ class Votes:
 def project(tree: Tree, votes: Votes, faces: SurfaceGraph) -> Tree:
     """Carry a tree of cuts over to the faces, such that every segment is a connected set of faces.
 
-    Split by split, the faces of a node take the side for which most of the weight of their votes is. Then both sides are made connected. A
-    split with no faces on one side is left out.
+    Split by split, the faces of a node take the side for which most of the weight of their votes is. Then both sides
+    are made connected. A split with no faces on one side is left out.
 
     Parameters
     ----------
