@@ -116,3 +116,11 @@ def test_components_farther_apart_than_the_tolerance_stay_apart() -> None:
         np.vstack([BALL.vertices, BALL.vertices + gap]), np.vstack([BALL.faces, BALL.faces + len(BALL.vertices)])
     )
     assert mesh_report(two).components == 2
+
+
+def test_stitched_edges_are_counted_and_their_gap_is_in_units_of_the_mesh() -> None:
+    vertices = np.array([[0, 0, 0], [1, 0, 0], [1, 1, 0], [1.0005, 0, 0], [2, 0, 0], [1.0005, 1, 0]])
+    for scale in (1e-3, 1.0, 1e6):
+        report = mesh_report(Mesh(vertices * scale, [[0, 1, 2], [3, 4, 5]]))
+        assert (report.stitched_edges, report.components, report.border_edges) == (2, 1, 6)
+        assert report.stitched_gap == pytest.approx(0.0005 * scale)

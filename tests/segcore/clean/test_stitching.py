@@ -119,7 +119,7 @@ def test_a_t_junction_has_a_dual_edge_for_every_interval() -> None:
 
 
 @pytest.mark.parametrize("faces", [320, 300], ids=["closed", "with a hole"])
-def test_a_surface_without_seams_is_returned_as_it_is(faces: int) -> None:
+def test_a_surface_without_matches_is_returned_as_it_is(faces: int) -> None:
     ball = shapes.icosphere(2)
     dual = dual_edges(ball.faces[:faces], len(ball.vertices))
     vertices, kept = ball.vertices / 2, ball.faces[:faces]
@@ -172,7 +172,7 @@ def test_a_strip_narrower_than_the_tolerance_is_not_joined_to_itself() -> None:
 
 
 def test_of_three_sheets_at_a_line_the_two_that_continue_each_other_are_joined() -> None:
-    """The third one stands on the seam and keeps its border."""
+    """The third one stands on their common border and keeps its border."""
     left, right = sheet([0, 0, 0], [1, 0, 0], [0, 1, 0], (5, 2)), sheet([0, -1, 0], [1, 0, 0], [0, 1, 0], (6, 2))
     surface = build_surface(shapes.joined(left, right, sheet([0, 0, 0], [1, 0, 0], [0, 0, 1], (7, 2))).mesh)
     component = connected_components(surface.edge_faces, len(surface.faces))
