@@ -10,7 +10,7 @@ from segcore.clean.edge_geometry import dihedral_angles, edge_lengths
 from segcore.clean.surface import Surface
 from segcore.graphs.surface_graph import Rows, connected_components
 
-# How they were chosen is in docs/algorithm.md, "Constants" of section 2.
+# Set by hand; docs/algorithm.md, "Flat faces" in section 2, has what the first two were compared with.
 COHESION = 2.0  # factor on the affinity inside flat and convex smooth faces
 _EVENNESS = 0.5  # exponent of the affinity inside all smooth faces
 _FLAT = np.deg2rad(1.0)  # largest angle of a normal of a flat region to that of its largest face

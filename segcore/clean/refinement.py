@@ -12,7 +12,7 @@ from segcore.clean.surface import Surface
 from segcore.clean.topology import dual_edges
 from segcore.graphs.surface_graph import connected_components
 
-# Longest edges that are not divided, set by hand: see docs/algorithm.md, "Constants" of section 1.
+# Longest edges that are not divided, set by hand.
 _OF_COMPONENT = 0.06  # in the square root of the area of the component
 _OF_WHOLE = 0.03  # in the square root of the total area
 # Share of the area of a component in faces with longer edges, below which it is left as it is. Set by hand: it is 0.08

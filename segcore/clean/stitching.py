@@ -1,4 +1,4 @@
-"""Stitching of a surface: patches that meet along seams become one, across gaps and at corners on edges."""
+"""Stitching of a surface: patches that meet along their borders become one, across gaps and at corners on edges."""
 
 from dataclasses import dataclass
 
@@ -6,12 +6,12 @@ import numpy as np
 
 from segcore.arrays import BoolArray, FloatArray, IntArray
 from segcore.clean.borders import ends_of, open_edges
-from segcore.clean.seam_checks import seams_of
-from segcore.clean.seams import Matches, are_adjacent, find_matches
+from segcore.clean.matches import Matches, are_adjacent, find_matches
+from segcore.clean.runs import reliable_matches
 from segcore.clean.topology import DualEdges, dual_edges, first_equal_row
 from segcore.graphs.surface_graph import connected_components
 
-_WELD_REACH = 2.0  # in largest gaps: corners of two patches are apart along the seam as well; set by hand
+_WELD_REACH = 2.0  # in largest gaps: corners of two patches are apart along the border as well; set by hand
 _WELD_SHARE = 0.4  # of the shorter edge, the largest distance of two vertices that become one; set by hand
 
 
@@ -27,10 +27,10 @@ class Stitched:
 
 
 def stitch(vertices: FloatArray, faces: IntArray, dual: DualEdges) -> Stitched:
-    """Join the open edges of a surface that continue each other. No face is lost or changes its place in the order.
+    """Join the open edges of a surface that continue each other; no face is lost, and their order is kept.
 
-    Vertices that meet at a seam become one. Two edges that are not the same after that get a dual edge whose ends are
-    those of the interval that they share. A surface without seams is returned as it is.
+    Vertices that meet at a match become one. Two edges that are not the same after that get a dual edge whose ends are
+    those of the interval that they share. A surface without matches is returned as it is.
 
     Parameters
     ----------
@@ -43,7 +43,7 @@ def stitch(vertices: FloatArray, faces: IntArray, dual: DualEdges) -> Stitched:
         return Stitched(vertices, faces, dual, 0, 0.0)
     ends = ends_of(borders, faces)
     length = np.linalg.norm(vertices[ends[:, 1]] - vertices[ends[:, 0]], axis=1)
-    matches = seams_of(find_matches(vertices, faces, dual, borders), faces, dual, borders, length)
+    matches = reliable_matches(find_matches(vertices, faces, dual, borders), faces, dual, borders, length)
     if len(matches.gap) == 0:
         return Stitched(vertices, faces, dual, 0, 0.0)
     group = _welded(matches, ends, length, vertices, faces)
@@ -56,7 +56,7 @@ def stitch(vertices: FloatArray, faces: IntArray, dual: DualEdges) -> Stitched:
 
 
 def _welded(matches: Matches, ends: IntArray, length: FloatArray, vertices: FloatArray, faces: IntArray) -> IntArray:
-    """(V,) the vertex 0, 1, ... that replaces every vertex: those that meet at a seam become one, in the same order.
+    """(V,) the vertex 0, 1, ... that replaces every vertex: those that meet at a match become one, in the same order.
 
     Parameters
     ----------

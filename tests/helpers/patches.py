@@ -3,10 +3,11 @@
 from typing import NamedTuple
 
 import numpy as np
+from numpy.typing import ArrayLike
 from scipy.spatial import KDTree
 
 from segcore import shapes
-from segcore.arrays import BoolArray, FloatArray, IntArray
+from segcore.arrays import BoolArray, IntArray
 from segcore.mesh import Mesh
 from segcore.shapes import subdivide
 
@@ -74,7 +75,7 @@ def on_border(faces: IntArray, count: int) -> BoolArray:
     return border
 
 
-def sheet(corner: FloatArray, along: FloatArray, across: FloatArray, pieces: tuple[int, int]) -> Mesh:
+def sheet(corner: ArrayLike, along: ArrayLike, across: ArrayLike, pieces: tuple[int, int]) -> Mesh:
     """A parallelogram of quads, each of two faces.
 
     Parameters

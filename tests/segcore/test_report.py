@@ -150,3 +150,11 @@ def test_a_note_says_how_the_structure_limits_the_hierarchy() -> None:
     assert "ends with the 64 groups of the file: choose max_segments above 64" in structure_note(counts, "groups", 64)
     assert structure_note(counts, "shells", 64).startswith("The file has 12000 shells: the 10000 largest are segments")
     assert structure_note(counts, "materials", 64).endswith("structure=materials has no effect.")
+
+
+def test_stitched_edges_are_counted_and_their_gap_is_in_units_of_the_mesh() -> None:
+    vertices = np.array([[0, 0, 0], [1, 0, 0], [1, 1, 0], [1.0005, 0, 0], [2, 0, 0], [1.0005, 1, 0]])
+    for scale in (1e-3, 1.0, 1e6):
+        report = mesh_report(Mesh(vertices * scale, [[0, 1, 2], [3, 4, 5]]))
+        assert (report.stitched_edges, report.components, report.border_edges) == (2, 1, 6)
+        assert report.stitched_gap == pytest.approx(0.0005 * scale)

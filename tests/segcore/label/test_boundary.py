@@ -42,10 +42,12 @@ SPHERE, SPHERE_FACES = plain(shapes.icosphere(3))
 @given(st.integers(2, 25), st.integers(0, 10**6), st.sampled_from([0.03, 0.1, 0.3]))
 def test_every_part_stays_connected_and_none_vanishes(leaves, seed, band):
     tree = grown_tree(SPHERE_FACES.graph, leaves, seed)
+    tree = replace(tree, step=np.arange(len(tree.split_node), dtype=np.int32) // 2, limit_reached=True)
     with pytest.MonkeyPatch.context() as patch:
         patch.setattr("segcore.label.boundary.BAND", band)
         drawn = draw_boundaries(tree, SPHERE_FACES, Links.none(), SPHERE)
     assert len(drawn.split_node) == len(tree.split_node)
+    assert (drawn.step.tolist(), drawn.limit_reached) == (tree.step.tolist(), True)
     for faces in members(drawn):
         assert faces.any()
         assert is_connected(SPHERE_FACES.graph, faces)

@@ -57,3 +57,16 @@ def test_the_text_has_the_structure_of_a_file_of_several_parts(
     ]
     assert main(["inspect", "--json", str(path)]) == 0
     assert json.loads(capsys.readouterr().out)["structure"] == {"shells": 2, "groups": 2, "materials": 1}
+
+
+def test_the_text_says_what_was_stitched(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    """Two squares with a crack of 0.001 between them, one of them of half the height: a corner stands on an edge."""
+    path = tmp_path / "cracked.obj"
+    right = "v 1.001 0 0\nv 2 0 0\nv 2 0.5 0\nv 1.001 0.5 0\n"
+    path.write_text(f"v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\n{right}f 1 2 3 4\nf 5 6 7 8\n")
+    assert main(["inspect", str(path)]) == 0
+    assert capsys.readouterr().out.splitlines()[2:5] == [
+        "1 component, not closed",
+        "2 border edges stitched, across gaps of up to 0.001",
+        "8 border edges, with a face on one side only",
+    ]

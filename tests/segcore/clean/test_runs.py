@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from segcore.clean.seam_checks import _orientable, _within_tolerance
+from segcore.clean.runs import _orientable, _within_tolerance
 
 
 @pytest.mark.parametrize(
@@ -33,8 +33,8 @@ def test_runs_have_tolerances_of_their_own() -> None:
     ]
 
 
-def test_the_longest_seams_decide_the_orientations() -> None:
-    """Three patches around a triangle of seams of which one is turned: the shortest contradicts the others."""
+def test_the_longest_runs_decide_the_orientations() -> None:
+    """Three patches around a triangle of borders of which one is turned: the shortest contradicts the others."""
     between = np.array([[0, 1], [1, 2], [0, 2]], dtype=np.int32)
     turned = np.array([True, False, False])
     assert _orientable(between, turned, np.array([3.0, 2.0, 1.0])).tolist() == [True, True, False]

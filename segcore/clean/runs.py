@@ -1,32 +1,34 @@
-"""Which matches of open edges are seams of one surface, and not borders that happen to pass each other."""
+"""Which matches of open edges join parts of one surface, and which are borders that happen to pass each other."""
 
 import numpy as np
 from numba import njit
 
 from segcore.arrays import BoolArray, FloatArray, IntArray, LongArray, group_sums
 from segcore.clean.borders import ends_of
-from segcore.clean.seams import LARGEST_GAP, Matches
+from segcore.clean.matches import LARGEST_GAP, Matches
 from segcore.clean.topology import DualEdges, consistent_orientation
 from segcore.clean.welding import WELD_TOLERANCE
 from segcore.graphs.surface_graph import connected_components, rows_of
 
-_LARGEST_GROWTH = 0.1  # share by which a seam may become longer if its tolerance is doubled; set by hand
-# Set by hand: the least length of a seam in mean gaps, also if one of its patches has to be turned, unless the seams of
+_LARGEST_GROWTH = 0.1  # share by which a run may become longer if its tolerance is doubled; set by hand
+# Set by hand: the least length of a run in mean gaps, also if one of its patches has to be turned, unless the runs of
 # one of its patches are at least a share of the open edges of the patch.
 _SHORTEST_RUN = 40.0
 _SHORTEST_TURNED_RUN = 400.0
 _ENCLOSED = 0.5
 
 
-def seams_of(matches: Matches, faces: IntArray, dual: DualEdges, borders: IntArray, length: FloatArray) -> Matches:
-    """The matches that belong to seams.
+def reliable_matches(
+    matches: Matches, faces: IntArray, dual: DualEdges, borders: IntArray, length: FloatArray
+) -> Matches:
+    """The matches that join parts of one surface.
 
-    The tolerance of a seam is found from the seam itself. A run is a set of matches between two patches (sets of faces
+    The tolerance is found from every run of matches. A run is a set of matches between two patches (sets of faces
     that edges connect) that follow each other. Its tolerance is the largest gap in it so that a tolerance twice as
     large makes the run at most a tenth longer: two borders that were one are near over their whole length, and borders
     that merely pass each other diverge. What is farther apart is left out. So are runs that are short for their gaps,
     with a higher limit if they contradict the orientations of the input, unless half of what is open at one of the
-    patches is closed by seams; and what would give a patch two orientations.
+    patches is matched; and what would give a patch two orientations.
 
     Parameters
     ----------
@@ -117,7 +119,7 @@ def _within_tolerance(run: IntArray, gap: FloatArray, length: FloatArray) -> Boo
 def _orientable(between: IntArray, turned: BoolArray, length: FloatArray) -> BoolArray:
     """(M,) True for the matches that leave every patch with one orientation relative to every other.
 
-    Patches are joined in the order of the length of their seams, and what contradicts the seams before is left out.
+    Patches are joined in the order of the length of their matches, and what contradicts those before is left out.
 
     Parameters
     ----------
@@ -127,27 +129,27 @@ def _orientable(between: IntArray, turned: BoolArray, length: FloatArray) -> Boo
     """
     count = int(between.max(initial=0)) + 1
     key = 2 * (between[:, 0].astype(np.int64) * count + between[:, 1]) + turned
-    different, seam = np.unique(key, return_inverse=True)
-    order = np.argsort(-group_sums(seam, length), kind="stable")
+    different, pair = np.unique(key, return_inverse=True)
+    order = np.argsort(-group_sums(pair, length), kind="stable")
     patches = np.stack([different // 2 // count, different // 2 % count, different % 2], axis=1)
     fits = np.zeros(len(different), dtype=bool)
     fits[order] = _without_contradiction(patches[order], count)
-    return fits[seam]
+    return fits[pair]
 
 
 @njit(cache=True)
-def _without_contradiction(seams: LongArray, count: int) -> BoolArray:
-    """(S,) True for seams, in their order, that fit the ones before: a union of sets with a parity to the root.
+def _without_contradiction(pairs: LongArray, count: int) -> BoolArray:
+    """(S,) True for pairs, in their order, that fit the ones before: a union of sets with a parity to the root.
 
     Parameters
     ----------
-    seams : (S, 3) two patches 0..count - 1, and 1 if one of them has to be turned against the other.
+    pairs : (S, 3) two patches 0..count - 1, and 1 if one of them has to be turned against the other.
     """
     root = np.arange(count)
     parity = np.zeros(count, np.int64)
-    fits = np.zeros(len(seams), np.bool_)
-    for s in range(len(seams)):
-        a, b, turned = seams[s]
+    fits = np.zeros(len(pairs), np.bool_)
+    for s in range(len(pairs)):
+        a, b, turned = pairs[s]
         a, from_a = _root(root, parity, a)
         b, from_b = _root(root, parity, b)
         turned ^= from_a ^ from_b

@@ -1,4 +1,4 @@
-"""Seams: open edges of a surface that run along each other, as cracks and T-junctions leave them.
+"""Matches: open edges of a surface that run along each other, as cracks and T-junctions leave them.
 
 CAD tessellations and booleans leave patches whose borders do not share vertices: they are a small distance apart, or a
 corner of one lies on an edge of the other. Two open edges are a *match* if, over the interval in which they lie
@@ -15,7 +15,7 @@ from segcore.clean.borders import ends_of, near_segments
 from segcore.clean.topology import DualEdges
 
 # Set by hand.
-LARGEST_GAP = 3e-3  # of the extent, the largest tolerance of a seam; matches are found up to twice of it
+LARGEST_GAP = 3e-3  # of the extent, the largest tolerance of a run; matches are found up to twice of it
 _LARGEST_SHARE = 0.4  # of the longer edge, the largest gap between two matched edges
 _SMALLEST_OVERLAP = 0.1  # of the shorter edge
 _SMALLEST_COSINE = 0.7  # between the directions of two edges
@@ -43,7 +43,7 @@ class Matches(NamedTuple):
 def find_matches(vertices: FloatArray, faces: IntArray, dual: DualEdges, borders: IntArray) -> Matches:
     """Pairs of open edges that continue each other; no part of an edge has two partners.
 
-    Of several partners an edge gets the nearest one, and among equally near ones the one with the flattest seam.
+    Of several partners an edge gets the nearest one, and among equally near ones the one that bends least.
 
     Parameters
     ----------
