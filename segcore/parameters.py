@@ -83,7 +83,7 @@ class SegmentationParameters:
         default=None,
         metadata=_about(
             "Number of segments at which the hierarchy ends; null is 64, or the number of bodies, at most 1,024, if "
-            "that is more.",
+            "that is more. With null and order learned the hierarchy ends earlier if no sensible cut is left.",
             minimum=1,
             maximum=10_000,
         ),

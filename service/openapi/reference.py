@@ -92,10 +92,13 @@ def _markdown_lines(document: dict[str, Any]) -> Iterator[str]:
 
 def _method_rows(document: dict[str, Any]) -> list[tuple[str, ...]]:
     properties = document["components"]["schemas"]["Parameters"]["properties"]
-    return [
-        (name, _values(schema), "" if "default" not in schema else str(schema["default"]), schema["description"])
-        for name, schema in properties.items()
-    ]
+    return [(name, _values(schema), _default(schema), schema["description"]) for name, schema in properties.items()]
+
+
+def _default(schema: dict[str, Any]) -> str:
+    if "default" not in schema:
+        return ""
+    return "null" if schema["default"] is None else str(schema["default"])
 
 
 def _values(schema: dict[str, Any]) -> str:

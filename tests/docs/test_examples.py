@@ -12,7 +12,15 @@ from docs.reference.generate import parsers
 from helpers.documents import ROOT, blocks, code_spans, documents, read
 
 # Variables that are no settings of the service: of Compose, of a client, of the tests and the benchmark.
-_OTHER_VARIABLES = {"REDIS_PASSWORD", "STORE_PASSWORD", "API_KEY", "FUZZ_SECONDS", "PSB_DIR", "PSB_VECTORS"}
+_OTHER_VARIABLES = {
+    "REDIS_PASSWORD",
+    "STORE_PASSWORD",
+    "API_KEY",
+    "FUZZ_SECONDS",
+    "PSB_DIR",
+    "PSB_VECTORS",
+    "ASSETS_DIR",
+}
 _FOLDERS = ("bench", "cleave", "deploy", "docs", "segcore", "service", "tests", "viewer", "worker")
 # History names what there was.
 _OF_TODAY = [path for path in documents() if path.name != "CHANGELOG.md"]

@@ -1,8 +1,8 @@
 import numpy as np
 import pytest
 
-from helpers.creatures import creature
 from helpers.meshes import rotation
+from helpers.shapes.creatures import creature
 from segcore.affinity.mesh_graphs import mesh_graph
 from segcore.clean.surface import build_surface
 from segcore.coarsen.clusters import cluster_nodes
