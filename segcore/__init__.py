@@ -18,8 +18,8 @@ Public are the names of this package:
 
 and the modules that define them, ``segcore.io`` (readers and writers), ``segcore.appearance``, ``segcore.structure``,
 ``segcore.progress`` and ``segcore.shapes`` (procedural meshes). The packages of the stages (``clean``, ``affinity``,
-``coarsen``, ``cut``, ``label``) and ``solvers``, ``graphs`` and ``learned`` are internal, except for ``Surface`` and
-``build_surface``.
+``coarsen``, ``symmetry``, ``cut``, ``label``) and ``solvers``, ``graphs`` and ``learned`` are internal, except for
+``Surface`` and ``build_surface``.
 """
 
 from segcore.clean.surface import Surface, build_surface
