@@ -32,9 +32,12 @@ MOST_KEPT = 0.9
 # Factors on the learned share q of a cut between bodies, and on 1 - q of a cut through a body of several. Bodies are
 # parted before they are cut. Compared in bench/RESULTS.md, "Constants and their neighbours".
 BETWEEN_BODIES = 0.7
+BETWEEN_LARGE_BODIES = 0.3  # if the smaller side has at least a tenth of the total area
+LARGE_BODY = 0.1
 THROUGH_BODY = 0.8
 
 _CONTACT_SHARE, _DIVIDED, _SMALL_WHOLE = (FEATURES.index(name) for name in ("contact_share", "divided", "small_whole"))
+_SMALL_AREA = FEATURES.index("small_area")
 _PIECES = [FEATURES.index("small_pieces"), FEATURES.index("large_pieces")]
 _NEARLY = 1e-6  # of a share of 0 or 1, for rounding
 
@@ -211,7 +214,8 @@ class LearnedRule:
         between = _between_bodies(features)
         several = np.expm1(features[:, _PIECES]).sum(axis=1) > 2.0 + _NEARLY  # one piece that is divided counts twice
         through = np.where(several, 1.0 - THROUGH_BODY * (1.0 - kept), kept)
-        return np.where(between, BETWEEN_BODIES * kept, through)
+        is_large = features[:, _SMALL_AREA] >= np.log(LARGE_BODY)
+        return np.where(between, np.where(is_large, BETWEEN_LARGE_BODIES, BETWEEN_BODIES) * kept, through)
 
     def _is_late(self, candidates: Sequence[Cut], features: FloatArray) -> BoolArray:
         smaller = np.array([min(cut.inside, cut.outside) for cut in candidates])
