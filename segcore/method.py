@@ -1,5 +1,6 @@
 """Segmentation of a mesh into a hierarchy of parts: all stages in order."""
 
+from collections.abc import Callable
 from dataclasses import replace
 from functools import partial
 
@@ -9,7 +10,7 @@ from segcore.affinity.mesh_graphs import mesh_graph
 from segcore.arrays import group_sums
 from segcore.clean.surface import Surface, build_surface
 from segcore.coarsen.assembly import assemble
-from segcore.coarsen.clusters import Clusters
+from segcore.coarsen.clusters import Clusters, cluster_nodes
 from segcore.coarsen.contacts import Links
 from segcore.cut.bisection import bisect
 from segcore.cut.rules import split_rule
@@ -21,7 +22,7 @@ from segcore.label.projection import project
 from segcore.mesh import Mesh
 from segcore.parameters import SegmentationParameters
 from segcore.progress import OnProgress, Progress
-from segcore.symmetry.clusters import clusters_with_images, symmetrised
+from segcore.symmetry.clusters import clusters_with_images, symmetrised, with_connected_leaves
 from segcore.symmetry.images import MirrorImage, mirror_image
 
 
@@ -58,16 +59,25 @@ def segment(
     mirror = mirror_image(surface) if chosen.is_symmetric else None
     clusters = clusters_with_images(nodes, mirror, chosen.clusters, rng)
     clusters, links = assemble(surface, nodes, clusters, chosen.max_segments)
-    clusters = symmetrised(clusters, mirror)
     progress("cut")
-    rule = split_rule(clusters, chosen, rng)
-    after_splits = partial(progress.after_splits, chosen.max_segments)
-    tree = bisect(clusters.graph, clusters.points, rule, chosen.max_segments, after_splits, clusters.image)
+    cut = partial(_tree, chosen, rng, partial(progress.after_splits, chosen.max_segments))
+    tree = with_connected_leaves(cut(symmetrised(clusters, mirror)), clusters)
+    if clusters.image is not None and not tree.is_connected(clusters.graph):
+        clusters, links = assemble(surface, nodes, cluster_nodes(nodes, chosen.clusters, rng), chosen.max_segments)
+        tree, mirror = cut(clusters), None
     progress("label")
     tree = _over_faces(tree, clusters, nodes, links, surface, mirror)
     hierarchy = _of_input(surface, tree)
     progress("label", 1.0)
     return hierarchy
+
+
+def _tree(
+    chosen: SegmentationParameters, rng: np.random.Generator, on_split: Callable[[float], None], clusters: Clusters
+) -> Tree:
+    """Cut the graph of the clusters into a tree of segments."""
+    rule = split_rule(clusters, chosen, rng)
+    return bisect(clusters.graph, clusters.points, rule, chosen.max_segments, on_split, clusters.image)
 
 
 def _over_faces(
