@@ -1,5 +1,6 @@
 """Segmentation of a mesh into a hierarchy of parts: all stages in order."""
 
+from collections.abc import Callable
 from dataclasses import replace
 from functools import partial
 
@@ -11,7 +12,7 @@ from segcore.clean.refinement import Refinement, refine, undivided
 from segcore.clean.surface import Surface, build_surface
 from segcore.coarsen.assembly import assemble
 from segcore.coarsen.authored import with_structure
-from segcore.coarsen.clusters import MOST_COMPONENTS, Clusters
+from segcore.coarsen.clusters import MOST_COMPONENTS, Clusters, cluster_nodes
 from segcore.coarsen.contacts import Links
 from segcore.cut.bisection import bisect
 from segcore.cut.rules import split_rule
@@ -24,7 +25,7 @@ from segcore.label.projection import Votes, project
 from segcore.mesh import Mesh
 from segcore.parameters import SegmentationParameters
 from segcore.progress import OnProgress, Progress
-from segcore.symmetry.clusters import clusters_with_images, symmetrised
+from segcore.symmetry.clusters import clusters_with_images, symmetrised, with_connected_leaves
 from segcore.symmetry.images import MirrorImage, mirror_image
 
 
@@ -67,28 +68,41 @@ def segment(
     is_symmetric = chosen.is_symmetric and surface.authored is None
     mirror = mirror_image(refinement.surface) if is_symmetric else None
     clusters = clusters_with_images(nodes, mirror, chosen.clusters, rng)
-    most_bodies = chosen.max_segments or MOST_COMPONENTS
-    clusters, links = assemble(refinement.surface, nodes, clusters, most_bodies)
-    clusters = symmetrised(clusters, mirror)
+    most = chosen.max_segments or MOST_COMPONENTS
+    clusters, links = assemble(refinement.surface, nodes, clusters, most)
     progress("cut")
-    rule = split_rule(refinement.surface, clusters, chosen, rng)
-    tree = bisect(
-        clusters.graph,
-        clusters.points,
-        rule,
-        chosen.segment_limit,
-        partial(progress.after_splits, chosen.segment_limit),
-        authored=clusters.authored,
-        image=clusters.image,
-        body=clusters.body,
-        most_bodies=most_bodies,
-    )
+    cut = partial(_tree, refinement.surface, chosen, rng, partial(progress.after_splits, chosen.segment_limit))
+    tree = with_connected_leaves(cut(symmetrised(clusters, mirror)), clusters)
+    if clusters.image is not None and not tree.is_connected(clusters.graph):
+        clusters, links = assemble(refinement.surface, nodes, cluster_nodes(nodes, chosen.clusters, rng), most)
+        tree, mirror = cut(clusters), None
     tree = replace(tree, step=sibling_steps(clusters.graph, clusters.points, tree))
     progress("label")
     tree = _over_faces(tree, clusters, nodes, links, refinement, surface, mirror)
     hierarchy = _of_input(surface, tree)
     progress("label", 1.0)
     return hierarchy
+
+
+def _tree(
+    surface: Surface,
+    chosen: SegmentationParameters,
+    rng: np.random.Generator,
+    on_split: Callable[[float], None],
+    clusters: Clusters,
+) -> Tree:
+    """Cut the graph of the clusters of a surface into a tree of segments."""
+    return bisect(
+        clusters.graph,
+        clusters.points,
+        split_rule(surface, clusters, chosen, rng),
+        chosen.segment_limit,
+        on_split,
+        authored=clusters.authored,
+        image=clusters.image,
+        body=clusters.body,
+        most_bodies=chosen.max_segments or MOST_COMPONENTS,
+    )
 
 
 def _over_faces(

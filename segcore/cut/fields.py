@@ -146,9 +146,11 @@ def _flat_share(surface: Surface, length: FloatArray, clusters: Clusters) -> Flo
     is_flat = np.abs(dihedral_angles(surface)[crossing]) < _COPLANAR
     key = _edge_keys(clusters.graph.edges, count)
     order = np.argsort(key, kind="stable")
-    edge = order[np.searchsorted(key[order], _edge_keys(ends[crossing], count))]
-    flat = group_sums(edge, length[crossing] * is_flat, len(key))
-    border = group_sums(edge, length[crossing], len(key))
+    wanted = _edge_keys(ends[crossing], count)
+    edge = order[np.minimum(np.searchsorted(key[order], wanted), len(key) - 1)]
+    known = key[edge] == wanted  # a surface that is nearly symmetric has borders that the symmetric graph leaves out
+    flat = group_sums(edge, length[crossing] * (is_flat & known), len(key))
+    border = group_sums(edge, length[crossing] * known, len(key))
     share: FloatArray = np.divide(flat, border, out=np.zeros(len(key)), where=border > 0.0)
     return share
 

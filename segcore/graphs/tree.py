@@ -6,6 +6,7 @@ from dataclasses import dataclass, field, replace
 import numpy as np
 
 from segcore.arrays import FloatArray, IntArray
+from segcore.graphs.surface_graph import SurfaceGraph, connected_components
 from segcore.hierarchy import renumbered_nodes
 from segcore.nary import numbered_steps, own_steps
 
@@ -51,6 +52,23 @@ class Tree:
             automatic_segments=automatic_segments,
             step=numbered_steps(self.step[splits]),
         )
+
+    def is_connected(self, graph: SurfaceGraph) -> bool:
+        """True if the nodes below every split that is not free, and those of every leaf, are connected in a graph.
+
+        Leaves are connected by the edges inside them, and the two sides of a split by an edge across it.
+        """
+        a, b = self.leaf[graph.edges].T
+        pieces = int(connected_components(graph.edges[a == b], graph.node_count).max()) + 1
+        if pieces > len(np.unique(self.leaf)):
+            return False
+        parent = np.concatenate([np.array([-1], dtype=np.int32), np.repeat(self.split_node, 2)])
+        one, other = a[a != b], b[a != b]
+        while (apart := parent[one] != parent[other]).any():
+            deeper = one > other
+            one = np.where(apart & deeper, parent[one], one)
+            other = np.where(apart & ~deeper, parent[other], other)
+        return len(np.unique(parent[one])) == np.count_nonzero(self.cut_value > 0.0)
 
     def leaf_intervals(self) -> LeafIntervals:
         """Return the places of the leaves: those of the first child of a node come before those of the second."""

@@ -4,14 +4,13 @@ from dataclasses import replace
 
 import numpy as np
 
-from segcore.arrays import BoolArray, IntArray, group_sums
+from segcore.arrays import IntArray, group_sums
 from segcore.coarsen.clusters import Clusters, cluster_nodes, clusters_of
 from segcore.graphs.mesh_graph import MeshGraph
-from segcore.graphs.surface_graph import SurfaceGraph, connected_components
+from segcore.graphs.surface_graph import SurfaceGraph
+from segcore.graphs.tree import Tree
 from segcore.symmetry.images import MirrorImage
 from segcore.symmetry.pieces import in_one_piece
-
-_ATTEMPTS = 8  # at clusters whose symmetric graph is connected if the surface is; set by hand
 
 
 def clusters_with_images(
@@ -20,9 +19,8 @@ def clusters_with_images(
     """Coarsen a mesh graph to about ``target`` clusters, or not at all if it is 0; if it is symmetric, symmetrically.
 
     The first half is coarsened, and every face of the second half joins the image of the cluster of its image. Cluster
-    i < N / 2 is in the first half, and its image is cluster i + N / 2. Two clusters are neighbours in the graph only if
-    their images are. If this divides a component, the clusters of its smaller pieces are merged with neighbours; if
-    pieces remain, the clusters are those of a surface without symmetry.
+    i < N / 2 is in the first half, and its image is cluster i + N / 2. No cluster lies in both halves, unless a piece
+    of one half is connected to the other half alone.
 
     Parameters
     ----------
@@ -38,86 +36,45 @@ def clusters_with_images(
         None if nodes.thickness is None else nodes.thickness[first],
     )
     of_first = cluster_nodes(half, (target + 1) // 2, rng).of_node
-    for _ in range(_ATTEMPTS):
-        of_node = _mirrored(nodes.graph, mirror, of_first)
-        count = (int(of_node.max()) + 1) // 2
-        image = np.roll(np.arange(2 * count, dtype=np.int32), count)
-        clusters = clusters_of(nodes, of_node)
-        symmetric = _averaged(replace(clusters, image=image), image, mirror, least=2)
-        is_apart = _apart(symmetric.graph, clusters.graph)
-        if not is_apart.any():
-            return symmetric
-        into = _nearest_part(clusters.graph, is_apart | is_apart[image], count)
-        of_first = np.unique(into[of_node[first] % count], return_inverse=True)[1].astype(np.int32)
-    return cluster_nodes(nodes, target, rng)
+    of_node = _mirrored(nodes.graph, mirror, of_first)
+    count = (int(of_node.max()) + 1) // 2
+    image = np.roll(np.arange(2 * count, dtype=np.int32), count)
+    return replace(clusters_of(nodes, of_node), image=image)
 
 
 def symmetrised(clusters: Clusters, mirror: MirrorImage | None) -> Clusters:
-    """Clusters whose links between components are symmetric as well: the means of the graph and its image.
+    """Clusters with the means of their own graph and its image: weights, lengths, volumes, places and thickness.
 
     Clusters without images, of a surface that is not symmetric, are returned as they are.
     """
-    if mirror is None or clusters.image is None:
+    image = clusters.image
+    if mirror is None or image is None:
         return clusters
-    return _averaged(clusters, clusters.image, mirror, least=1)
-
-
-def _apart(graph: SurfaceGraph, whole: SurfaceGraph) -> BoolArray:
-    """(N,) True for the nodes outside the largest piece of their component.
-
-    Parameters
-    ----------
-    whole : the graph of the components; ``graph`` has some of its edges.
-    """
-    piece = connected_components(graph.edges, graph.node_count)
-    component = connected_components(whole.edges, whole.node_count)
-    volume = group_sums(piece, graph.volume)
-    ascending = np.argsort(volume[piece], kind="stable")
-    largest = np.empty(int(component.max()) + 1, dtype=np.int32)
-    largest[component[ascending]] = piece[ascending]
-    is_apart: BoolArray = piece != largest[component]
-    return is_apart
-
-
-def _nearest_part(graph: SurfaceGraph, is_apart: BoolArray, count: int) -> IntArray:
-    """(C,) for every cluster of the first half that is apart the neighbour with the longest border, else the cluster.
-
-    Parameters
-    ----------
-    is_apart : (2 C,) for every cluster.
-    count : C; the neighbour is in the first half too, and not apart.
-    """
-    one, other = np.concatenate([graph.edges, graph.edges[:, ::-1]]).T
-    length = np.tile(graph.length, 2)
-    joins = (one < count) & (other < count) & is_apart[one] & ~is_apart[other]
-    ascending = np.flatnonzero(joins)[np.argsort(length[joins], kind="stable")]
-    into = np.arange(count, dtype=np.int32)
-    into[one[ascending]] = other[ascending]
-    return into
-
-
-def _averaged(clusters: Clusters, image: IntArray, mirror: MirrorImage, least: int) -> Clusters:
-    """Clusters with the means of their own values and those of their images: weights, lengths, volumes, places.
-
-    Parameters
-    ----------
-    least : 2 if an edge without an image is left out, 1 if it gets an image and both have half of its weight.
-    """
     graph, points, thickness = clusters.graph, clusters.points, clusters.thickness
     count = graph.node_count
     both = np.concatenate([graph.edges, image[graph.edges]]).astype(np.int64)
     keys, which = np.unique(both.min(axis=1) * count + both.max(axis=1), return_inverse=True)
     # Sums over an edge and its image have the same terms; the order of the two makes no difference.
     weight, length = (0.5 * group_sums(which, np.tile(values, 2)) for values in (graph.weight, graph.length))
-    kept = np.bincount(which) >= least
-    edges = np.stack([keys // count, keys % count], axis=1).astype(np.int32)[kept]
-    symmetric = SurfaceGraph(edges, weight[kept], 0.5 * (graph.volume + graph.volume[image]), length[kept])
+    edges = np.stack([keys // count, keys % count], axis=1).astype(np.int32)
+    symmetric = SurfaceGraph(edges, weight, 0.5 * (graph.volume + graph.volume[image]), length)
     return replace(
         clusters,
         graph=symmetric,
         points=0.5 * (points + mirror.reflection.of_points(points[image])),
         thickness=None if thickness is None else 0.5 * (thickness + thickness[image]),
     )
+
+
+def with_connected_leaves(tree: Tree, clusters: Clusters) -> Tree:
+    """A tree over symmetric clusters with leaves that are connected in the graph before it was averaged.
+
+    On a mesh that is not symmetric itself, a leaf can be connected by the image of an edge alone.
+    """
+    if clusters.image is None:
+        return tree
+    kind = np.zeros(2 * len(tree.split_node) + 1, dtype=np.int32)
+    return replace(tree, leaf=in_one_piece(clusters.graph, tree.leaf, kind))
 
 
 def _mirrored(graph: SurfaceGraph, mirror: MirrorImage, of_first: IntArray) -> IntArray:

@@ -6,13 +6,13 @@ import numpy as np
 import pytest
 import trimesh
 
-from helpers.strips import write_strips
+from helpers.bench.strips import write_strips
 from segcore import shapes
 
 
 @pytest.fixture
 def strips(tmp_path: Path) -> Path:
-    """A benchmark of three equal strips, see ``helpers.strips``."""
+    """A benchmark of three equal strips, see ``helpers.bench.strips``."""
     return write_strips(tmp_path / "data")
 
 

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from bench.assets.shape import component_labels, flat_share, mirror_disagreement
-from helpers.strips import strip
+from helpers.bench.strips import strip
 from segcore.arrays import FloatArray
 from segcore.clean.surface import build_surface
 from segcore.mesh import Mesh

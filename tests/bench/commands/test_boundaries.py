@@ -8,7 +8,7 @@ import pytest
 from bench.commands.boundaries import CutLengths, length_of_cuts, measure, render
 from bench.princeton.dataset import Model
 from bench.princeton.surface import Surface
-from helpers.strips import EvenSegmenter, cut_at, strip
+from helpers.bench.strips import EvenSegmenter, cut_at, strip
 from segcore.mesh import Mesh
 
 COLUMNS = 12

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from bench.__main__ import main
-from helpers.paper_models import write_benchmark
+from helpers.bench.paper_models import write_benchmark
 
 HEADER = "graph\tncc_best_known\truns5_mean20\tseconds_runs5\n"
 

@@ -9,7 +9,7 @@ from bench.__main__ import main
 from bench.princeton.dataset import read_models
 from bench.princeton.evaluation import evaluate_model
 from bench.princeton.results import load_results, save_results
-from helpers.strips import STRIP_CATEGORIES, EvenSegmenter
+from helpers.bench.strips import STRIP_CATEGORIES, EvenSegmenter
 
 
 def test_compare_prints_the_difference_of_two_files(

@@ -7,7 +7,7 @@ import pytest
 from bench.__main__ import main
 from bench.paper.items import ITEMS
 from bench.princeton.results import load_results
-from helpers.paper_models import SHAPES, write_benchmark
+from helpers.bench.paper_models import SHAPES, write_benchmark
 
 VARIANTS = {"inverse_power", "split_bregman", "fiedler", "inverse_power_adjacency", "fiedler_adjacency"}
 PNG = b"\x89PNG\r\n\x1a\n"

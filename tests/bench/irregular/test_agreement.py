@@ -5,7 +5,7 @@ import pytest
 
 from bench.irregular.agreement import agreement
 from bench.irregular.versions import Remeshed
-from helpers.strips import cut_at, strip
+from helpers.bench.strips import cut_at, strip
 from segcore.mesh import Mesh
 
 

@@ -8,7 +8,7 @@ from bench.paper.evaluation import MethodResults, evaluate_methods
 from bench.paper.label_cache import LabelCache
 from bench.peers.method import Method
 from bench.princeton.dataset import read_models
-from helpers.paper_models import SHAPES, Slices, write_benchmark
+from helpers.bench.paper_models import SHAPES, Slices, write_benchmark
 
 
 @pytest.fixture(scope="module")

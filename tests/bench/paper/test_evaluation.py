@@ -9,7 +9,7 @@ from bench.paper.evaluation import MethodResults
 from bench.princeton.dataset import read_models
 from bench.princeton.evaluation import evaluate_model
 from bench.princeton.results import load_results, save_results
-from helpers.paper_models import SHAPES, Slices
+from helpers.bench.paper_models import SHAPES, Slices
 from segcore.mesh import Mesh
 
 

@@ -9,7 +9,7 @@ import pytest
 from bench.errors import BenchmarkError
 from bench.paper.label_cache import LabelCache
 from bench.peers.method import Outcome
-from helpers.paper_models import Slices
+from helpers.bench.paper_models import Slices
 from segcore.mesh import Mesh
 from segcore.shapes import box
 

@@ -7,7 +7,7 @@ import numpy as np
 from bench.paper.evaluation import MethodResults
 from bench.paper.tables import PAPER_SECONDS, difference_table, metric_table, rank_table, ranks, time_table
 from bench.princeton.summary import overall
-from helpers.paper_models import Slices
+from helpers.bench.paper_models import Slices
 
 
 def row_of(text: str, name: str) -> list[str]:

@@ -4,7 +4,7 @@ import numpy as np
 
 from bench.peers.pieces import keep_largest_pieces
 from bench.princeton.surface import Surface
-from helpers.strips import cut_at, strip
+from helpers.bench.strips import cut_at, strip
 
 
 def test_an_isolated_piece_joins_the_segment_with_the_longest_border() -> None:

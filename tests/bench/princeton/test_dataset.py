@@ -6,7 +6,7 @@ import pytest
 
 from bench.errors import BenchmarkError
 from bench.princeton.dataset import find_models, read_models
-from helpers.strips import STRIP_COLUMNS
+from helpers.bench.strips import STRIP_COLUMNS
 
 
 def test_a_limit_spreads_the_models_over_the_whole_list(strips: Path) -> None:

@@ -12,7 +12,7 @@ from bench.princeton.evaluation import ModelResult, Segmenter, evaluate_model
 from bench.princeton.metrics import METRICS
 from bench.princeton.parallel import evaluate_models
 from bench.princeton.report import render
-from helpers.strips import STRIP_PEOPLE, EvenSegmenter
+from helpers.bench.strips import STRIP_PEOPLE, EvenSegmenter
 
 
 def evaluate_all(folder: Path, segmenter: Segmenter, seeds: tuple[int, ...] = (0,)) -> list[ModelResult]:

@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 
 from bench.princeton.metrics import METRICS, Scores, evaluate, mean_scores
 from bench.princeton.surface import Segmentation, Surface
-from helpers.strips import cut_at, strip, strip_surface
+from helpers.bench.strips import cut_at, strip, strip_surface
 
 COLUMNS, ROWS = 4, 2
 FACES = 2 * COLUMNS * ROWS

@@ -10,7 +10,7 @@ from bench.errors import BenchmarkError
 from bench.princeton.dataset import read_models
 from bench.princeton.evaluation import evaluate_model
 from bench.princeton.results import load_results, save_results
-from helpers.strips import STRIP_CATEGORIES, EvenSegmenter
+from helpers.bench.strips import STRIP_CATEGORIES, EvenSegmenter
 
 
 def test_loaded_results_have_the_undefined_scores_of_the_saved_ones(strips: Path, tmp_path: Path) -> None:

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from helpers.shapes.patches import flat_patches, patched, patches_around, sheet, tube
+from helpers.patches import flat_patches, patched, patches_around, sheet, tube
 from segcore import segment, shapes
 from segcore.clean.stitching import stitch
 from segcore.clean.surface import build_surface

@@ -3,9 +3,9 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
+from helpers.creatures import creature
 from helpers.graphs import is_connected, weighted_graph
 from helpers.meshes import rotation
-from helpers.shapes.creatures import creature
 from helpers.trees import members
 from segcore.affinity.mesh_graphs import mesh_graph
 from segcore.clean.surface import build_surface

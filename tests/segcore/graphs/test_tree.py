@@ -4,7 +4,7 @@ import numpy as np
 from hypothesis import given
 from hypothesis import strategies as st
 
-from helpers.graphs import grid
+from helpers.graphs import grid, is_connected
 from helpers.trees import grown_tree, leaves_below, members
 from segcore.graphs.tree import Tree
 
@@ -55,3 +55,14 @@ def test_reordering_numbers_the_steps_in_the_new_order() -> None:
     np.testing.assert_array_equal(reordered.cut_value, [0, 3, 1, 2])
     plain = Tree(tree.split_node, tree.cut_value, leaf, 1)
     np.testing.assert_array_equal(plain.steps, np.arange(4))
+
+
+@given(trees, st.integers(0, 1000))
+def test_a_tree_is_connected_if_every_node_of_it_is(tree: Tree, seed: int) -> None:
+    assert tree.is_connected(GRID)
+    leaf = tree.leaf.copy()
+    moved = np.random.default_rng(seed).integers(len(leaf))
+    leaf[moved] = np.random.default_rng(seed + 1).choice(tree.leaf)
+    changed = Tree(tree.split_node, tree.cut_value, leaf, 1)
+    if len(np.unique(leaf)) == len(tree.split_node) + 1:
+        assert changed.is_connected(GRID) == all(is_connected(GRID, part) for part in members(changed))

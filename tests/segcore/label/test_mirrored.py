@@ -1,8 +1,8 @@
 import numpy as np
 import pytest
 
+from helpers.creatures import creature, limb_of_face
 from helpers.meshes import rotation
-from helpers.shapes.creatures import creature, limb_of_face
 from helpers.trees import grown_tree
 from segcore.clean.surface import build_surface
 from segcore.graphs.surface_graph import connected_components

@@ -1,8 +1,8 @@
 import numpy as np
 import pytest
 
+from helpers.creatures import creature
 from helpers.meshes import moved, refined, rotation
-from helpers.shapes.creatures import creature
 from segcore import shapes
 from segcore.clean.surface import build_surface
 from segcore.mesh import Mesh

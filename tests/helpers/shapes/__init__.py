@@ -1,1 +1,0 @@
-"""Meshes with known parts: symmetric creatures, and surfaces of patches that do not share vertices."""
