@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 if TYPE_CHECKING:
-    from segcore.arrays import FloatArray
+    from segcore.arrays import BoolArray, FloatArray
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -19,6 +19,10 @@ class Rows:
     features: FloatArray  # (N, M)
     target: FloatArray  # (N,) in 0..1
     weight: FloatArray  # (N,) >= 0; their sum is 1 for the rows of one model
+
+    def part(self, chosen: BoolArray) -> Rows:
+        """Return the rows for which (N,) ``chosen`` is True."""
+        return Rows(self.features[chosen], self.target[chosen], self.weight[chosen])
 
 
 def concatenated(tables: Sequence[Rows]) -> Rows:

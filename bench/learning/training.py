@@ -30,7 +30,19 @@ Grouping = Literal["category", "fifth"]
 # Set by hand; the quality with these values is in docs/explanation/learned-models.md.
 _BOUNDARY_RIDGE = 1e-4
 _SPLIT_RIDGE = 1e-2
+_BODIES_RIDGE = 3e-2  # of the model for surfaces of several bodies, of which there are fewer kinds
 _ROUNDS = 2  # of growing trees and fitting to them, because the fitted rule grows other trees
+
+# Features of bodies, which are the same for all cuts of one body.
+_OF_BODIES = (
+    "contact_share", "contact_over_small", "small_pieces", "large_pieces", "divided", "small_whole", "large_whole",
+    "small_of_body", "repeats", "bodies",
+)  # fmt: skip
+# Features that tell the sets of assets apart rather than good cuts from bad ones: without them the model does better on
+# sets that it has not seen.
+_OF_SETS = ("bodies", "mean_affinity", "small_confidence", "large_confidence")
+_ONE_BODY_FEATURES = tuple(name for name in CUT_FEATURES if name not in _OF_BODIES)
+_SEVERAL_BODIES_FEATURES = tuple(name for name in CUT_FEATURES if name not in _OF_SETS)
 
 
 def train(meshes: Sequence[Example], grouping: Grouping, jobs: int) -> list[Fold]:
@@ -47,21 +59,36 @@ def train(meshes: Sequence[Example], grouping: Grouping, jobs: int) -> list[Fold
     edges = map_in_processes(boundary_rows, meshes, jobs, warm_up)
     flat = _flat(CUT_FEATURES)
     folds = [
-        Fold(name, left_out, LearnedModels(_fit(EDGE_FEATURES, meshes, edges, left_out, _BOUNDARY_RIDGE), flat))
+        Fold(
+            name,
+            left_out,
+            LearnedModels(fit(EDGE_FEATURES, _seen(meshes, edges, left_out), _BOUNDARY_RIDGE), flat, flat),
+        )
         for name, left_out in groups.items()
     ]
     for _ in range(_ROUNDS):
         grow = partial(_grow, {number: fold.models.document() for fold in folds for number in fold.left_out})
         cuts = map_in_processes(grow, meshes, jobs, warm_up)
-        folds = [
-            Fold(
-                fold.name,
-                fold.left_out,
-                LearnedModels(fold.models.boundary, _fit(CUT_FEATURES, meshes, cuts, fold.left_out, _SPLIT_RIDGE)),
-            )
-            for fold in folds
-        ]
+        folds = [replace(fold, models=_with_splits(fold.models, _seen(meshes, cuts, fold.left_out))) for fold in folds]
     return folds
+
+
+def _with_splits(models: LearnedModels, rows: Rows) -> LearnedModels:
+    """Return the models with those of splits fitted to rows with all features.
+
+    The model for one body is fitted to meshes of one body, the one for several bodies to all meshes.
+    """
+    one_body = rows.features[:, CUT_FEATURES.index("bodies")] == 0.0
+    of_one_body = rows.part(one_body) if one_body.any() else rows
+    return LearnedModels(
+        models.boundary,
+        fit(_ONE_BODY_FEATURES, _columns(of_one_body, _ONE_BODY_FEATURES), _SPLIT_RIDGE),
+        fit(_SEVERAL_BODIES_FEATURES, _columns(rows, _SEVERAL_BODIES_FEATURES), _BODIES_RIDGE),
+    )
+
+
+def _columns(rows: Rows, names: Sequence[str]) -> Rows:
+    return replace(rows, features=rows.features[:, [CUT_FEATURES.index(name) for name in names]])
 
 
 def _groups(meshes: Sequence[Example], grouping: Grouping) -> dict[str, frozenset[int | str]]:
@@ -78,19 +105,15 @@ def _grow(models_of: dict[int | str, dict[str, object]], example: Example) -> Ro
         return cut_rows(example)
 
 
-def _fit(
-    names: tuple[str, ...],
-    meshes: Sequence[Example],
-    rows: Sequence[Rows],
-    left_out: frozenset[int | str],
-    ridge: float,
-) -> LogisticModel:
-    seen = [
-        replace(row, weight=example.weight * row.weight)
-        for example, row in zip(meshes, rows, strict=True)
-        if example.key not in left_out
-    ]
-    return fit(names, concatenated(seen), ridge)
+def _seen(meshes: Sequence[Example], rows: Sequence[Rows], left_out: frozenset[int | str]) -> Rows:
+    """Return the rows of all meshes that are not left out, with the weights of the meshes."""
+    return concatenated(
+        [
+            replace(row, weight=example.weight * row.weight)
+            for example, row in zip(meshes, rows, strict=True)
+            if example.key not in left_out
+        ]
+    )
 
 
 def _flat(names: tuple[str, ...]) -> LogisticModel:

@@ -152,7 +152,10 @@ class LearnedRule:
     """The cut, the order and the number of segments by the learned model of ``segcore.cut.features``."""
 
     def __init__(self, fields: ClusterFields, parameters: SegmentationParameters, rng: np.random.Generator) -> None:
-        self._model = learned_models().split
+        models = learned_models()
+        model = models.split if fields.bodies.count == 1 else models.split_of_bodies
+        self._model = model
+        self._columns = [FEATURES.index(name) for name in model.names]
         self._fields = fields
         self._parameters = parameters
         self._rng = rng
@@ -208,7 +211,7 @@ class LearnedRule:
 
     def _kept(self, features: FloatArray) -> FloatArray:
         """(N,) the share of the pairs across each candidate that people keep together."""
-        kept = self._model.probability(features)
+        kept = self._model.probability(np.ascontiguousarray(features[:, self._columns]))
         if self._fields.bodies.count == 1:
             return kept
         between = _between_bodies(features)

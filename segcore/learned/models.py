@@ -11,6 +11,8 @@ from typing import Any
 
 from segcore.learned.logistic import LogisticModel
 
+_NAMES = ("boundary", "split", "split_of_bodies")
+
 
 @dataclass(frozen=True, slots=True, eq=False)
 class LearnedModels:
@@ -18,15 +20,17 @@ class LearnedModels:
 
     boundary: LogisticModel  # probability of a cut along an edge, see segcore.affinity.boundary_features
     split: LogisticModel  # share of the pairs across a cut that people keep together, see segcore.cut.features
+    split_of_bodies: LogisticModel  # the same on surfaces of several bodies
 
     @classmethod
     def from_document(cls, document: Mapping[str, Any]) -> "LearnedModels":
         """The inverse of ``document``."""
-        return cls(LogisticModel.from_document(document["boundary"]), LogisticModel.from_document(document["split"]))
+        boundary, split, of_bodies = (LogisticModel.from_document(document[name]) for name in _NAMES)
+        return cls(boundary, split, of_bodies)
 
     def document(self) -> dict[str, Any]:
         """The models as plain values for JSON."""
-        return {"boundary": self.boundary.document(), "split": self.split.document()}
+        return {name: getattr(self, name).document() for name in _NAMES}
 
 
 _override: ContextVar[LearnedModels | None] = ContextVar("learned models", default=None)
