@@ -17,6 +17,7 @@ from bench.learning.splits import cut_rows
 from bench.pool import map_in_processes
 from segcore.affinity.boundary_features import FEATURES as EDGE_FEATURES
 from segcore.cut.features import FEATURES as CUT_FEATURES
+from segcore.cut.features import CutFeatures
 from segcore.learned.logistic import LogisticModel
 from segcore.learned.models import LearnedModels, using
 from segcore.warm_up import warm_up
@@ -33,15 +34,13 @@ _SPLIT_RIDGE = 1e-2
 _BODIES_RIDGE = 3e-2  # of the model for surfaces of several bodies, of which there are fewer kinds
 _ROUNDS = 2  # of growing trees and fitting to them, because the fitted rule grows other trees
 
-# Features of bodies, which are the same for all cuts of one body.
-_OF_BODIES = (
-    "contact_share", "contact_over_small", "small_pieces", "large_pieces", "divided", "small_whole", "large_whole",
-    "small_of_body", "repeats", "bodies",
-)  # fmt: skip
+# Of meshes of one body in the model for several bodies: they are most of the meshes. Set by hand.
+_ONE_BODY_WEIGHT = 1 / 3
+
 # Features that tell the sets of assets apart rather than good cuts from bad ones: without them the model does better on
 # sets that it has not seen.
 _OF_SETS = ("bodies", "mean_affinity", "small_confidence", "large_confidence")
-_ONE_BODY_FEATURES = tuple(name for name in CUT_FEATURES if name not in _OF_BODIES)
+_ONE_BODY_FEATURES = CutFeatures._fields  # further ones make it worse on categories that it has not seen
 _SEVERAL_BODIES_FEATURES = tuple(name for name in CUT_FEATURES if name not in _OF_SETS)
 
 
@@ -80,6 +79,7 @@ def _with_splits(models: LearnedModels, rows: Rows) -> LearnedModels:
     """
     one_body = rows.features[:, CUT_FEATURES.index("bodies")] == 0.0
     of_one_body = rows.part(one_body) if one_body.any() else rows
+    rows = replace(rows, weight=np.where(one_body, _ONE_BODY_WEIGHT, 1.0) * rows.weight)
     return LearnedModels(
         models.boundary,
         fit(_ONE_BODY_FEATURES, _columns(of_one_body, _ONE_BODY_FEATURES), _SPLIT_RIDGE),
