@@ -167,7 +167,8 @@ class Hierarchy:
     def _checked(self, segments: int | None) -> int:
         count = self.automatic_segments if segments is None else segments
         if not 1 <= count <= self.max_segments:
+            reason = "" if self.limit_reached is not False else " No sensible cut is left beyond that."
             raise InvalidParameters(
-                f"The number of segments must be from 1 to {self.max_segments} for this mesh, not {count}."
+                f"The number of segments must be from 1 to {self.max_segments} for this mesh, not {count}.{reason}"
             )
         return count

@@ -102,6 +102,7 @@ def _tree(
         image=clusters.image,
         body=clusters.body,
         most_bodies=chosen.max_segments or MOST_COMPONENTS,
+        only_sensible=chosen.ends_where_sensible,
     )
 
 

@@ -111,6 +111,11 @@ class SegmentationParameters:
         return self.max_segments or USUAL_SEGMENTS
 
     @property
+    def ends_where_sensible(self) -> bool:
+        """True if the hierarchy ends where the learned order finds no sensible cut left."""
+        return self.max_segments is None and self.split_order == "learned"
+
+    @property
     def measures_shape(self) -> bool:
         """True for the affinities that bending and thickness decide, and not the paper's or none."""
         return self.graph == "faces" and self.affinity in ("learned", "concavity")

@@ -46,7 +46,7 @@ POWER, LAPLACIAN = "segcore.solvers.inverse_power", "segcore.solvers.p_laplacian
 # Judged by the segmentations.
 OF_SEGMENTATIONS = (
     Constant(RULES, "AUTOMATIC_NCUT", (1.2, 1.32, 1.44, 1.58, 1.74), parameters={"affinity": "concavity"}),
-    Constant(RULES, "SMALLEST_SIDE", (0.0, 0.001, 0.002, 0.004), importers=("segcore.cut.bisection",)),
+    Constant(RULES, "SMALLEST_SIDE", (0.0, 0.001, 0.002, 0.004)),
     Constant(RULES, "NCUT_WEIGHT", (0.0, 0.2, 0.4, 0.8)),
     Constant(BOUNDARY, "BAND", (0.015, 0.03, 0.06)),
     Constant(BOUNDARY, "STIFFNESS", (0.03, 0.1, 0.3)),

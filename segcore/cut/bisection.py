@@ -27,6 +27,7 @@ def bisect(
     image: IntArray | None = None,
     body: IntArray | None = None,
     most_bodies: int = 0,
+    only_sensible: bool = False,
 ) -> Tree:
     """Separate the components of a graph, then repeatedly cut the segment of highest priority.
 
@@ -41,6 +42,7 @@ def bisect(
     image : (N,) the mirror image of every node, an automorphism of the graph without a fixed point; None if there is
         none. A cut and its image are one step.
     body : (N,) the body of every node; None if there is one body.
+    only_sensible : True to end as well where the rule finds no sensible split left.
     most_bodies : if there are more bodies than ``max_segments``, they are parted until there are this many segments.
 
     Notes
@@ -52,7 +54,7 @@ def bisect(
     tree = _GrowingTree(graph, rule, max_segments, image)
     for twins in tree.part_components(component, group_by_part(points, component, authored)):
         tree.add(twins)
-    while tree.segments < max_segments and tree.split_next():
+    while tree.segments < max_segments and (tree.is_sensible_left or not only_sensible) and tree.split_next():
         on_split(tree.segments / max_segments)
     tree.limit_reached = tree.is_sensible_left
     if body is not None:
@@ -176,8 +178,8 @@ class _GrowingTree:
             self._leaf[copy.nodes] = copy.node
 
     def split_next(self) -> bool:
-        """Make the next step; return False if no sensible one is left."""
-        if not self.is_sensible_left:
+        """Make the next step; return False if every segment is a single node."""
+        if not self._queue:
             return False
         _, _, node = heappop(self._queue)
         twins = self._waiting.pop(node)

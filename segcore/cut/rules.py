@@ -29,8 +29,8 @@ SMALLEST_BODY = 0.0002  # share of the total area below which even a whole body 
 NCUT_WEIGHT = 0.4  # of the normalized cut beside the learned share in the comparison of candidates
 # Learned share of kept pairs beyond which a cut is no sensible part any more; set by hand: nine of ten pairs.
 MOST_KEPT = 0.9
-# Factors on the learned share q of a cut between bodies, and on 1 - q of a cut through a body of several. Bodies are
-# parted before they are cut. Compared in bench/RESULTS.md, "Constants and their neighbours".
+# Factors on the learned share q of a cut between bodies, and on 1 - q of a cut through a body of several: bodies are
+# parted before they are cut. Set by hand: see bench/RESULTS.md, "Authored assets".
 BETWEEN_BODIES = 0.7
 BETWEEN_LARGE_BODIES = 0.3  # if the smaller side has at least a tenth of the total area
 LARGE_BODY = 0.1
@@ -129,8 +129,8 @@ class RatioRule:
                 return self._split(segment, min(symmetric, key=lambda cut: cut.ncut)).with_image(image)
         return self._split(segment, with_connected_sides(segment.graph, cut))
 
-    def is_sensible(self, _late: bool, _priority: float, /) -> bool:
-        return True
+    def is_sensible(self, late: bool, _priority: float, /) -> bool:
+        return not late
 
     def best_among(self, segment: Segment, cuts: Sequence[Cut]) -> Split:
         return self._split(segment, min(cuts, key=lambda cut: cut.ncut))
@@ -174,7 +174,7 @@ class LearnedRule:
         return self.best_of(candidates, self.features(segment, inside, candidates))
 
     def is_sensible(self, late: bool, priority: float, /) -> bool:
-        return self._parameters.max_segments is not None or (not late and priority <= MOST_KEPT)
+        return not late and priority <= MOST_KEPT
 
     def best_among(self, segment: Segment, cuts: Sequence[Cut]) -> Split:
         return self.best_of(cuts, self.features(segment, self._fields.inside(segment), cuts))

@@ -81,9 +81,3 @@ class Tree:
             first[2 * split + 1] = first[node]
             first[2 * split + 2] = first[node] + leaves[2 * split + 1]
         return LeafIntervals(first, first + leaves)
-
-
-def _renumbered_steps(step: IntArray) -> IntArray:
-    """(S,) 0, 1, ... in the order of the splits; those of a step follow each other."""
-    renumbered: IntArray = np.cumsum(np.diff(step, prepend=step[:1]) != 0, dtype=np.int32)
-    return renumbered

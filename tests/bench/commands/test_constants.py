@@ -11,11 +11,12 @@ from bench.commands.constants import render_cuts, render_qualities
 from bench.constants.catalogue import OF_SEGMENTATIONS, OF_SOLVERS, Constant
 from bench.constants.evaluation import CutQuality, Quality, cut_quality
 from helpers.graphs import cycle, two_cliques
-from segcore.cut import bisection, rules
+from segcore.coarsen import assembly
+from segcore.label import boundary
 from segcore.parameters import SegmentationParameters
 from segcore.solvers.solvers import SOLVERS
 
-CONSTANT = Constant("segcore.cut.rules", "SMALLEST_SIDE", (0.001, 0.002), importers=("segcore.cut.bisection",))
+CONSTANT = Constant("segcore.coarsen.assembly", "CONTACT", (0.005, 0.01), importers=("segcore.label.boundary",))
 
 
 @pytest.mark.parametrize("constant", [*OF_SEGMENTATIONS, *OF_SOLVERS], ids=lambda constant: constant.name)
@@ -28,8 +29,8 @@ def test_the_value_in_force_and_neighbours_on_both_sides_are_measured(constant: 
 
 def test_a_constant_is_changed_in_all_its_modules_and_restored() -> None:
     with CONSTANT.set_to(0.25):
-        assert rules.SMALLEST_SIDE == bisection.SMALLEST_SIDE == 0.25
-    assert rules.SMALLEST_SIDE == bisection.SMALLEST_SIDE == 0.002
+        assert assembly.CONTACT == boundary.CONTACT == 0.25
+    assert assembly.CONTACT == boundary.CONTACT == 0.01
 
 
 def test_cuts_are_compared_with_the_best_known_ones() -> None:
