@@ -1,6 +1,7 @@
-"""A contact sheet: models of the benchmark in the colours of their segments, as one PNG.
+"""A contact sheet: models of the benchmark, or any files, in the colours of their segments, as one PNG.
 
-Without --models, it shows --limit models, spread evenly over the list.
+Without --models and --files, it shows --limit models of the benchmark, spread evenly over the list. With --levels, each
+mesh is a row: the automatic number of segments, then the levels, as far as the hierarchy of the mesh goes.
 """
 
 from __future__ import annotations
@@ -11,16 +12,24 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from bench.datasets import read_mesh
 from bench.princeton.dataset import Model, find_models, read_models
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
+    from segcore.mesh import Mesh
+
 _AZIMUTH = 35  # degrees; set by hand, for shapes that look three-dimensional
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
-    parser.add_argument("--data", type=Path, required=True, metavar="DIR", help="the folder of the benchmark")
+    source = parser.add_mutually_exclusive_group(required=True)
+    source.add_argument("--data", type=Path, metavar="DIR", help="the folder of the benchmark")
+    source.add_argument("--files", type=Path, nargs="+", metavar="FILE", help="draw these meshes instead")
+    parser.add_argument(
+        "--levels", type=_numbers, default=[], metavar="N,N", help="further numbers of segments to draw"
+    )
     parser.add_argument("--models", type=_numbers, metavar="N,N", help="numbers of the models to draw")
     parser.add_argument("--limit", type=int, default=40, metavar="N", help="number of models (default 40)")
     parser.add_argument(
@@ -34,13 +43,22 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 def run(arguments: argparse.Namespace) -> None:
     from segcore.io.picture import write_png
 
-    models = _chosen(arguments)
-    tiles = [_tile(model, arguments.segments == "given", arguments.size) for model in models]
-    tiles += [np.zeros_like(tiles[0])] * (-len(tiles) % arguments.columns)
-    rows = [np.concatenate(tiles[i : i + arguments.columns], axis=1) for i in range(0, len(tiles), arguments.columns)]
+    meshes = _meshes(arguments)
+    tiles = [tile for mesh, segments in meshes for tile in _tiles(mesh, segments, arguments)]
+    columns = 1 + len(arguments.levels) if arguments.levels else arguments.columns
+    tiles += [np.zeros_like(tiles[0])] * (-len(tiles) % columns)
+    rows = [np.concatenate(tiles[i : i + columns], axis=1) for i in range(0, len(tiles), columns)]
     with arguments.output.open("wb") as target:
         write_png(target, np.concatenate(rows))
-    print(f"{len(models)} models in {arguments.output}: {', '.join(str(model.number) for model in models)}")
+    print(f"{len(meshes)} meshes in {arguments.output}")
+
+
+def _meshes(arguments: argparse.Namespace) -> list[tuple[Mesh, int | None]]:
+    """Return the meshes, each with the number of segments to draw, None for the automatic one."""
+    if arguments.files is not None:
+        return [(read_mesh(path, path.name), None) for path in arguments.files]
+    given = arguments.segments == "given"
+    return [(model.read_mesh(), model.segments if given else None) for model in _chosen(arguments)]
 
 
 def _chosen(arguments: argparse.Namespace) -> list[Model]:
@@ -49,18 +67,21 @@ def _chosen(arguments: argparse.Namespace) -> list[Model]:
     return find_models(arguments.data, arguments.models)
 
 
-def _tile(model: Model, given: bool, size: int) -> NDArray[np.uint8]:
+def _tiles(mesh: Mesh, segments: int | None, arguments: argparse.Namespace) -> list[NDArray[np.uint8]]:
+    """Return the picture of a mesh, and one for every level; an empty one if its hierarchy does not go so far."""
     from segcore import segment
     from segcore.io.picture import draw
 
-    mesh = model.read_mesh()
     hierarchy = segment(mesh)
-    labels = hierarchy.labels(min(model.segments, hierarchy.max_segments) if given else None)
-    return draw(mesh, labels, size, _AZIMUTH)
+    first = None if segments is None else min(segments, hierarchy.max_segments)
+    levels = [None if level > hierarchy.max_segments else hierarchy.labels(level) for level in arguments.levels]
+    tiles = [hierarchy.labels(first), *levels]
+    empty = np.zeros((arguments.size, arguments.size, 4), dtype=np.uint8)
+    return [empty if labels is None else draw(mesh, labels, arguments.size, _AZIMUTH) for labels in tiles]
 
 
 def _numbers(text: str) -> list[int]:
     try:
         return [int(part) for part in text.split(",")]
     except ValueError:
-        raise argparse.ArgumentTypeError(f"models are numbers with commas between them, not {text!r}") from None
+        raise argparse.ArgumentTypeError(f"these are numbers with commas between them, not {text!r}") from None
