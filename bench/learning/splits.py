@@ -19,7 +19,7 @@ from segcore.coarsen.clusters import MOST_COMPONENTS, Clusters, cluster_nodes
 from segcore.cut.bisection import bisect
 from segcore.cut.features import FEATURES
 from segcore.cut.fields import ClusterFields, Segment, SegmentFields, cluster_fields
-from segcore.cut.rules import LearnedRule
+from segcore.cut.rules import LearnedRule, Split
 from segcore.parameters import USUAL_SEGMENTS, SegmentationParameters
 
 if TYPE_CHECKING:
@@ -31,6 +31,8 @@ if TYPE_CHECKING:
 # Exponent of the share of all pairs that a cut separates, in the weight of its row. Set by hand, between equal weights
 # (0) and weights by pairs (1), which the first cuts of each tree would dominate.
 _SIZE_EXPONENT = 0.75
+# Of the candidate that is taken, beside the others: the least of several estimates is too low on average. Set by hand.
+_CHOSEN_WEIGHT = 4.0
 
 
 def cut_rows(example: Example, seed: int = 0) -> Rows:
@@ -54,7 +56,7 @@ def cut_rows(example: Example, seed: int = 0) -> Rows:
     bisect(clusters.graph, clusters.points, rule, USUAL_SEGMENTS)
     if not rule.rows:
         return Rows(np.empty((0, len(FEATURES))), np.empty(0), np.empty(0))
-    weight = np.array(rule.pairs) ** _SIZE_EXPONENT
+    weight = np.array(rule.weight)
     return Rows(np.stack(rule.rows), np.array(rule.target), weight / weight.sum())
 
 
@@ -86,16 +88,21 @@ class _Recorder(LearnedRule):
         self._people = people
         self.rows: list[FloatArray] = []
         self.target: list[float] = []
-        self.pairs: list[float] = []
+        self.weight: list[float] = []
 
     def features(self, segment: Segment, inside: SegmentFields, candidates: Sequence[Cut]) -> FloatArray:
-        features = super().features(segment, inside, candidates)
+        self._segment = segment
+        return super().features(segment, inside, candidates)
+
+    def best_of(self, candidates: Sequence[Cut], features: FloatArray) -> Split:
+        best = super().best_of(candidates, features)
         for row, cut in zip(features, candidates, strict=True):
-            one, other = segment.nodes[cut.side], segment.nodes[~cut.side]
+            one, other = self._segment.nodes[cut.side], self._segment.nodes[~cut.side]
             areas = [(area[one].sum(axis=0), area[other].sum(axis=0)) for area in self._people]
             pairs = np.array([a.sum() * b.sum() for a, b in areas])
             if pairs.sum() > 0.0:
                 self.rows.append(row)
                 self.target.append(sum(float((a * b).sum()) for a, b in areas) / float(pairs.sum()))
-                self.pairs.append(cut.inside * cut.outside / self._total**2)
-        return features
+                size = (cut.inside * cut.outside / self._total**2) ** _SIZE_EXPONENT
+                self.weight.append(_CHOSEN_WEIGHT * size if cut is best.cut else size)
+        return best
