@@ -34,8 +34,8 @@ _SPLIT_RIDGE = 1e-2
 _BODIES_RIDGE = 3e-2  # of the model for surfaces of several bodies, of which there are fewer kinds
 _ROUNDS = 2  # of growing trees and fitting to them, because the fitted rule grows other trees
 
-# Of meshes of one body in the model for several bodies: they are most of the meshes. Set by hand.
-_ONE_BODY_WEIGHT = 1 / 3
+# Of meshes of one body in the model for several bodies, beside the others: they are most of the meshes. Set by hand.
+_ONE_BODY_WEIGHT = 0.1
 
 # Features that tell the sets of assets apart rather than good cuts from bad ones: without them the model does better on
 # sets that it has not seen.
