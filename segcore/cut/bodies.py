@@ -16,6 +16,7 @@ from segcore.graphs.cheeger import Cut, cut_of
 from segcore.graphs.surface_graph import SurfaceGraph, connected_components
 
 MOST_CUTS = 8  # between pieces, that are compared by their features; set by hand
+_SPECK = 0.002  # share of the total area below which a body is a speck, as NEGLIGIBLE of coarsen/assembly.py
 _MOST_PIECES = 1024  # of a segment, for which the cuts between them are searched; a limit of memory
 _ALIKE_AREA = 0.05  # largest difference of the logarithms of the areas of two bodies that repeat; set by hand
 _ALIKE_SHAPE = 0.05  # largest difference of their relative extents; set by hand
@@ -46,8 +47,8 @@ class Bodies:
 
     @property
     def count(self) -> int:
-        """B, the number of bodies."""
-        return len(self.area)
+        """The number of bodies that are no specks, at least 1."""
+        return max(1, int(np.count_nonzero(self.area >= _SPECK * self.area.sum())))
 
 
 @njit(cache=True)
