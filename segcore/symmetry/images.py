@@ -16,6 +16,7 @@ from segcore.symmetry.reflection import Reflection, find_reflection
 _NORMAL = 0.1  # distance, in sqrt(total area), that counts as much as a difference of normals of 1
 _EXACT = 0.1  # distance of an image from its face, in sqrt(area of the face), up to which the meshes coincide
 _IN_PLANE = 1e-9  # distance from the plane, in extents of the surface, that is rounding error
+_VANISHING = 1e-12  # share of the area of a component in which halves cannot be told apart
 _MESHED_ALIKE = 0.9  # share of the area with exact images from which the mesh is symmetric and not only the shape
 
 
@@ -44,7 +45,7 @@ def image_under(surface: Surface, reflection: Reflection) -> MirrorImage | None:
 
     Returns
     -------
-    None if one half has no face, or if a component that is not negligible has no component as its image.
+    None if one half has no face, if a component is nearly a point, or if a component that is not negligible has no component as its image.
     """
     centres = face_centroids(surface.vertices, surface.faces)
     is_first = reflection.heights(centres) >= -_IN_PLANE
@@ -55,6 +56,9 @@ def image_under(surface: Surface, reflection: Reflection) -> MirrorImage | None:
     faces = np.arange(len(centres), dtype=np.int32)
     of_face = places.nearest(faces, faces)
     if component.max() > 0:
+        area = group_sums(component, surface.areas)
+        if area.min() < _VANISHING * area.sum():
+            return None
         partner = _partners(component, component[of_face], surface.areas)
         if partner is None:
             return None

@@ -163,7 +163,7 @@ def test_components_beyond_the_number_of_segments_share_them():
                                             (Mesh(np.ones((3, 3)), [[0, 1, 2], [0, 0, 0]]), 1)])  # fmt: skip
 def test_small_meshes_have_at_most_as_many_segments_as_faces_with_an_area(mesh, most):
     """Splits of divided faces that no whole face follows are left out: at least the sides of the box are separated."""
-    hierarchy = segment(mesh)
+    hierarchy = segment(mesh, SegmentationParameters(max_segments=64))
     assert most / 2 <= hierarchy.max_segments <= most
     assert len(np.unique(hierarchy.labels(hierarchy.max_segments))) == hierarchy.max_segments
 

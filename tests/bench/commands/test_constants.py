@@ -42,10 +42,10 @@ def test_cuts_are_compared_with_the_best_known_ones() -> None:
 def test_the_tables_mark_the_value_in_force_and_give_the_error_of_the_difference() -> None:
     measured = [[Quality(0.1, 0.2), Quality(0.3, 0.4)], [Quality(0.1, 0.2), Quality(0.2, 0.4)]]
     lines = render_qualities(CONSTANT, measured).splitlines()
-    assert lines[2].split() == ["0.001", "0.2000", "0.0500", "0.3000", "0.0000"]
-    assert lines[3].split() == ["0.002", "*", "0.1500", "0.0000", "0.3000", "0.0000"]
+    assert lines[2].split() == ["0.005", "0.2000", "0.0500", "0.3000", "0.0000"]
+    assert lines[3].split() == ["0.01", "*", "0.1500", "0.0000", "0.3000", "0.0000"]
     rows = render_cuts(CONSTANT, [CutQuality(1.01, 1.1, 0.004), CutQuality(1.0, 1.0, 0.005)]).splitlines()
-    assert rows[2].split() == ["0.001", "1.0100", "1.1000", "4.0"]
+    assert rows[2].split() == ["0.005", "1.0100", "1.1000", "4.0"]
 
 
 def test_the_constants_of_solvers_are_measured_on_a_folder_of_graphs(

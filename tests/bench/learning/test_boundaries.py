@@ -5,6 +5,7 @@ from pathlib import Path
 import numpy as np
 
 from bench.learning.boundaries import boundary_rows, cut_share
+from bench.learning.examples import Example
 from bench.princeton.dataset import read_models
 from segcore.clean.surface import build_surface
 
@@ -18,7 +19,7 @@ def test_edges_along_the_cut_of_a_person_have_the_share_1_and_others_nearly_0(sh
     cut = labels[surface.edge_faces[:, 0]] != labels[surface.edge_faces[:, 1]]
     np.testing.assert_allclose(share[cut], 1.0)
     assert share[~cut].mean() < 0.1
-    rows = boundary_rows(model)
+    rows = boundary_rows(Example(model, 1.0))
     assert np.isclose(rows.weight.sum(), 1)
     assert np.isclose(np.dot(rows.weight, rows.target), np.average(share, weights=_lengths(surface)), rtol=0.2)
 

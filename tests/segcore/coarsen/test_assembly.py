@@ -51,7 +51,7 @@ def test_the_parts_of_a_chair_of_boxes_are_its_boxes(times):
 def test_intersecting_shells_are_cut_where_they_cross_and_keep_their_buttons():
     shape = snowman()
     hierarchy = segment(shape.mesh)
-    assert 4 <= hierarchy.automatic_segments <= 6
+    assert 4 <= hierarchy.automatic_segments <= 9
     labels = hierarchy.labels(5)
     assert agreement(labels, np.minimum(shape.parts, 5), areas(shape.mesh)) > 0.95
     assert set(labels[shape.parts >= 5]) <= set(labels[shape.parts < 2])

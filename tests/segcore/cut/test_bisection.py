@@ -176,4 +176,4 @@ def test_components_that_are_images_of_each_other_are_cut_alike():
 
 
 def test_without_images_every_split_is_a_step():
-    np.testing.assert_array_equal(grown(graph_of([(i, i + 1) for i in range(9)], 10), 6).steps, np.arange(5))
+    np.testing.assert_array_equal(grown(graph_of([(i, i + 1) for i in range(9)], 10), 6).step, np.arange(5))

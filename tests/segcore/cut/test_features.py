@@ -1,6 +1,6 @@
 import numpy as np
 import pytest
-from hypothesis import assume, given
+from hypothesis import HealthCheck, assume, given, settings
 from hypothesis import strategies as st
 
 from helpers.graphs import graphs, is_connected
@@ -107,7 +107,7 @@ def plain_body_features(
         np.average(((points[side] - c) ** 2).sum(axis=1), weights=volume[side])
         for side, c in zip((small, ~small), centre, strict=True)
     ]
-    of_body = [np.bincount(body[side], volume[side], fields.bodies.count) for side in (small, ~small)]
+    of_body = [np.bincount(body[side], volume[side], len(fields.bodies.area)) for side in (small, ~small)]
     is_whole = [amount >= fields.bodies.area * (1 - 1e-9) for amount in of_body]
     touched = of_body[0] > 0
     is_one = touched.sum() == 1 and is_whole[0][touched].all()
@@ -187,6 +187,7 @@ def test_the_small_side_is_inside_the_box_of_the_other_side_or_not() -> None:
         assert found[FEATURES.index("small_inside")] == inside
 
 
+@settings(suppress_health_check=[HealthCheck.filter_too_much])
 @given(cuts_of_segments())
 def test_the_features_do_not_depend_on_which_side_is_which(case: tuple[ClusterFields, Segment, Cut]) -> None:
     fields, segment, cut = case

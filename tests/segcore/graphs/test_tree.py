@@ -51,10 +51,10 @@ def test_reordering_numbers_the_steps_in_the_new_order() -> None:
     leaf = np.arange(5, 9, dtype=np.int32)
     tree = Tree(np.array([0, 1, 3, 2], dtype=np.int32), np.arange(4.0), leaf, 1, np.array([0, 1, 1, 2], dtype=np.int32))
     reordered = tree.reordered([0, 3, 1, 2], 2)
-    np.testing.assert_array_equal(reordered.steps, [0, 1, 2, 2])
+    np.testing.assert_array_equal(reordered.step, [0, 1, 2, 2])
     np.testing.assert_array_equal(reordered.cut_value, [0, 3, 1, 2])
     plain = Tree(tree.split_node, tree.cut_value, leaf, 1)
-    np.testing.assert_array_equal(plain.steps, np.arange(4))
+    np.testing.assert_array_equal(plain.step, np.arange(4))
 
 
 @given(trees, st.integers(0, 1000))

@@ -68,7 +68,7 @@ def test_the_other_splits_keep_their_steps():
     z = SURFACE.vertices[:, 2]
     leaf = np.select([np.arange(42) == 7, z > 0.3, z < -0.3], [2, 4, 6], 5).astype(np.int32)
     tree = Tree(np.array([0, 1, 3], np.int32), np.ones(3), leaf, 4, np.array([0, 1, 1], np.int32), True)
-    projected = project(tree, SURFACE.faces, FACES)
+    projected = project(tree, Votes.of_corners(SURFACE.faces), FACES)
     assert len(projected.split_node) == 2
     assert projected.step.tolist() == [0, 0]
     assert projected.limit_reached

@@ -6,6 +6,7 @@ import pytest
 from segcore import segment, shapes
 from segcore.affinity.boundary_features import FEATURES as BOUNDARY_FEATURES
 from segcore.cut.features import FEATURES as SPLIT_FEATURES
+from segcore.cut.features import CutFeatures
 from segcore.learned.logistic import LogisticModel
 from segcore.learned.models import LearnedModels, learned_models, using
 from segcore.parameters import SegmentationParameters
@@ -19,7 +20,8 @@ def flat(names):
 def test_the_shipped_models_have_the_features_of_the_code():
     models = learned_models()
     assert models.boundary.names == BOUNDARY_FEATURES
-    assert models.split.names == SPLIT_FEATURES
+    assert models.split.names == CutFeatures._fields
+    assert set(models.split_of_bodies.names) < set(SPLIT_FEATURES)
 
 
 def test_a_document_contains_the_whole_model():
@@ -40,7 +42,7 @@ def test_the_probability_is_the_logistic_function_of_the_basis():
 
 def test_other_models_are_used_inside_the_context_only():
     shipped = learned_models()
-    other = LearnedModels(flat(BOUNDARY_FEATURES), flat(SPLIT_FEATURES))
+    other = LearnedModels(flat(BOUNDARY_FEATURES), flat(SPLIT_FEATURES), flat(SPLIT_FEATURES))
     with using(other):
         assert learned_models() is other
         # With a gain of 0 for every split the automatic number is one.

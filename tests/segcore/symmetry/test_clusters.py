@@ -75,7 +75,9 @@ def test_a_leaf_that_an_edge_of_the_other_half_connects_loses_its_smaller_piece(
     """Clusters 0..2 and their images 3..5; cluster 1 is next to 2, but 4 is not next to 5."""
     graph = graph_of([(0, 1), (1, 2), (0, 3), (3, 4), (3, 5)], [1.0] * 5, np.ones(6))
     image = np.roll(np.arange(6, dtype=np.int32), 3)
-    clusters = Clusters(graph, np.arange(6, dtype=np.int32), np.zeros((6, 3)), None, image)
+    clusters = Clusters(
+        graph, np.arange(6, dtype=np.int32), np.zeros((6, 3)), None, None, np.zeros(6, dtype=np.int32), image=image
+    )
     leaf = np.array([3, 1, 1, 3, 4, 4], dtype=np.int32)
     tree = Tree(np.array([0, 2], dtype=np.int32), np.ones(2), leaf, 3)
     assert not tree.is_connected(graph)

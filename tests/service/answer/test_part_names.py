@@ -1,6 +1,7 @@
 """Names of segments that a client gives are written to the files."""
 
 import io
+import re
 import zipfile
 from collections.abc import Callable
 
@@ -41,6 +42,6 @@ def test_a_name_is_escaped(client: httpx.Client, finished_job: Callable[..., str
     name = '0:../../etc/x"\n<a b="'
     job = finished_job()
     with zipfile.ZipFile(io.BytesIO(client.get(f"{job}/parts.zip", params={"name": name}).content)) as archive:
-        assert archive.namelist()[0] == "segment_0_etc_x_a_b.stl"
+        assert re.fullmatch("segment_0+_etc_x_a_b.stl", archive.namelist()[0])
     lines = client.get(f"{job}/model.obj", params={"name": name}).text.splitlines()
     assert next(line for line in lines if line.startswith("g ")).startswith('g ../../etc/x"')

@@ -25,7 +25,7 @@ def test_a_submitted_mesh_is_a_queued_job_at_its_location(
     assert answer.headers["Location"] == job["links"]["self"] == f"/v1/jobs/{job['id']}"
     assert (job["status"], job["progress"], job["error"]) == ("queued", 0.0, None)
     assert job["parameters"]["seed"] == 5
-    assert job["parameters"]["max_segments"] == 64
+    assert job["parameters"]["max_segments"] is None
     assert client.get(answer.headers["Location"]).json() == job
     with store.open_mesh(job["id"]) as mesh:
         assert mesh.read() == b"some bytes"
