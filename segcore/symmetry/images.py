@@ -45,7 +45,8 @@ def image_under(surface: Surface, reflection: Reflection) -> MirrorImage | None:
 
     Returns
     -------
-    None if one half has no face, if a component is nearly a point, or if a component that is not negligible has no component as its image.
+    None if one half has no face, if a component is nearly a point, or if a component that is not negligible has no
+    component as its image.
     """
     centres = face_centroids(surface.vertices, surface.faces)
     is_first = reflection.heights(centres) >= -_IN_PLANE
