@@ -229,3 +229,22 @@ def test_the_presets_of_the_paper_know_no_symmetry():
     assert SegmentationParameters(affinity="concavity", order="ncut").is_symmetric
     for other in ({"preset": "chahhou2014"}, {"affinity": "minima_rule"}, {"order": "ncc"}, {"order": "volume"}):
         assert not SegmentationParameters.from_mapping(other).is_symmetric
+
+
+def sheet(height):
+    """An open sheet of 40 x 40 vertices over a square, with a height over x and y."""
+    steps = np.linspace(-1, 1, 40)
+    x, y = (c.ravel() for c in np.meshgrid(steps, steps))
+    corner = np.arange(1600).reshape(40, 40)
+    a, b, c, d = (corner[i : 39 + i, j : 39 + j].ravel() for i in (0, 1) for j in (0, 1))
+    return Mesh(np.stack([x, y, height(x, y)], axis=1), np.concatenate([np.stack([a, b, d]).T, np.stack([a, d, c]).T]))
+
+
+@pytest.mark.parametrize("depth", [0.0, 0.05, 0.1])
+def test_an_open_sheet_without_real_concavity_is_one_part(depth):
+    assert segment(sheet(lambda x, y: depth * np.sin(3 * x) * np.cos(2 * y))).automatic_segments == 1
+
+
+def test_a_ball_on_a_plane_in_a_range_map_is_a_part():
+    hierarchy = segment(sheet(lambda x, y: np.sqrt(np.maximum(0.4 - x**2 - y**2, 0.0))))
+    assert hierarchy.automatic_segments == 2
