@@ -27,6 +27,7 @@ class Progress:
         total = sum(seconds.values())
         self._share = {stage: one / total for stage, one in seconds.items()}
         stages = list(self._share)
+        self._done = 0.0
         self._begin = {stage: sum(self._share[s] for s in stages[:i]) for i, stage in enumerate(stages)}
 
     def after_splits(self, most: int, done: float) -> None:
@@ -34,5 +35,6 @@ class Progress:
         self("cut", 1.0 + log(done) / log(most))
 
     def __call__(self, stage: str, within: float = 0.0) -> None:
-        """Report the fraction of a stage that is done, 0 at its start."""
-        self._on_progress(stage, min(1.0, self._begin[stage] + within * self._share[stage]))
+        """Report the fraction of a stage that is done, 0 at its start. A stage that is repeated takes nothing back."""
+        self._done = max(self._done, min(1.0, self._begin[stage] + within * self._share[stage]))
+        self._on_progress(stage, self._done)

@@ -16,6 +16,8 @@ from segcore.graphs.surface_graph import SurfaceGraph, connected_components
 from segcore.graphs.tree import Tree
 from segcore.symmetry.clusters import local_image
 
+_LAST = 1e6  # priority beyond that of every split
+
 
 def bisect(
     graph: SurfaceGraph,
@@ -238,9 +240,18 @@ class _GrowingTree:
     def _cut_off(self, node: int, split: Split, step: int) -> tuple[int, int]:
         """Split a node unless the limit is reached; return the nodes of the side of the cut and of the rest."""
         if self.segments >= self._max_segments:
+            self._postpone(step)
             return node, node
         larger, smaller = self._split(node, split, step)
         return (larger, smaller) if split.cut.inside >= split.cut.outside else (smaller, larger)
+
+    def _postpone(self, step: int) -> None:
+        """Let an incomplete step come after all others."""
+        for i in range(len(self._splits) - 1, -1, -1):
+            split = self._splits[i]
+            if self._step[i] != step or split is None:
+                break
+            self._splits[i] = replace(split, priority=_LAST)
 
     def finished(self) -> Tree:
         """Return the tree in the order of the rule."""

@@ -104,8 +104,10 @@ def test_events_report_loading_hovering_and_selecting(visit: Visit, job: str) ->
     visit.page.wait_for_function("() => events.length > 1")
     visit.page.mouse.click(200, 150)
     events = visit.page.evaluate("events")
-    loaded = {"maxSegments": 64, "automaticSegments": 7, "limitReached": True, "faces": 5120}
-    assert events[0] == ["cleave-load", loaded]
+    name, loaded = events[0]
+    assert name == "cleave-load"
+    assert loaded.pop("maxSegments") > 7
+    assert loaded == {"automaticSegments": 7, "limitReached": False, "faces": 5120}
     assert [name for name, _ in events[1:]] == ["cleave-hover", "cleave-select"]
     assert events[2][1]["parts"] == [events[1][1]["part"]]
 

@@ -11,7 +11,7 @@ def test_moving_the_slider_recolours_only_split_parts_and_sends_no_request(visit
     sent = len(visit.requests)
     previous = visit.parts_at(places), visit.colors_at(places)
     changed = recoloured = 0
-    for segments in (8, 9, 15, 30):
+    for segments in (8, 9, 15, 20):
         visit.set_range("level", segments)
         assert visit.page.inner_text("#level-number") == str(segments)
         visit.settle()

@@ -31,7 +31,7 @@ def test_the_hierarchy_is_the_whole_tree(client: httpx.Client, finished_job: Cal
     assert document["nodes"][0]["faces"] == FACES
     job = client.get(path).json()
     assert document["max_segments"] == job["max_segments"]
-    assert document["limit_reached"] is job["limit_reached"] is True
+    assert document["limit_reached"] is job["limit_reached"] is False
 
 
 def test_the_n_ary_tree_starts_at_the_root_and_has_every_leaf(
