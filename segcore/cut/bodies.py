@@ -16,7 +16,10 @@ from segcore.graphs.cheeger import Cut, cut_of
 from segcore.graphs.surface_graph import SurfaceGraph, connected_components
 
 MOST_CUTS = 8  # between pieces, that are compared by their features; set by hand
-_SPECK = 0.002  # share of the total area below which a body is a speck, as NEGLIGIBLE of coarsen/assembly.py
+# A body is a speck below both of these shares, of the total area and of the area of the largest body, as in
+# coarsen/components.py and coarsen/assembly.py.
+_SPECK = 0.002
+_NO_SPECK = 0.1
 _MOST_PIECES = 1024  # of a segment, for which the cuts between them are searched; a limit of memory
 _ALIKE_AREA = 0.05  # largest difference of the logarithms of the areas of two bodies that repeat; set by hand
 _ALIKE_SHAPE = 0.05  # largest difference of their relative extents; set by hand
@@ -47,8 +50,9 @@ class Bodies:
 
     @property
     def count(self) -> int:
-        """The number of bodies that are no specks, at least 1."""
-        return max(1, int(np.count_nonzero(self.area >= _SPECK * self.area.sum())))
+        """The number of bodies that are no specks."""
+        least = min(_SPECK * self.area.sum(), _NO_SPECK * self.area.max())
+        return int(np.count_nonzero(self.area >= least))
 
 
 @njit(cache=True)
