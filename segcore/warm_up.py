@@ -1,11 +1,14 @@
 """Compiling or loading of the numba kernels before their first use."""
 
+import numpy as np
+
 from segcore.io.limits import ReadLimits
 from segcore.io.obj.reader import read_obj
 from segcore.io.off.reader import read_off
 from segcore.io.picture import draw
+from segcore.mesh import Mesh
 from segcore.method import segment
-from segcore.shapes import burr, icosphere, joined
+from segcore.shapes import box, burr, icosphere, joined
 
 
 def warm_up() -> None:
@@ -16,5 +19,15 @@ def warm_up() -> None:
     arms = burr(subdivisions=4).mesh
     draw(arms, segment(arms).labels(), size=16)
     segment(joined(icosphere(1), icosphere(2)).mesh)
+    segment(joined(box(), box(centre=(1.001, 0.0, 0.0))).mesh)  # faces to be divided, and bodies that touch
+    segment(_cracked(icosphere(2)))
     read_obj(b"v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n", ReadLimits())
     read_off(b"OFF 3 1 0\n0 0 0\n1 0 0\n0 1 0\n3 0 1 2\n", ReadLimits())
+
+
+def _cracked(mesh: Mesh) -> Mesh:
+    """A mesh with a crack between one half of its faces and the other."""
+    half = len(mesh.faces) // 2
+    count = len(mesh.vertices)
+    faces = np.concatenate([mesh.faces[:half], mesh.faces[half:] + count])
+    return Mesh(np.concatenate([mesh.vertices, 1.0005 * mesh.vertices]), faces)
