@@ -143,20 +143,31 @@ def valleys(graph: SurfaceGraph, values: FloatArray, most: int) -> list[Cut]:
 
 
 @njit(cache=True)
-def _valleys(edges, weight, volume, order, width, most):  # type: ignore[no-untyped-def]
-    """The ranks after which the weight of the cut is the least within a width of volume to both sides."""
-    node_count = len(volume)
+def _changes(edges, weight, order):  # type: ignore[no-untyped-def]
+    """(N,) changes from rank to rank of the weight of the cut after it, which is their running sum.
+
+    An edge between ranks a < b is cut by the thresholds after rank a, a + 1, ..., b - 1: its weight is added at a and
+    subtracted at b.
+    """
+    node_count = len(order)
     rank = np.empty(node_count, dtype=np.int32)
     for r in range(node_count):
         rank[order[r]] = r
-    cut = np.zeros(node_count)
+    change = np.zeros(node_count)
     for e in range(len(edges)):
         a = rank[edges[e, 0]]
         b = rank[edges[e, 1]]
-        cut[min(a, b)] += weight[e]
-        cut[max(a, b)] -= weight[e]
+        change[min(a, b)] += weight[e]
+        change[max(a, b)] -= weight[e]
+    return change
+
+
+@njit(cache=True)
+def _valleys(edges, weight, volume, order, width, most):  # type: ignore[no-untyped-def]
+    """The ranks after which the weight of the cut is the least within a width of volume to both sides."""
+    node_count = len(volume)
     below = np.cumsum(volume[order])
-    cut = np.cumsum(cut)
+    cut = np.cumsum(_changes(edges, weight, order))
     found = np.empty(most, dtype=np.int64)
     count = 0
     first = last = 0
@@ -186,21 +197,9 @@ def _valleys(edges, weight, volume, order, width, most):  # type: ignore[no-unty
 
 @njit(cache=True)
 def _best_threshold(edges, weight, volume, values, order, both_sides):  # type: ignore[no-untyped-def]
-    """The value whose upper level set has the least ratio.
-
-    An edge between ranks a < b is cut by the thresholds after rank a, a + 1, ..., b - 1. With its weight added at a and
-    subtracted at b, the cut of every threshold is a running sum.
-    """
+    """The value whose upper level set has the least ratio."""
     node_count = len(volume)
-    rank = np.empty(node_count, dtype=np.int32)
-    for r in range(node_count):
-        rank[order[r]] = r
-    change = np.zeros(node_count)
-    for e in range(len(edges)):
-        a = rank[edges[e, 0]]
-        b = rank[edges[e, 1]]
-        change[min(a, b)] += weight[e]
-        change[max(a, b)] -= weight[e]
+    change = _changes(edges, weight, order)
     total = 0.0
     for i in range(node_count):
         total += volume[i]
