@@ -28,7 +28,8 @@ def symmetric_sweeps(graph: SurfaceGraph, image: IntArray) -> list[Cut]:
     graph : connected, at least two nodes.
     image : (N,) the image of every node, an automorphism of the graph without a fixed point.
     """
-    vectors = eigenvectors(graph, Network.of(graph).factor, _VECTORS).T
+    network = Network.of(graph)
+    vectors = eigenvectors(graph, network.factor, _VECTORS).T
     even: list[FloatArray] = []
     signs: list[BoolArray] = []
     for values in vectors:
@@ -42,7 +43,7 @@ def symmetric_sweeps(graph: SurfaceGraph, image: IntArray) -> list[Cut]:
     sweeps = [sweep(graph, part) for part in even]
     necks = [cut.side for part in even for cut in valleys(graph, part, VALLEYS)]
     best = min(sweeps, key=lambda cut: cut.ncc)
-    sides = [improve(graph, best.side).side if np.isfinite(best.ncc) else best.side]
+    sides = [improve(network, best).side if np.isfinite(best.ncc) else best.side]
     return symmetric_cuts(graph, image, [*sides, *(cut.side for cut in sweeps), *signs, *necks])
 
 

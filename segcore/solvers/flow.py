@@ -2,7 +2,6 @@
 
 from itertools import islice
 
-from segcore.arrays import BoolArray
 from segcore.graphs.cheeger import Cut, balance_subgradient, cut_of, sweep, valleys
 from segcore.graphs.max_flow import Network
 from segcore.graphs.surface_graph import SurfaceGraph
@@ -49,9 +48,9 @@ def flow_cut(graph: SurfaceGraph, *, count: int = 2) -> Cut:
     passed = [min(islice(flow.cuts(values, ITERATIONS), STEPS + 1), key=_ncc) for values in vectors]
     different = {cut.key: cut for cut in passed}
     best, *others = sorted(different.values(), key=_ncc)
-    best = _improved(network, best)
+    best = improve(network, best)
     promising = [cut for cut in others if cut.ncc <= WORST_IMPROVED * best.ncc]
-    return min([best, *(_improved(network, cut) for cut in promising)], key=_ncc).canonical
+    return min([best, *(improve(network, cut) for cut in promising)], key=_ncc).canonical
 
 
 def sweep_cuts(graph: SurfaceGraph, count: int = 3) -> list[Cut]:
@@ -71,10 +70,10 @@ def sweep_cuts(graph: SurfaceGraph, count: int = 3) -> list[Cut]:
     vectors = eigenvectors(graph, network.factor, count).T
     sweeps = [sweep(graph, values) for values in vectors]
     necks = [cut for values in vectors for cut in valleys(graph, values, VALLEYS)]
-    return [cut.canonical for cut in (_improved(network, min(sweeps, key=_ncc)), *sweeps, *necks)]
+    return [cut.canonical for cut in (improve(network, min(sweeps, key=_ncc)), *sweeps, *necks)]
 
 
-def improve(graph: SurfaceGraph, side: BoolArray) -> Cut:
+def improve(network: Network, cut: Cut) -> Cut:
     """Lower the normalized Cheeger cut of a bipartition by maximum flows until no flow lowers it any further.
 
     With S the smaller side, r = vol(S) / vol(T) and q = NCC(S), a maximum flow finds the set A of least
@@ -86,18 +85,14 @@ def improve(graph: SurfaceGraph, side: BoolArray) -> Cut:
 
     Parameters
     ----------
-    graph : connected.
-    side : (N,) neither empty nor full.
+    network : of a connected graph.
+    cut : of this graph, neither side empty.
 
     References
     ----------
     Andersen and Lang, An algorithm for improving graph partitions, SODA 2008; Hein and Setzer, Beyond spectral
     clustering: tight relaxations of balanced graph cuts, NIPS 2011.
     """
-    return _improved(Network.of(graph), cut_of(graph, side))
-
-
-def _improved(network: Network, cut: Cut) -> Cut:
     while True:
         supply = cut.ncc * balance_subgradient(network.graph, cut)
         better = cut_of(network.graph, network.minimum_cut(supply))

@@ -6,7 +6,10 @@ import numpy as np
 from hypothesis import strategies as st
 
 from segcore.arrays import BoolArray, FloatArray, IntArray
+from segcore.graphs.cheeger import Cut, cut_of
+from segcore.graphs.max_flow import Network
 from segcore.graphs.surface_graph import SurfaceGraph, connected_components, weighted_degrees
+from segcore.solvers import flow
 
 
 def weighted_graph(edges: IntArray, weight: FloatArray, volume: FloatArray) -> SurfaceGraph:
@@ -102,6 +105,11 @@ def best_ncc(graph: SurfaceGraph) -> float:
     inside = sides @ graph.volume
     outside = ~sides @ graph.volume
     return float((cuts(graph, sides) / np.minimum(inside, outside)).min())
+
+
+def improve(graph: SurfaceGraph, side: BoolArray) -> Cut:
+    """The cut that maximum flows make of a bipartition (N,)."""
+    return flow.improve(Network.of(graph), cut_of(graph, side))
 
 
 def mesh_like(seed: int, rows: int = 20, columns: int = 30) -> SurfaceGraph:

@@ -3,11 +3,23 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from helpers.graphs import all_sides, best_ncc, cuts, cycle, graphs, grid, mesh_like, path, two_cliques, weighted_graph
+from helpers.graphs import (
+    all_sides,
+    best_ncc,
+    cuts,
+    cycle,
+    graphs,
+    grid,
+    improve,
+    mesh_like,
+    path,
+    two_cliques,
+    weighted_graph,
+)
 from segcore.graphs.cheeger import cut_of, ncc, sweep
 from segcore.graphs.surface_graph import SurfaceGraph
 from segcore.solvers.fiedler import fiedler_vectors
-from segcore.solvers.flow import flow_cut, improve
+from segcore.solvers.flow import flow_cut
 
 
 @st.composite

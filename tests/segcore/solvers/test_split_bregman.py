@@ -3,11 +3,10 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from helpers.graphs import best_ncc, cycle, graphs, grid, mesh_like, path, two_cliques
+from helpers.graphs import best_ncc, cycle, graphs, grid, improve, mesh_like, path, two_cliques
 from segcore.graphs.cheeger import sweep
 from segcore.graphs.surface_graph import SurfaceGraph
 from segcore.solvers.fiedler import fiedler_vectors
-from segcore.solvers.flow import improve
 from segcore.solvers.split_bregman import split_bregman_cut
 
 
