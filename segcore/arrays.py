@@ -27,6 +27,22 @@ def group_sums(group: NDArray[np.integer], values: FloatArray, count: int = 0) -
     return sums
 
 
+def pair_keys(pairs: NDArray[np.integer], count: int) -> LongArray:
+    """(P,) a number for every pair (P, 2) of numbers 0..count - 1, the same for both orders of the pair."""
+    keys: LongArray = pairs.min(axis=1).astype(np.int64) * count + pairs.max(axis=1)
+    return keys
+
+
+def distinct_pairs(pairs: NDArray[np.integer]) -> tuple[IntArray, LongArray]:
+    """The different ones (D, 2) of pairs (P, 2) of indices in any order, and (P,) which of them each is.
+
+    The smaller index of a pair comes first; the pairs are sorted.
+    """
+    count = int(pairs.max(initial=0)) + 1
+    keys, which = np.unique(pair_keys(pairs, count), return_inverse=True)
+    return np.stack([keys // count, keys % count], axis=1).astype(np.int32), which
+
+
 @njit(cache=True)
 def dot(x: FloatArray, y: FloatArray) -> float:
     """The inner product of two vectors (N,), added in an order that depends on N alone.

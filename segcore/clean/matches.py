@@ -10,7 +10,7 @@ from typing import NamedTuple
 import numpy as np
 from numba import njit
 
-from segcore.arrays import BoolArray, FloatArray, IntArray, LongArray
+from segcore.arrays import BoolArray, FloatArray, IntArray, LongArray, pair_keys
 from segcore.clean.borders import ends_of, near_segments
 from segcore.clean.topology import DualEdges
 
@@ -98,9 +98,8 @@ def are_adjacent(pairs: IntArray, dual: IntArray, count: int) -> BoolArray:
     """
     asked = np.zeros(count, dtype=bool)
     asked[pairs] = True
-    known = np.sort(dual[asked[dual].all(axis=1)], axis=1).astype(np.int64)
-    key = np.sort(pairs, axis=1).astype(np.int64)
-    adjacent: BoolArray = np.isin(key[:, 0] * count + key[:, 1], known[:, 0] * count + known[:, 1])
+    known = dual[asked[dual].all(axis=1)]
+    adjacent: BoolArray = np.isin(pair_keys(pairs, count), pair_keys(known, count))
     return adjacent | (pairs[:, 0] == pairs[:, 1])
 
 

@@ -5,7 +5,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 from numba import njit
 
-from segcore.arrays import BoolArray, FloatArray, IntArray, LongArray, group_sums
+from segcore.arrays import BoolArray, FloatArray, IntArray, distinct_pairs, group_sums
 from segcore.clean.orientation import reliable_normals
 from segcore.clean.stitching import stitch
 from segcore.clean.surface import Surface
@@ -83,12 +83,10 @@ def _allowed_lengths(surface: Surface) -> FloatArray:
 def _with_midpoints(vertices: FloatArray, faces: IntArray, is_long: BoolArray) -> tuple[IntArray, FloatArray]:
     """(F, 3) the midpoint of the edge from every corner to the next, -1 if it is not long, and all vertices."""
     face, corner = np.nonzero(is_long)
-    a, b = faces[face, corner].astype(np.int64), faces[face, (corner + 1) % 3].astype(np.int64)
-    key: LongArray = np.minimum(a, b) * len(vertices) + np.maximum(a, b)
-    unique, which = np.unique(key, return_inverse=True)
+    ends, which = distinct_pairs(np.stack([faces[face, corner], faces[face, (corner + 1) % 3]], axis=1))
     middle = np.full(faces.shape, -1, dtype=np.int32)
     middle[face, corner] = len(vertices) + which
-    points = 0.5 * (vertices[unique // len(vertices)] + vertices[unique % len(vertices)])
+    points = 0.5 * (vertices[ends[:, 0]] + vertices[ends[:, 1]])
     return middle, np.concatenate([vertices, points])
 
 

@@ -52,13 +52,10 @@ def cluster_nodes(mesh_graph: MeshGraph, target: int, rng: np.random.Generator) 
 def clusters_of(mesh_graph: MeshGraph, of_node: IntArray) -> Clusters:
     """The clusters that are given by (N,) the cluster 0, 1, ... of every node of a mesh graph."""
     graph = mesh_graph.graph
-    ends = of_node[graph.edges].astype(np.int64)
+    ends = of_node[graph.edges]
     across = ends[:, 0] != ends[:, 1]
-    count = int(of_node.max()) + 1
-    keys, which = np.unique(ends[across].min(axis=1) * count + ends[across].max(axis=1), return_inverse=True)
-    edges = np.stack([keys // count, keys % count], axis=1).astype(np.int32)
-    weight, length = (group_sums(which, values[across], len(keys)) for values in (graph.weight, graph.length))
-    return _with_means(SurfaceGraph(edges, weight, graph.volume, length), of_node, mesh_graph)
+    coarse = SurfaceGraph.with_sums(ends[across], graph.weight[across], graph.volume, graph.length[across])
+    return _with_means(coarse, of_node, mesh_graph)
 
 
 def _with_means(coarse: SurfaceGraph, of_node: IntArray, mesh_graph: MeshGraph) -> Clusters:

@@ -13,7 +13,7 @@ from typing import NamedTuple
 import numpy as np
 from numba import njit
 
-from segcore.arrays import FloatArray, IntArray, group_sums
+from segcore.arrays import FloatArray, IntArray, distinct_pairs, group_sums
 from segcore.clean.surface import Surface
 
 POINTS = 32768  # samples of the whole surface; set by hand
@@ -102,7 +102,7 @@ def find_contacts(points: SurfacePoints, component: IntArray, size: float) -> Li
     reach = REACH * size
     pair, distance = _partners(points.position, component, 2 * reach)
     area = points.area[pair[:, 0]]
-    of_pair = _numbered_pairs(component[pair])
+    _, of_pair = distinct_pairs(component[pair])
     near = distance <= reach
     band, within = group_sums(of_pair, area * ~near), group_sums(of_pair, area * near)
     least = np.full(len(band), np.inf)
@@ -112,13 +112,6 @@ def find_contacts(points: SurfacePoints, component: IntArray, size: float) -> Li
     length = area * np.where(near, 0.5 / (_LAYER * size), share[of_pair] * (0.5 / reach))
     touching = length > 0.0
     return Links(points.face[pair[touching]], length[touching])
-
-
-def _numbered_pairs(ends: IntArray) -> IntArray:
-    """(P,) the number 0, 1, ... of the unordered pair in every row of (P, 2)."""
-    low, high = ends.min(axis=1).astype(np.int64), ends.max(axis=1).astype(np.int64)
-    numbers = np.unique(low * (high.max(initial=0) + 1) + high, return_inverse=True)[1]
-    return numbers.astype(np.int32)
 
 
 class _Found(NamedTuple):

@@ -8,7 +8,7 @@ from numba import njit
 from numpy.typing import NDArray
 from scipy.sparse import csr_matrix
 
-from segcore.arrays import FloatArray, IntArray, group_sums
+from segcore.arrays import FloatArray, IntArray, distinct_pairs, group_sums
 
 IndexArray: TypeAlias = NDArray[np.uint32]  # unsigned: compiled loops then need no test for negative indices
 
@@ -32,6 +32,21 @@ class SurfaceGraph:
     weight: FloatArray  # (E,) length times affinity, > 0
     volume: FloatArray  # (N,) node volume, > 0
     length: FloatArray  # (E,) length of the common border of the two nodes
+
+    @classmethod
+    def with_sums(
+        cls, pairs: NDArray[np.integer], weight: FloatArray, volume: FloatArray, length: FloatArray
+    ) -> "SurfaceGraph":
+        """Return the graph of edges that may be parallel: their weights and lengths are summed.
+
+        Parameters
+        ----------
+        pairs : (M, 2) node pairs, in any order.
+        weight, length : (M,)
+        """
+        edges, which = distinct_pairs(pairs)
+        count = len(edges)
+        return cls(edges, group_sums(which, weight, count), volume, group_sums(which, length, count))
 
     @property
     def node_count(self) -> int:
@@ -73,14 +88,12 @@ class SurfaceGraph:
         pairs : (M, 2) node pairs, in any order.
         weight, length : (M,)
         """
-        key = pairs.min(axis=1).astype(np.int64) * self.node_count + pairs.max(axis=1)
-        different, which = np.unique(key, return_inverse=True)
-        added = np.stack([different // self.node_count, different % self.node_count], axis=1).astype(np.int32)
+        added = SurfaceGraph.with_sums(pairs, weight, self.volume, length)
         return SurfaceGraph(
-            np.concatenate([self.edges, added]),
-            np.concatenate([self.weight, group_sums(which, weight, len(different))]),
+            np.concatenate([self.edges, added.edges]),
+            np.concatenate([self.weight, added.weight]),
             self.volume,
-            np.concatenate([self.length, group_sums(which, length, len(different))]),
+            np.concatenate([self.length, added.length]),
         )
 
 

@@ -4,7 +4,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from segcore.arrays import IntArray, LongArray, at_least, group_sums
+from segcore.arrays import at_least, distinct_pairs, group_sums
 from segcore.clean.edge_geometry import edge_lengths
 from segcore.clean.refinement import Refinement
 from segcore.clean.surface import Surface
@@ -53,20 +53,12 @@ def draw_on_whole_faces(
 
 def whole_faces(pieces: MeshGraph, refinement: Refinement, surface: Surface) -> MeshGraph:
     """The face dual graph of a surface; affinities are means over the edges of the pieces, weighted by length."""
-    key = _keys(surface.edge_faces)
-    of_pieces = _keys(refinement.parent[pieces.graph.edges])
-    different, which = np.unique(np.concatenate([key, of_pieces]), return_inverse=True)
-    pair, pair_of_pieces = which[: len(key)], which[len(key) :]
+    of_pieces = refinement.parent[pieces.graph.edges]
+    different, which = distinct_pairs(np.concatenate([surface.edge_faces, of_pieces]))
+    pair, pair_of_pieces = np.split(which, [len(surface.edge_faces)])
     weight = group_sums(pair_of_pieces, pieces.graph.weight, len(different))
     border = group_sums(pair_of_pieces, pieces.graph.length, len(different))
     length = at_least(edge_lengths(surface), _SHORTEST_EDGE)
     volume = group_sums(refinement.parent, pieces.graph.volume)
     graph = SurfaceGraph(surface.edge_faces, length * (weight[pair] / border[pair]), volume, length)
     return MeshGraph(graph, face_centroids(surface.vertices, surface.faces), None)
-
-
-def _keys(pairs: IntArray) -> LongArray:
-    """(N,) one number for every unordered pair of faces (N, 2)."""
-    low, high = pairs.min(axis=1).astype(np.int64), pairs.max(axis=1).astype(np.int64)
-    key: LongArray = (low << 32) | high
-    return key

@@ -4,7 +4,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from segcore.arrays import IntArray, group_sums
+from segcore.arrays import IntArray
 from segcore.coarsen.clusters import Clusters, cluster_nodes, clusters_of
 from segcore.graphs.mesh_graph import MeshGraph
 from segcore.graphs.surface_graph import SurfaceGraph
@@ -51,13 +51,10 @@ def symmetrised(clusters: Clusters, mirror: MirrorImage | None) -> Clusters:
     if mirror is None or image is None:
         return clusters
     graph, points, thickness = clusters.graph, clusters.points, clusters.thickness
-    count = graph.node_count
-    both = np.concatenate([graph.edges, image[graph.edges]]).astype(np.int64)
-    keys, which = np.unique(both.min(axis=1) * count + both.max(axis=1), return_inverse=True)
     # Sums over an edge and its image have the same terms; the order of the two makes no difference.
-    weight, length = (0.5 * group_sums(which, np.tile(values, 2)) for values in (graph.weight, graph.length))
-    edges = np.stack([keys // count, keys % count], axis=1).astype(np.int32)
-    symmetric = SurfaceGraph(edges, weight, 0.5 * (graph.volume + graph.volume[image]), length)
+    weight, length = (np.tile(0.5 * values, 2) for values in (graph.weight, graph.length))
+    volume = 0.5 * (graph.volume + graph.volume[image])
+    symmetric = SurfaceGraph.with_sums(np.concatenate([graph.edges, image[graph.edges]]), weight, volume, length)
     return replace(
         clusters,
         graph=symmetric,
