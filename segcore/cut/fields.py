@@ -5,12 +5,12 @@ from typing import NamedTuple
 
 import numpy as np
 
-from segcore.arrays import FloatArray, IntArray, LongArray, group_sums
+from segcore.arrays import FloatArray, IntArray, group_sums
 from segcore.clean.edge_geometry import dihedral_angles, edge_lengths
 from segcore.clean.surface import Surface
 from segcore.coarsen.clusters import Clusters
 from segcore.cut.bodies import Bodies, pieces_of
-from segcore.graphs.surface_graph import SurfaceGraph
+from segcore.graphs.surface_graph import EdgeIndex, SurfaceGraph
 
 _COPLANAR = np.deg2rad(1.0)  # largest dihedral angle of two faces of a plane; set by hand
 
@@ -26,8 +26,7 @@ class ClusterFields:
     open_border: FloatArray  # (N,) length of the edges that have one face
     flat: FloatArray  # (E,) share of each edge of the graph that runs between coplanar faces
     degree: FloatArray  # (N,) total length of the edges of every cluster
-    edge_key: LongArray  # (E,) the keys of the edges in ascending order, see ``_edge_keys``
-    edge_order: LongArray  # (E,) the edges in the order of their keys
+    index: EdgeIndex  # of the edges of the graph
     bodies: Bodies
     mean_affinity: float  # of the edges inside the bodies, weighted by length
 
@@ -48,8 +47,6 @@ class ClusterFields:
         of_cluster = np.zeros(count, dtype=np.int32) if body is None else body
         inside = of_cluster[graph.edges[:, 0]] == of_cluster[graph.edges[:, 1]]
         length = float(graph.length[inside].sum())
-        key = _edge_keys(graph.edges, count)
-        order = np.argsort(key, kind="stable")
         return cls(
             graph=graph,
             points=points,
@@ -58,8 +55,7 @@ class ClusterFields:
             open_border=np.zeros(count) if open_border is None else open_border,
             flat=np.zeros(len(graph.edges)) if flat is None else flat,
             degree=group_sums(graph.edges.ravel(), np.repeat(graph.length, 2), count),
-            edge_key=key[order],
-            edge_order=order,
+            index=EdgeIndex.of(graph),
             bodies=Bodies.of(of_cluster, graph.volume, points),
             mean_affinity=float(graph.weight[inside].sum()) / length if length > 0.0 else 1.0,
         )
@@ -72,9 +68,7 @@ class ClusterFields:
             edges=graph.edges,
             weight=graph.weight,
             length=graph.length,
-            flat=self.flat[
-                self.edge_order[np.searchsorted(self.edge_key, _edge_keys(nodes[graph.edges], self.graph.node_count))]
-            ],
+            flat=self.flat[self.index.find(nodes[graph.edges])],
             volume=graph.volume,
             degree=self.degree[nodes],
             thickness=self.thickness[nodes],
@@ -140,22 +134,14 @@ def _open_border(surface: Surface, length: FloatArray) -> FloatArray:
 
 def _flat_share(surface: Surface, length: FloatArray, clusters: Clusters) -> FloatArray:
     """(E,) the share of each edge of the graph of the clusters that runs between coplanar faces."""
-    count = clusters.graph.node_count
+    graph = clusters.graph
     ends = clusters.of_node[surface.edge_faces]
     crossing = np.flatnonzero(ends[:, 0] != ends[:, 1])
+    edge = EdgeIndex.of(graph).find(ends[crossing])
+    known = edge >= 0  # a surface that is nearly symmetric has borders that the symmetric graph leaves out
+    crossing, edge = crossing[known], edge[known]
     is_flat = np.abs(dihedral_angles(surface)[crossing]) < _COPLANAR
-    key = _edge_keys(clusters.graph.edges, count)
-    order = np.argsort(key, kind="stable")
-    wanted = _edge_keys(ends[crossing], count)
-    edge = order[np.minimum(np.searchsorted(key[order], wanted), len(key) - 1)]
-    known = key[edge] == wanted  # a surface that is nearly symmetric has borders that the symmetric graph leaves out
-    flat = group_sums(edge, length[crossing] * (is_flat & known), len(key))
-    border = group_sums(edge, length[crossing] * known, len(key))
-    share: FloatArray = np.divide(flat, border, out=np.zeros(len(key)), where=border > 0.0)
+    flat = group_sums(edge, length[crossing] * is_flat, len(graph.edges))
+    border = group_sums(edge, length[crossing], len(graph.edges))
+    share: FloatArray = np.divide(flat, border, out=np.zeros(len(border)), where=border > 0.0)
     return share
-
-
-def _edge_keys(edges: IntArray, count: int) -> LongArray:
-    """(E,) a number for every pair of nodes in (E, 2), in any order, of a graph of ``count`` nodes."""
-    keys: LongArray = edges.min(axis=1).astype(np.int64) * count + edges.max(axis=1)
-    return keys

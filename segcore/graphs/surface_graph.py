@@ -8,7 +8,7 @@ from numba import njit
 from numpy.typing import NDArray
 from scipy.sparse import csr_matrix
 
-from segcore.arrays import FloatArray, IntArray, distinct_pairs, group_sums
+from segcore.arrays import FloatArray, IntArray, LongArray, distinct_pairs, group_sums, pair_keys
 
 IndexArray: TypeAlias = NDArray[np.uint32]  # unsigned: compiled loops then need no test for negative indices
 
@@ -95,6 +95,28 @@ class SurfaceGraph:
             self.volume,
             np.concatenate([self.length, added.length]),
         )
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class EdgeIndex:
+    """The edges of a graph by their nodes."""
+
+    key: LongArray  # (E,) ascending, see ``segcore.arrays.pair_keys``
+    edge: LongArray  # (E,) of these keys
+    node_count: int
+
+    @classmethod
+    def of(cls, graph: SurfaceGraph) -> "EdgeIndex":
+        key = pair_keys(graph.edges, graph.node_count)
+        order = np.argsort(key, kind="stable")
+        return cls(key[order], order, graph.node_count)
+
+    def find(self, pairs: IntArray) -> LongArray:
+        """(P,) the edge between the nodes of every pair (P, 2) in any order; -1 if there is none."""
+        wanted = pair_keys(pairs, self.node_count)
+        place = np.minimum(np.searchsorted(self.key, wanted), len(self.key) - 1)
+        found: LongArray = np.where(self.key[place] == wanted, self.edge[place], -1)
+        return found
 
 
 def rows_of(edges: IntArray, node_count: int) -> Rows:
