@@ -218,29 +218,10 @@ def _node_variance(graph: SurfaceGraph, points: FloatArray) -> float:
 def _cuts(graph: SurfaceGraph, tree: Tree) -> list[float | None]:
     """The logarithm of the length of the cut of every split; None if the cut is not clear."""
     splits = len(tree.split_node)
-    split = _split_between(tree, *tree.leaf[graph.edges].T)
+    split = tree.split_between(*tree.leaf[graph.edges].T)
     crossing = split >= 0
     length = group_sums(split[crossing], graph.length[crossing], splits)
     weight = group_sums(split[crossing], graph.weight[crossing], splits)
     is_clear = weight <= _AFFINITY * length
     logarithm = np.log(np.maximum(length, np.finfo(float).tiny))  # components that lie apart: all alike
     return [value if clear else None for value, clear in zip(logarithm.tolist(), is_clear.tolist(), strict=True)]
-
-
-def _split_between(tree: Tree, a: IntArray, b: IntArray) -> IntArray:
-    """(E,) the split that separates two leaves, -1 if they are the same.
-
-    Parameters
-    ----------
-    a, b : (E,) leaves.
-    """
-    count = 2 * len(tree.split_node) + 1
-    split_of = np.full(count, -1, dtype=np.int32)
-    split_of[tree.split_node] = np.arange(len(tree.split_node))
-    parent = np.concatenate([[-1], np.repeat(tree.split_node, 2)])
-    a, b = a.copy(), b.copy()
-    while len(apart := np.flatnonzero(a != b)):
-        one, other = a[apart], b[apart]
-        a[apart] = parent[np.maximum(one, other)]  # nodes have larger numbers than the nodes above them
-        b[apart] = np.minimum(one, other)
-    return split_of[a]

@@ -62,13 +62,25 @@ class Tree:
         pieces = int(connected_components(graph.edges[a == b], graph.node_count).max()) + 1
         if pieces > len(np.unique(self.leaf)):
             return False
-        parent = np.concatenate([np.array([-1], dtype=np.int32), np.repeat(self.split_node, 2)])
-        one, other = a[a != b], b[a != b]
-        while (apart := parent[one] != parent[other]).any():
-            deeper = one > other
-            one = np.where(apart & deeper, parent[one], one)
-            other = np.where(apart & ~deeper, parent[other], other)
-        return len(np.unique(parent[one])) == np.count_nonzero(self.cut_value > 0.0)
+        across = self.split_between(a[a != b], b[a != b])
+        return len(np.unique(across)) == np.count_nonzero(self.cut_value > 0.0)
+
+    def split_between(self, a: IntArray, b: IntArray) -> IntArray:
+        """(E,) the split that separates two leaves, -1 if they are the same.
+
+        Parameters
+        ----------
+        a, b : (E,) leaves.
+        """
+        split_of = np.full(2 * len(self.split_node) + 1, -1, dtype=np.int32)
+        split_of[self.split_node] = np.arange(len(self.split_node))
+        parent = np.concatenate([[-1], np.repeat(self.split_node, 2)])
+        a, b = a.copy(), b.copy()
+        while len(apart := np.flatnonzero(a != b)):
+            one, other = a[apart], b[apart]
+            a[apart] = parent[np.maximum(one, other)]  # nodes have larger numbers than the nodes above them
+            b[apart] = np.minimum(one, other)
+        return split_of[a]
 
     def leaf_intervals(self) -> LeafIntervals:
         """Return the places of the leaves: those of the first child of a node come before those of the second."""
