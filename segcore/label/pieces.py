@@ -52,13 +52,18 @@ def draw_on_whole_faces(
 
 
 def whole_faces(pieces: MeshGraph, refinement: Refinement, surface: Surface) -> MeshGraph:
-    """The face dual graph of a surface; affinities are means over the edges of the pieces, weighted by length."""
+    """The face dual graph of a surface; affinities are means over the edges of the pieces, weighted by length.
+
+    Two faces that are joined along a gap may have pieces that are not; their affinity is the mean of all edges.
+    """
     of_pieces = refinement.parent[pieces.graph.edges]
     different, which = distinct_pairs(np.concatenate([surface.edge_faces, of_pieces]))
     pair, pair_of_pieces = np.split(which, [len(surface.edge_faces)])
     weight = group_sums(pair_of_pieces, pieces.graph.weight, len(different))
     border = group_sums(pair_of_pieces, pieces.graph.length, len(different))
+    affinity = np.full(len(different), pieces.graph.weight.sum() / pieces.graph.length.sum())
+    np.divide(weight, border, out=affinity, where=border > 0.0)
     length = at_least(edge_lengths(surface), _SHORTEST_EDGE)
     volume = group_sums(refinement.parent, pieces.graph.volume)
-    graph = SurfaceGraph(surface.edge_faces, length * (weight[pair] / border[pair]), volume, length)
+    graph = SurfaceGraph(surface.edge_faces, length * affinity[pair], volume, length)
     return MeshGraph(graph, face_centroids(surface.vertices, surface.faces), None)
