@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from bench.assets.dataset import NO_PART
-from bench.learning.boundaries import on_surface
+from bench.datasets import on_surface
 from bench.learning.rows import Rows
 from segcore.affinity.mesh_graphs import mesh_graph
 from segcore.arrays import group_sums
@@ -18,13 +18,13 @@ from segcore.coarsen.assembly import assemble
 from segcore.coarsen.clusters import MOST_COMPONENTS, Clusters, cluster_nodes
 from segcore.cut.bisection import bisect
 from segcore.cut.features import FEATURES
-from segcore.cut.fields import ClusterFields, Segment, SegmentFields, cluster_fields
+from segcore.cut.fields import ClusterFields, Segment, cluster_fields
 from segcore.cut.rules import LearnedRule, Split
 from segcore.parameters import USUAL_SEGMENTS, SegmentationParameters
 
 if TYPE_CHECKING:
     from bench.learning.examples import Example
-    from segcore.arrays import FloatArray, LongArray
+    from segcore.arrays import FloatArray, IntArray, LongArray
     from segcore.graphs.cheeger import Cut
 
 
@@ -90,19 +90,22 @@ class _Recorder(LearnedRule):
         self.target: list[float] = []
         self.weight: list[float] = []
 
-    def features(self, segment: Segment, inside: SegmentFields, candidates: Sequence[Cut]) -> FloatArray:
-        self._segment = segment
-        return super().features(segment, inside, candidates)
+    def best_split(self, segment: Segment, image: IntArray | None = None) -> Split:
+        assert image is None
+        inside = self._fields.inside(segment)
+        candidates = self.candidates(segment, inside)
+        features = self.features(segment, inside, candidates)
+        best = self.best_of(candidates, features)
+        self._record(segment, candidates, features, best.cut)
+        return best
 
-    def best_of(self, candidates: Sequence[Cut], features: FloatArray) -> Split:
-        best = super().best_of(candidates, features)
+    def _record(self, segment: Segment, candidates: Sequence[Cut], features: FloatArray, chosen: Cut) -> None:
         for row, cut in zip(features, candidates, strict=True):
-            one, other = self._segment.nodes[cut.side], self._segment.nodes[~cut.side]
+            one, other = segment.nodes[cut.side], segment.nodes[~cut.side]
             areas = [(area[one].sum(axis=0), area[other].sum(axis=0)) for area in self._people]
             pairs = np.array([a.sum() * b.sum() for a, b in areas])
             if pairs.sum() > 0.0:
                 self.rows.append(row)
                 self.target.append(sum(float((a * b).sum()) for a, b in areas) / float(pairs.sum()))
                 size = (cut.inside * cut.outside / self._total**2) ** _SIZE_EXPONENT
-                self.weight.append(_CHOSEN_WEIGHT * size if cut is best.cut else size)
-        return best
+                self.weight.append(_CHOSEN_WEIGHT * size if cut is chosen else size)
