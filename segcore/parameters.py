@@ -128,11 +128,7 @@ class SegmentationParameters:
     @property
     def is_symmetric(self) -> bool:
         """True if a cut of a symmetric surface and its mirror image are one step."""
-        return (
-            self.graph == "faces"
-            and self.affinity in ("learned", "concavity")
-            and self.split_order in ("learned", "ncut")
-        )
+        return self.measures_shape and self.split_order in ("learned", "ncut")
 
     @classmethod
     def preset(cls, name: str) -> "SegmentationParameters":

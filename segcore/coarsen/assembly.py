@@ -18,9 +18,8 @@ from segcore.graphs.surface_graph import connected_components
 # docs/algorithm.md, "Constants" of section 3.
 CONTACT = 0.01
 NEGLIGIBLE = 0.002  # share of the total area below which an assembly is attached to its neighbour, as cut/rules.py has
-_SHORTEST = (
-    1e-9  # least length of a contact, in the extent: eigenvectors see no weights below 1e-16 of others; set by hand
-)
+# Least length of a contact, in the extent: eigenvectors see no weights below 1e-16 of others. Set by hand.
+_SHORTEST = 1e-9
 _SMALLEST_SIZE = 1e-4  # least size of a surface, in extents of its bounding box, in the search for contacts
 
 

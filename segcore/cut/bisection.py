@@ -44,8 +44,8 @@ def bisect(
     image : (N,) the mirror image of every node, an automorphism of the graph without a fixed point; None if there is
         none. A cut and its image are one step.
     body : (N,) the body of every node; None if there is one body.
-    only_sensible : True to end as well where the rule finds no sensible split left.
     most_bodies : if there are more bodies than ``max_segments``, they are parted until there are this many segments.
+    only_sensible : True to end as well if the rule finds no sensible split left.
 
     Notes
     -----
@@ -247,11 +247,9 @@ class _GrowingTree:
 
     def _postpone(self, step: int) -> None:
         """Let an incomplete step come after all others."""
-        for i in range(len(self._splits) - 1, -1, -1):
-            split = self._splits[i]
-            if self._step[i] != step or split is None:
-                break
-            self._splits[i] = replace(split, priority=_LAST)
+        for i, split in enumerate(self._splits):
+            if self._step[i] == step and split is not None:
+                self._splits[i] = replace(split, priority=_LAST)
 
     def finished(self) -> Tree:
         """Return the tree in the order of the rule."""
