@@ -12,7 +12,8 @@ import numpy as np
 from bench.errors import BenchmarkError
 
 if TYPE_CHECKING:
-    from segcore.arrays import LongArray
+    from segcore.arrays import IntArray, LongArray
+    from segcore.clean.surface import Surface
     from segcore.mesh import Mesh
 
 Item = TypeVar("Item")
@@ -92,3 +93,10 @@ def read_labels(path: Path, face_count: int) -> LongArray:
     if labels.shape != (face_count,):
         raise BenchmarkError(f"{path} must have one label for each of {face_count} faces, not {labels.size}.")
     return labels
+
+
+def on_surface(surface: Surface, labels: IntArray | LongArray) -> LongArray:
+    """(F,) labels of the faces of the surface, from the labels of the input faces."""
+    of_face = np.zeros(len(surface.faces), dtype=np.int64)
+    of_face[surface.face_of_input] = labels
+    return of_face

@@ -9,6 +9,7 @@ import numpy as np
 from scipy.spatial import KDTree
 
 from bench.assets.metrics import Reference, one_minus_rand
+from bench.datasets import on_surface
 from segcore.clean.edge_geometry import dihedral_angles, edge_lengths
 from segcore.graphs.surface_graph import connected_components
 
@@ -16,7 +17,7 @@ if TYPE_CHECKING:
     from segcore.arrays import FloatArray, IntArray
     from segcore.clean.surface import Surface
 
-_COPLANAR = math.radians(1)  # largest angle between faces that count as coplanar; set by the issue
+_COPLANAR = math.radians(1)  # largest angle between faces that count as coplanar; set by hand
 
 
 def component_labels(surface: Surface) -> IntArray:
@@ -33,9 +34,8 @@ def flat_share(surface: Surface, label: IntArray) -> float:
     ----------
     label : (F_input,) segment of every input face.
     """
-    on_surface = np.zeros(len(surface.faces), dtype=label.dtype)
-    on_surface[surface.face_of_input] = label
-    cut = on_surface[surface.edge_faces[:, 0]] != on_surface[surface.edge_faces[:, 1]]
+    of_face = on_surface(surface, label)
+    cut = of_face[surface.edge_faces[:, 0]] != of_face[surface.edge_faces[:, 1]]
     length = np.where(cut, edge_lengths(surface), 0.0)
     total = float(length.sum())
     return float(length[np.abs(dihedral_angles(surface)) < _COPLANAR].sum()) / total if total > 0 else 0.0

@@ -9,7 +9,7 @@ from statistics import fmean
 
 from bench.assets.evaluation import AssetResult
 
-# By more than this an automatic result is worse than a trivial method, in 1 - Rand; set by the issue.
+# By more than this an automatic result is worse than a trivial method, in 1 - Rand; set by hand.
 _CLEARLY_WORSE = 0.005
 
 

@@ -8,6 +8,7 @@ import numpy as np
 from scipy.spatial import KDTree
 
 from bench.assets.dataset import NO_PART
+from bench.datasets import on_surface
 from bench.learning.rows import Rows
 from segcore.affinity.boundary_features import edge_features, patch_fields
 from segcore.affinity.measurements import measure
@@ -73,13 +74,6 @@ def cut_share(surface: Surface, people: list[LongArray]) -> FloatArray:
             cosine = np.einsum("nkj,nj->nk", along, direction)
             share += np.max(np.where(found, cosine**2, 0.0), axis=1)
     return share / max(len(people), 1)
-
-
-def on_surface(surface: Surface, labels: LongArray) -> LongArray:
-    """(F,) labels of the faces of the surface, from the labels of the input faces."""
-    on_surface = np.zeros(len(surface.faces), dtype=np.int64)
-    on_surface[surface.face_of_input] = labels
-    return on_surface
 
 
 def _points_along(ends: FloatArray, spacing: float) -> tuple[FloatArray, IntArray]:
