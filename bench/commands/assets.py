@@ -19,12 +19,11 @@ from __future__ import annotations
 import argparse
 from pathlib import Path
 
-from bench.arguments import parameter
+from bench.arguments import add_folds, add_jobs, add_parameters, parameters_of, require_folder_of, require_jobs
 from bench.assets.dataset import read_assets
 from bench.assets.parallel import evaluate_assets
 from bench.assets.report import render, save
 from bench.assets.sheet import save_sheets
-from bench.errors import BenchmarkError
 from bench.learning.folds import read_folds
 from bench.paper.charts import require_matplotlib
 from bench.segmenter import CleaveSegmenter
@@ -35,35 +34,20 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("--limit", type=int, metavar="N", help="only N models, spread evenly over the list")
     parser.add_argument("--set", nargs="+", metavar="NAME", help="only the models of these sets")
     parser.add_argument("--seed", type=int, default=0, metavar="N", help="the seed of the segmentation (default 0)")
-    parser.add_argument("--jobs", type=int, default=1, metavar="N", help="processes (default 1)")
+    add_jobs(parser)
     parser.add_argument("--output", type=Path, metavar="FILE", help="write the results of every model to this file")
-    parser.add_argument(
-        "--parameters",
-        type=parameter,
-        nargs="+",
-        default=[],
-        metavar="KEY=VALUE",
-        help="parameters of the segmentation, with the names in segcore.SegmentationParameters",
-    )
-    parser.add_argument(
-        "--folds",
-        type=Path,
-        metavar="FOLDER",
-        help="segment every model with what was learned without it (by python -m bench train --folds FOLDER)",
-    )
+    add_parameters(parser)
+    add_folds(parser, "--folds")
     parser.add_argument(
         "--sheet", type=Path, metavar="FOLDER", help="write a picture SET.png of every set to this folder"
     )
 
 
 def run(arguments: argparse.Namespace) -> None:
-    parameters = dict(arguments.parameters)
-    if "seed" in parameters:
-        raise BenchmarkError("The seed is not one of --parameters: give it with --seed.")
-    if arguments.jobs < 1:
-        raise BenchmarkError(f"--jobs must be at least 1, not {arguments.jobs}.")
-    if arguments.output is not None and not arguments.output.parent.is_dir():
-        raise BenchmarkError(f"The folder of {arguments.output} does not exist: create it first.")
+    parameters = parameters_of(arguments, "--seed")
+    require_jobs(arguments.jobs)
+    if arguments.output is not None:
+        require_folder_of(arguments.output)
     if arguments.sheet is not None:
         require_matplotlib("--sheet")
     segmenter = CleaveSegmenter(parameters)

@@ -15,6 +15,7 @@ from pathlib import Path
 from statistics import mean
 from typing import TYPE_CHECKING
 
+from bench.arguments import add_jobs, require_jobs
 from bench.constants.catalogue import OF_SEGMENTATIONS, OF_SOLVERS, Constant
 from bench.errors import BenchmarkError
 from bench.pool import map_in_processes
@@ -29,13 +30,14 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("--data", type=Path, metavar="DIR", help="the folder of the Princeton benchmark")
     parser.add_argument("--references", type=Path, metavar="DIR", help="the folder of the reference graphs")
     parser.add_argument("--limit", type=int, metavar="N", help="only N models, spread evenly over the list")
-    parser.add_argument("--jobs", type=int, default=1, metavar="N", help="processes (default 1)")
+    add_jobs(parser)
     parser.add_argument("--only", nargs="+", metavar="NAME", help="only the constants of these names")
 
 
 def run(arguments: argparse.Namespace) -> None:
     if arguments.data is None and arguments.references is None:
         raise BenchmarkError("There is nothing to measure: give --data, --references or both.")
+    require_jobs(arguments.jobs)
     names = {constant.name for constant in (*OF_SEGMENTATIONS, *OF_SOLVERS)}
     unknown = set(arguments.only or ()) - names
     if unknown:

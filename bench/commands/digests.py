@@ -14,6 +14,7 @@ from __future__ import annotations
 import argparse
 from pathlib import Path
 
+from bench.arguments import add_jobs, require_folder_of, require_jobs
 from bench.digests.comparison import compare, load_digests, render, save_digests
 from bench.digests.record import record
 from bench.digests.selection import Subject, choices_of, models_of
@@ -36,7 +37,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         metavar="N",
         help="models of the Princeton benchmark for the choices, beside the first asset (default 125 213)",
     )
-    parser.add_argument("--jobs", type=int, default=1, metavar="N", help="processes (default 1)")
+    add_jobs(parser)
     parser.add_argument("--compare", type=Path, nargs=2, metavar=("A.json", "B.json"), help="compare two files")
 
 
@@ -50,10 +51,8 @@ def run(arguments: argparse.Namespace) -> None:
 
 
 def _record(arguments: argparse.Namespace) -> None:
-    if arguments.jobs < 1:
-        raise BenchmarkError(f"--jobs must be at least 1, not {arguments.jobs}.")
-    if not arguments.output.parent.is_dir():
-        raise BenchmarkError(f"The folder of {arguments.output} does not exist: create it first.")
+    require_jobs(arguments.jobs)
+    require_folder_of(arguments.output)
     subjects: list[Subject] = []
     if arguments.part != "choices":
         subjects += models_of(arguments.data, arguments.assets, arguments.limit)

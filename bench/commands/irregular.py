@@ -17,7 +17,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from bench.errors import BenchmarkError
+from bench.arguments import add_jobs, require_jobs
 from bench.irregular.agreement import agreement
 from bench.irregular.versions import VERSIONS, Remeshed
 from bench.pool import map_in_processes
@@ -35,15 +35,14 @@ SAME = "other seed"
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("--data", type=Path, required=True, metavar="DIR", help="the folder of the benchmark")
     parser.add_argument("--limit", type=int, metavar="N", help="only N models, spread evenly over the list")
-    parser.add_argument("--jobs", type=int, default=1, metavar="N", help="processes (default 1)")
+    add_jobs(parser)
     parser.add_argument(
         "--only", nargs="+", choices=[SAME, *VERSIONS], default=[SAME, *VERSIONS], metavar="NAME", help="some versions"
     )
 
 
 def run(arguments: argparse.Namespace) -> None:
-    if arguments.jobs < 1:
-        raise BenchmarkError(f"--jobs must be at least 1, not {arguments.jobs}.")
+    require_jobs(arguments.jobs)
     models = read_models(arguments.data, arguments.limit)
     segmenter = CleaveSegmenter()
     measure_all = partial(measure, segmenter=segmenter, names=arguments.only)

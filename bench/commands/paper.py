@@ -13,6 +13,7 @@ from collections.abc import Iterable, Sequence
 from pathlib import Path
 from tempfile import TemporaryDirectory
 
+from bench.arguments import add_jobs, require_jobs
 from bench.errors import BenchmarkError
 from bench.paper.charts import require_matplotlib
 from bench.paper.evaluation import MethodResults, evaluate_methods
@@ -27,7 +28,7 @@ from bench.princeton.results import save_results
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("--data", type=Path, required=True, metavar="DIR", help="the folder of the benchmark")
     parser.add_argument("--limit", type=int, metavar="N", help="only N models, spread evenly over the list")
-    parser.add_argument("--jobs", type=int, default=1, metavar="N", help="processes of one thread each (default 1)")
+    add_jobs(parser)
     parser.add_argument(
         "--output",
         type=Path,
@@ -59,8 +60,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 
 
 def run(arguments: argparse.Namespace) -> None:
-    if arguments.jobs < 1:
-        raise BenchmarkError(f"--jobs must be at least 1, not {arguments.jobs}.")
+    require_jobs(arguments.jobs)
     for folder in (arguments.output, arguments.cache):
         _make(folder)
     with TemporaryDirectory() as temporary:

@@ -10,8 +10,7 @@ import argparse
 from pathlib import Path
 from typing import get_args
 
-from bench.arguments import parameter
-from bench.errors import BenchmarkError
+from bench.arguments import add_folds, add_jobs, add_parameters, parameters_of, require_folder_of, require_jobs
 from bench.learning.folds import read_folds
 from bench.princeton.dataset import read_models
 from bench.princeton.evaluation import SegmentChoice
@@ -37,32 +36,17 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         metavar="S,S",
         help="segment once with each of these seeds (default 0)",
     )
-    parser.add_argument("--jobs", type=int, default=1, metavar="N", help="processes (default 1)")
+    add_jobs(parser)
     parser.add_argument("--output", type=Path, metavar="FILE", help="write the scores of every model to this JSON file")
-    parser.add_argument(
-        "--parameters",
-        type=parameter,
-        nargs="+",
-        default=[],
-        metavar="KEY=VALUE",
-        help="parameters of the segmentation, with the names in segcore.SegmentationParameters",
-    )
-    parser.add_argument(
-        "--learned",
-        type=Path,
-        metavar="FOLDER",
-        help="segment every model with what was learned without it (by python -m bench train --folds FOLDER)",
-    )
+    add_parameters(parser)
+    add_folds(parser, "--learned")
 
 
 def run(arguments: argparse.Namespace) -> None:
-    parameters = dict(arguments.parameters)
-    if "seed" in parameters:
-        raise BenchmarkError("The seed is not one of --parameters: give it with --seeds.")
-    if arguments.jobs < 1:
-        raise BenchmarkError(f"--jobs must be at least 1, not {arguments.jobs}.")
-    if arguments.output is not None and not arguments.output.parent.is_dir():
-        raise BenchmarkError(f"The folder of {arguments.output} does not exist: create it first.")
+    parameters = parameters_of(arguments, "--seeds")
+    require_jobs(arguments.jobs)
+    if arguments.output is not None:
+        require_folder_of(arguments.output)
     segmenter = CleaveSegmenter(parameters)
     models = read_models(arguments.data, arguments.limit)
     learned = None if arguments.learned is None else read_folds(arguments.learned)

@@ -12,8 +12,8 @@ import json
 from pathlib import Path
 from typing import get_args
 
+from bench.arguments import add_jobs, require_folder_of, require_jobs
 from bench.assets.dataset import read_assets
-from bench.errors import BenchmarkError
 from bench.learning.examples import examples
 from bench.learning.folds import save_fold
 from bench.learning.training import Grouping, train
@@ -41,14 +41,12 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument(
         "--folds", type=Path, metavar="FOLDER", help="write what was learned without each group to this folder"
     )
-    parser.add_argument("--jobs", type=int, default=1, metavar="N", help="processes (default 1)")
+    add_jobs(parser)
 
 
 def run(arguments: argparse.Namespace) -> None:
-    if arguments.jobs < 1:
-        raise BenchmarkError(f"--jobs must be at least 1, not {arguments.jobs}.")
-    if not arguments.output.parent.is_dir():
-        raise BenchmarkError(f"The folder of {arguments.output} does not exist: create it first.")
+    require_jobs(arguments.jobs)
+    require_folder_of(arguments.output)
     models = read_models(arguments.data, arguments.limit)
     assets = read_assets(arguments.assets, arguments.limit) if arguments.assets else []
     everything, *folds = train(examples(models, assets), arguments.leave_out, arguments.jobs)

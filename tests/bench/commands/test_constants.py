@@ -62,7 +62,12 @@ def test_the_constants_of_solvers_are_measured_on_a_folder_of_graphs(
 
 
 @pytest.mark.parametrize(
-    ("arguments", "message"), [([], "--references"), (["--data", "nowhere", "--only", "PI"], "no constant 'PI'")]
+    ("arguments", "message"),
+    [
+        ([], "--references"),
+        (["--data", "nowhere", "--only", "PI"], "no constant 'PI'"),
+        (["--data", "nowhere", "--jobs", "0"], "at least 1"),
+    ],
 )
 def test_a_call_without_anything_to_measure_is_refused(
     arguments: list[str], message: str, capsys: pytest.CaptureFixture[str]
