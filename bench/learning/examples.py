@@ -30,7 +30,7 @@ class Example:
     @property
     def key(self) -> int | str:
         """The number of a model of the benchmark, SET/NAME of an asset."""
-        return self.source.key if isinstance(self.source, Asset) else self.source.number
+        return self.source.key
 
     @property
     def group(self) -> str:

@@ -4,14 +4,30 @@ from __future__ import annotations
 
 import json
 import sys
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, Protocol, TypeVar
 
 from bench.errors import BenchmarkError
 
 if TYPE_CHECKING:
     from segcore.learned.models import LearnedModels
+
+Document = Mapping[str, Any]  # of learned models
+Documents = Mapping[int | str, Document]  # by the mesh that the models have not seen
+
+
+class Keyed(Protocol):
+    """A mesh of a data set."""
+
+    @property
+    def key(self) -> int | str:
+        """The number of a model of the benchmark, SET/NAME of an authored asset."""
+
+
+Mesh = TypeVar("Mesh", bound=Keyed)
+Result = TypeVar("Result")
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -53,3 +69,33 @@ def read_folds(folder: Path) -> dict[int | str, dict[str, Any]]:
     if not found:
         raise BenchmarkError(f"{folder} has no files of 'bench train --folds'.")
     return found
+
+
+def with_unseen(meshes: Sequence[Mesh], learned: Documents | None) -> list[tuple[Mesh, Document | None]]:
+    """Return every mesh with the document of the learned models that have not seen it; None for those that ship.
+
+    Raises
+    ------
+    BenchmarkError
+        If ``learned`` lacks a mesh.
+    """
+    if learned is None:
+        return [(mesh, None) for mesh in meshes]
+    missing = [mesh.key for mesh in meshes if mesh.key not in learned]
+    if missing:
+        raise BenchmarkError(
+            f"No fold leaves out model {missing[0]} ({len(missing)} of {len(meshes)} models are in no fold): "
+            "train the folds on the same models."
+        )
+    return [(mesh, learned[mesh.key]) for mesh in meshes]
+
+
+def apply_unseen(function: Callable[[Mesh], Result], mesh_and_models: tuple[Mesh, Document | None]) -> Result:
+    """Return the result for a mesh of ``with_unseen``, with the learned models that it comes with in use."""
+    from segcore.learned.models import LearnedModels, using
+
+    mesh, document = mesh_and_models
+    if document is None:
+        return function(mesh)
+    with using(LearnedModels.from_document(document)):
+        return function(mesh)

@@ -25,6 +25,11 @@ class Model:
     mesh_path: Path  # off/N.off
     people_folder: Path  # seg/Benchmark/N, one N_j.seg for every person
 
+    @property
+    def key(self) -> int:
+        """The number of the model, its name in files and messages."""
+        return self.number
+
     def read_mesh(self) -> Mesh:
         """Read the mesh of the model.
 

@@ -2,11 +2,10 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Sequence
 from functools import partial
-from typing import Any
 
-from bench.errors import BenchmarkError
+from bench.learning.folds import Documents, apply_unseen, with_unseen
 from bench.pool import map_in_processes
 from bench.princeton.dataset import Model
 from bench.princeton.evaluation import ModelResult, SegmentChoice, Segmenter, evaluate_model
@@ -18,7 +17,7 @@ def evaluate_models(
     seeds: tuple[int, ...],
     choice: SegmentChoice,
     jobs: int,
-    learned: Mapping[int | str, Mapping[str, Any]] | None = None,
+    learned: Documents | None = None,
 ) -> list[ModelResult]:
     """Return the results of all models, in their order, computed in ``jobs`` processes of one thread each.
 
@@ -32,18 +31,4 @@ def evaluate_models(
         If ``learned`` lacks a model, a model fails, or a process dies.
     """
     evaluate = partial(evaluate_model, segmenter=segmenter, seeds=seeds, choice=choice)
-    if learned is not None:
-        missing = [model.number for model in models if model.number not in learned]
-        if missing:
-            raise BenchmarkError(f"No fold leaves out model {missing[0]}: train the folds on the same models.")
-        evaluate = partial(_evaluate_unseen, learned, evaluate)
-    return map_in_processes(evaluate, models, jobs, segmenter.warm_up)
-
-
-def _evaluate_unseen(
-    learned: Mapping[int | str, Mapping[str, Any]], evaluate: Callable[[Model], ModelResult], model: Model
-) -> ModelResult:
-    from segcore.learned.models import LearnedModels, using
-
-    with using(LearnedModels.from_document(learned[model.number])):
-        return evaluate(model)
+    return map_in_processes(partial(apply_unseen, evaluate), with_unseen(models, learned), jobs, segmenter.warm_up)

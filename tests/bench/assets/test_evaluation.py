@@ -10,11 +10,11 @@ import pytest
 
 from bench.assets.dataset import read_assets
 from bench.assets.evaluation import Agreement, AssetResult, evaluate_asset
-from bench.assets.parallel import evaluate_assets, with_unseen
+from bench.assets.parallel import evaluate_assets
 from bench.assets.report import render, save
 from bench.assets.summary import by_set, over_sets
 from bench.errors import BenchmarkError
-from bench.learning.folds import Fold, read_folds, save_fold
+from bench.learning.folds import Fold, read_folds, save_fold, with_unseen
 from helpers.hierarchies import HeightSegmenter, ModelSegmenter
 from segcore.learned.models import learned_models
 from segcore.mesh import face_normals_and_areas
