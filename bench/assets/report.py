@@ -2,16 +2,13 @@
 
 from __future__ import annotations
 
-import json
-import math
 from collections.abc import Mapping, Sequence
 from dataclasses import asdict
 from pathlib import Path
-from typing import Any
 
 from bench.assets.evaluation import AssetResult
 from bench.assets.summary import Means, by_set, over_sets
-from bench.errors import BenchmarkError
+from bench.documents import save_json
 from bench.text import format_table, number
 
 FORMAT = "cleave-assets-1"
@@ -72,14 +69,11 @@ def save(path: Path, results: Sequence[AssetResult], settings: Mapping[str, obje
     document = {
         "format": FORMAT,
         **settings,
-        "mean": _defined(asdict(over_sets(sets))),
-        "sets": [_defined(asdict(one)) for one in sets],
-        "models": [_defined(asdict(result)) for result in results],
+        "mean": asdict(over_sets(sets)),
+        "sets": [asdict(one) for one in sets],
+        "models": [asdict(result) for result in results],
     }
-    try:
-        path.write_text(json.dumps(document, indent=1, allow_nan=False) + "\n", encoding="utf-8")
-    except OSError as error:
-        raise BenchmarkError(f"The results cannot be written to {path}: {error.strerror}.") from error
+    save_json(path, document)
 
 
 def _row(name: str, models: int, halved: int, means: Means) -> list[str]:
@@ -87,15 +81,3 @@ def _row(name: str, models: int, halved: int, means: Means) -> list[str]:
     scores += [means.best, means.components, means.kmeans, means.flat, means.mirror]
     counts = [str(models), number(means.parts, 1), number(means.found, 1), str(halved)]
     return [name, *counts, *map(number, scores), number(means.cpu_s, 2)]
-
-
-def _defined(values: dict[str, Any]) -> dict[str, Any]:
-    """Return values in which nan is replaced by None, at every depth."""
-    return {
-        name: _defined(value)
-        if isinstance(value, dict)
-        else None
-        if isinstance(value, float) and math.isnan(value)
-        else value
-        for name, value in values.items()
-    }

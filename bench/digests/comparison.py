@@ -8,6 +8,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+from bench.documents import save_json
 from bench.errors import BenchmarkError
 
 if TYPE_CHECKING:
@@ -32,10 +33,7 @@ def save_digests(path: Path, digests: Mapping[str, Digests]) -> None:
     BenchmarkError
         If the file cannot be written.
     """
-    try:
-        path.write_text(json.dumps(digests, indent=1, sort_keys=True) + "\n", encoding="utf-8")
-    except OSError as error:
-        raise BenchmarkError(f"The digests cannot be written to {path}: {error.strerror}.") from error
+    save_json(path, dict(sorted(digests.items())), "digests")
 
 
 def load_digests(path: Path) -> dict[str, Digests]:

@@ -8,6 +8,7 @@ from collections.abc import Sequence
 from dataclasses import asdict, dataclass
 from pathlib import Path
 
+from bench.documents import save_json
 from bench.errors import BenchmarkError
 from bench.princeton.evaluation import ModelResult, SegmentChoice
 from bench.princeton.metrics import METRICS, Scores
@@ -40,14 +41,11 @@ def save_results(
         "segments": choice,
         "seeds": [run.seed for run in results[0].runs],
         "parameters": parameters,
-        "scores": _scores_to_json(summary.scores),
-        "people_scores": _scores_to_json(summary.people_scores),
-        "models": [_model_to_json(result) for result in results],
+        "scores": asdict(summary.scores),
+        "people_scores": asdict(summary.people_scores),
+        "models": [{**asdict(result), "scores": asdict(result.scores)} for result in results],
     }
-    try:
-        path.write_text(json.dumps(document, indent=1, allow_nan=False) + "\n", encoding="utf-8")
-    except OSError as error:
-        raise BenchmarkError(f"The results cannot be written to {path}: {error.strerror}.") from error
+    save_json(path, document)
 
 
 def load_results(path: Path) -> SavedResults:
@@ -71,19 +69,6 @@ def load_results(path: Path) -> SavedResults:
         settings=f"segments {document['segments']}, seeds {document['seeds']}, parameters {parameters}",
         scores={entry["model"]: _scores_from_json(entry["scores"]) for entry in document["models"]},
     )
-
-
-def _model_to_json(result: ModelResult) -> dict[str, object]:
-    return {
-        **asdict(result),
-        "scores": _scores_to_json(result.scores),
-        "people_scores": _scores_to_json(result.people_scores),
-        "runs": [{**asdict(run), "scores": _scores_to_json(run.scores)} for run in result.runs],
-    }
-
-
-def _scores_to_json(scores: Scores) -> dict[str, float | None]:
-    return {metric: None if math.isnan(value) else value for metric, value in asdict(scores).items()}
 
 
 def _scores_from_json(values: dict[str, float | None]) -> Scores:
