@@ -1,7 +1,7 @@
 """Segmentation of a mesh into a hierarchy of parts: all stages in order."""
 
 from collections.abc import Callable
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from functools import partial
 
 import numpy as np
@@ -12,10 +12,10 @@ from segcore.clean.refinement import Refinement, refine, undivided
 from segcore.clean.surface import Surface, build_surface
 from segcore.coarsen.assembly import assemble
 from segcore.coarsen.authored import with_structure
-from segcore.coarsen.clusters import MOST_COMPONENTS, Clusters, cluster_nodes
+from segcore.coarsen.clusters import MOST_COMPONENTS, Clusters
 from segcore.coarsen.contacts import Links
 from segcore.cut.bisection import bisect
-from segcore.cut.rules import split_rule
+from segcore.cut.rules import SplitRule, split_rule
 from segcore.cut.siblings import sibling_steps
 from segcore.graphs.mesh_graph import MeshGraph
 from segcore.graphs.tree import Tree
@@ -61,41 +61,96 @@ def segment(
     progress = Progress(on_progress, len(mesh.faces))
     progress("clean")
     surface = with_structure(surface or build_surface(mesh), mesh, chosen.structure)
-    progress("affinity")
-    refinement = refine(surface) if chosen.measures_shape else undivided(surface)
-    nodes = mesh_graph(refinement.surface, chosen, refinement.is_piece)
-    progress("coarsen")
     is_symmetric = chosen.is_symmetric and surface.authored is None
-    mirror = mirror_image(refinement.surface) if is_symmetric else None
-    clusters = clusters_with_images(nodes, mirror, chosen.clusters, rng)
-    most = chosen.max_segments or MOST_COMPONENTS
-    clusters, links = assemble(refinement.surface, nodes, clusters, most)
+    coarse = coarse_graph(surface, chosen, rng, is_symmetric, progress)
     progress("cut")
-    cut = partial(_tree, refinement.surface, chosen, rng, partial(progress.after_splits, chosen.segment_limit))
-    tree = with_connected_leaves(cut(symmetrised(clusters, mirror)), clusters)
-    if clusters.image is not None and not tree.is_connected(clusters.graph):
-        clusters, links = assemble(refinement.surface, nodes, cluster_nodes(nodes, chosen.clusters, rng), most)
-        tree, mirror = cut(clusters), None
+    cut = partial(_tree, chosen, rng, partial(progress.after_splits, chosen.segment_limit))
+    tree = with_connected_leaves(cut(coarse.symmetrised()), coarse.clusters)
+    if coarse.clusters.image is not None and not tree.is_connected(coarse.clusters.graph):
+        coarse = coarse.without_symmetry(chosen, rng)
+        tree = cut(coarse)
+    clusters = coarse.clusters
     tree = replace(tree, step=sibling_steps(clusters.graph, clusters.points, tree))
     progress("label")
-    tree = _over_faces(tree, clusters, nodes, links, refinement, surface, mirror)
+    tree = _over_faces(tree, coarse, surface)
     hierarchy = _of_input(surface, tree)
     progress("label", 1.0)
     return hierarchy
 
 
-def _tree(
+@dataclass(frozen=True, slots=True, eq=False)
+class CoarseGraph:
+    """A surface with its large faces divided, the graph of its faces or vertices, and the clusters of these nodes."""
+
+    refinement: Refinement
+    nodes: MeshGraph
+    mirror: MirrorImage | None  # None if the surface is not symmetric, or its symmetry is not used
+    clusters: Clusters
+    links: Links  # between the components of the surface
+
+    def without_symmetry(self, parameters: SegmentationParameters, rng: np.random.Generator) -> "CoarseGraph":
+        """Coarsen the same nodes again, without regard to the mirror image."""
+        clusters, links = _coarsened(self.refinement.surface, self.nodes, None, parameters, rng)
+        return replace(self, mirror=None, clusters=clusters, links=links)
+
+    def symmetrised(self) -> "CoarseGraph":
+        """Return the clusters with a graph that is symmetric as well, if they have images."""
+        return replace(self, clusters=symmetrised(self.clusters, self.mirror))
+
+
+def coarse_graph(
     surface: Surface,
-    chosen: SegmentationParameters,
+    parameters: SegmentationParameters,
     rng: np.random.Generator,
-    on_split: Callable[[float], None],
-    clusters: Clusters,
+    is_symmetric: bool,
+    on_stage: Callable[[str], None] = lambda _: None,
+) -> CoarseGraph:
+    """Carry out the stages "affinity" and "coarsen".
+
+    Parameters
+    ----------
+    is_symmetric : look for a mirror symmetry of the surface, and coarsen both halves alike.
+    on_stage : called with the name of each stage when it begins.
+    """
+    on_stage("affinity")
+    refinement = refine(surface) if parameters.measures_shape else undivided(surface)
+    nodes = mesh_graph(refinement.surface, parameters, refinement.is_piece)
+    on_stage("coarsen")
+    mirror = mirror_image(refinement.surface) if is_symmetric else None
+    clusters, links = _coarsened(refinement.surface, nodes, mirror, parameters, rng)
+    return CoarseGraph(refinement, nodes, mirror, clusters, links)
+
+
+def _coarsened(
+    surface: Surface,
+    nodes: MeshGraph,
+    mirror: MirrorImage | None,
+    parameters: SegmentationParameters,
+    rng: np.random.Generator,
+) -> tuple[Clusters, Links]:
+    clusters = clusters_with_images(nodes, mirror, parameters.clusters, rng)
+    return assemble(surface, nodes, clusters, parameters.max_segments or MOST_COMPONENTS)
+
+
+def _tree(
+    chosen: SegmentationParameters, rng: np.random.Generator, on_split: Callable[[float], None], coarse: CoarseGraph
 ) -> Tree:
     """Cut the graph of the clusters of a surface into a tree of segments."""
+    rule = split_rule(coarse.refinement.surface, coarse.clusters, chosen, rng)
+    return cut_by_rule(coarse.clusters, rule, chosen, on_split)
+
+
+def cut_by_rule(
+    clusters: Clusters,
+    rule: SplitRule,
+    chosen: SegmentationParameters,
+    on_split: Callable[[float], None] = lambda _: None,
+) -> Tree:
+    """Cut the graph of some clusters into a tree of segments, by a rule."""
     return bisect(
         clusters.graph,
         clusters.points,
-        split_rule(surface, clusters, chosen, rng),
+        rule,
         chosen.segment_limit,
         on_split,
         authored=clusters.authored,
@@ -106,21 +161,14 @@ def _tree(
     )
 
 
-def _over_faces(
-    tree: Tree,
-    clusters: Clusters,
-    nodes: MeshGraph,
-    links: Links,
-    refinement: Refinement,
-    surface: Surface,
-    mirror: MirrorImage | None,
-) -> Tree:
+def _over_faces(tree: Tree, coarse: CoarseGraph, surface: Surface) -> Tree:
     """Carry a tree over the clusters over to the faces; if the nodes are the faces, draw its boundaries as well."""
+    nodes, of_node = coarse.nodes, coarse.clusters.of_node
     if nodes.corners is None:
-        tree = replace(tree, leaf=tree.leaf[clusters.of_node])
-        return draw_on_whole_faces(tree, nodes, links, refinement, surface, mirror)
-    linked = surface.face_graph().with_edges(links.faces, links.length, links.length)
-    return project(tree, Votes.of_corners(clusters.of_node[nodes.corners]), linked)
+        tree = replace(tree, leaf=tree.leaf[of_node])
+        return draw_on_whole_faces(tree, nodes, coarse.links, coarse.refinement, surface, coarse.mirror)
+    linked = surface.face_graph().with_edges(coarse.links.faces, coarse.links.length, coarse.links.length)
+    return project(tree, Votes.of_corners(of_node[nodes.corners]), linked)
 
 
 def _of_input(surface: Surface, tree: Tree) -> Hierarchy:

@@ -33,6 +33,11 @@ class Example:
         return self.source.key
 
     @property
+    def is_asset(self) -> bool:
+        """Whether the mesh is an authored asset, not a model of the benchmark."""
+        return isinstance(self.source, Asset)
+
+    @property
     def group(self) -> str:
         """The category of a model, the set of an asset."""
         return self.source.collection if isinstance(self.source, Asset) else self.source.category

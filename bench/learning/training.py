@@ -1,4 +1,4 @@
-"""Fits both models to all meshes of the benchmark, and again without each group of meshes."""
+"""Fits the models to all meshes of the benchmark, and again without each group of meshes."""
 
 from __future__ import annotations
 
@@ -12,12 +12,14 @@ import numpy as np
 from bench.learning.boundaries import boundary_rows
 from bench.learning.fitting import fit
 from bench.learning.folds import Fold
+from bench.learning.forests import grow_forest
 from bench.learning.rows import concatenated
-from bench.learning.splits import cut_rows
+from bench.learning.splits import cut_rows, split_rows
 from bench.pool import map_in_processes
 from segcore.affinity.boundary_features import FEATURES as EDGE_FEATURES
 from segcore.cut.features import FEATURES as CUT_FEATURES
 from segcore.cut.features import CutFeatures
+from segcore.cut.rules import SEVERAL_BODIES_FEATURES
 from segcore.learned.logistic import LogisticModel
 from segcore.learned.models import LearnedModels, using
 from segcore.warm_up import warm_up
@@ -34,21 +36,22 @@ _SPLIT_RIDGE = 1e-2
 _BODIES_RIDGE = 3e-2  # of the model for surfaces of several bodies, of which there are fewer kinds
 _ROUNDS = 2  # of growing trees and fitting to them, because the fitted rule grows other trees
 
+# On the weights of assets in the forest: with it a set counts as much as 10 models of the benchmark. That does not make
+# the forest worse on the benchmark, as it does the logistic models. Set by hand.
+_ASSETS_IN_FOREST = 4.0
+
 # Of meshes of one body in the model for several bodies, beside the others: they are most of the meshes. Set by hand.
 _ONE_BODY_WEIGHT = 0.1
 
-# Features that tell the sets of assets apart rather than good cuts from bad ones: without them the model does better on
-# sets that it has not seen.
-_OF_SETS = ("bodies", "mean_affinity", "small_confidence", "large_confidence")
 _ONE_BODY_FEATURES = CutFeatures._fields  # further ones make it worse on categories that it has not seen
-_SEVERAL_BODIES_FEATURES = tuple(name for name in CUT_FEATURES if name not in _OF_SETS)
 
 
 def train(meshes: Sequence[Example], grouping: Grouping, jobs: int) -> list[Fold]:
     """Learn from all meshes, and for every group of meshes from all others.
 
     The tree of a mesh is grown with a boundary model that was learned without its group. Otherwise the trees of the
-    training would be better than those of new meshes.
+    training would be better than those of new meshes. The forest is grown last, from the trees that the other models
+    give on meshes without whose group they were learned.
 
     Returns
     -------
@@ -66,10 +69,17 @@ def train(meshes: Sequence[Example], grouping: Grouping, jobs: int) -> list[Fold
         for name, left_out in groups.items()
     ]
     for _ in range(_ROUNDS):
-        grow = partial(_grow, {number: fold.models.document() for fold in folds for number in fold.left_out})
-        cuts = map_in_processes(grow, meshes, jobs, warm_up)
+        cuts = map_in_processes(partial(_grow, _documents(folds)), meshes, jobs, warm_up)
         folds = [replace(fold, models=_with_splits(fold.models, _seen(meshes, cuts, fold.left_out))) for fold in folds]
-    return folds
+    splits = map_in_processes(partial(_split, _documents(folds)), meshes, jobs, warm_up)
+    seen = [_seen(meshes, splits, fold.left_out, _ASSETS_IN_FOREST) for fold in folds]
+    orders = map_in_processes(grow_forest, seen, jobs, warm_up)
+    return [replace(fold, models=replace(fold.models, order=order)) for fold, order in zip(folds, orders, strict=True)]
+
+
+def _documents(folds: Sequence[Fold]) -> dict[int | str, dict[str, object]]:
+    """The models that have not seen each mesh."""
+    return {key: fold.models.document() for fold in folds for key in fold.left_out}
 
 
 def _with_splits(models: LearnedModels, rows: Rows) -> LearnedModels:
@@ -83,7 +93,7 @@ def _with_splits(models: LearnedModels, rows: Rows) -> LearnedModels:
     return LearnedModels(
         models.boundary,
         fit(_ONE_BODY_FEATURES, _columns(of_one_body, _ONE_BODY_FEATURES), _SPLIT_RIDGE),
-        fit(_SEVERAL_BODIES_FEATURES, _columns(rows, _SEVERAL_BODIES_FEATURES), _BODIES_RIDGE),
+        fit(SEVERAL_BODIES_FEATURES, _columns(rows, SEVERAL_BODIES_FEATURES), _BODIES_RIDGE),
     )
 
 
@@ -105,11 +115,16 @@ def _grow(models_of: dict[int | str, dict[str, object]], example: Example) -> Ro
         return cut_rows(example)
 
 
-def _seen(meshes: Sequence[Example], rows: Sequence[Rows], left_out: frozenset[int | str]) -> Rows:
-    """Return the rows of all meshes that are not left out, with the weights of the meshes."""
+def _split(models_of: dict[int | str, dict[str, object]], example: Example) -> Rows:
+    with using(LearnedModels.from_document(models_of[example.key])):
+        return split_rows(example)
+
+
+def _seen(meshes: Sequence[Example], rows: Sequence[Rows], left_out: frozenset[int | str], assets: float = 1.0) -> Rows:
+    """Return the rows of all meshes that are not left out, weighted; ``assets`` is a factor on those of assets."""
     return concatenated(
         [
-            replace(row, weight=example.weight * row.weight)
+            replace(row, weight=example.weight * (assets if example.is_asset else 1.0) * row.weight)
             for example, row in zip(meshes, rows, strict=True)
             if example.key not in left_out
         ]

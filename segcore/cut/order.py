@@ -7,7 +7,9 @@ import numpy as np
 from segcore.arrays import FloatArray, IntArray, group_sums
 
 
-def best_order(parent: IntArray, gain: FloatArray, cost: FloatArray) -> tuple[list[int], int]:
+def best_order(
+    parent: IntArray, gain: FloatArray, cost: FloatArray, least_cost: float = 0.0, most_loss: float = 0.0
+) -> tuple[list[int], int]:
     """Order the splits of a forest by decreasing ratio of gain and cost, parents before children.
 
     A split of low gain is moved forward if it makes splits of high gain possible: the splits are joined to blocks, and
@@ -18,10 +20,12 @@ def best_order(parent: IntArray, gain: FloatArray, cost: FloatArray) -> tuple[li
     parent : (S,) the split that has to be made before, smaller than the split itself; -1 if there is none.
     gain : (S,) gain of every split, of any sign.
     cost : (S,) cost of every split, > 0.
+    least_cost, most_loss : if the blocks of positive gain cost less than ``least_cost``, further blocks that lose at
+        most ``most_loss`` times their cost are worthwhile as well, until that cost is reached.
 
     Returns
     -------
-    The splits in order, and how many of them belong to blocks of positive gain.
+    The splits in order, and how many of them are worthwhile: those in blocks of positive gain.
 
     References
     ----------
@@ -45,18 +49,29 @@ def best_order(parent: IntArray, gain: FloatArray, cost: FloatArray) -> tuple[li
             first if parent[split] < 0 else waiting[parent[split]], (-total_gain[split] / total_cost[split], split)
         )
     order: list[int] = []
-    worthwhile = 0
+    gainful = worthwhile = 0
+    spent = 0.0
     while first:
         loss, block = heappop(first)
         order += members[block]
         if loss < 0:
+            gainful = worthwhile = len(order)
+        elif spent < least_cost and loss <= most_loss:
             worthwhile = len(order)
+        spent += total_cost[block]
         for entry in waiting[block]:
             heappush(first, entry)
-    return order, worthwhile
+    return order, worthwhile if cost[order[:worthwhile]].sum() >= least_cost else gainful
 
 
-def best_order_of_steps(step: IntArray, parent: IntArray, gain: FloatArray, cost: FloatArray) -> tuple[list[int], int]:
+def best_order_of_steps(
+    step: IntArray,
+    parent: IntArray,
+    gain: FloatArray,
+    cost: FloatArray,
+    least_cost: float = 0.0,
+    most_loss: float = 0.0,
+) -> tuple[list[int], int]:
     """``best_order`` of steps of one or more splits, which are made together; their gains and costs add up.
 
     Parameters
@@ -66,7 +81,7 @@ def best_order_of_steps(step: IntArray, parent: IntArray, gain: FloatArray, cost
     """
     first = np.flatnonzero(np.diff(step, prepend=-1))
     parent_step = np.append(step, -1)[parent[first]]
-    order, worthwhile = best_order(parent_step, group_sums(step, gain), group_sums(step, cost))
+    order, worthwhile = best_order(parent_step, group_sums(step, gain), group_sums(step, cost), least_cost, most_loss)
     members = np.split(np.arange(len(step)), first[1:])
     splits = [[int(s) for s in members[i]] for i in order]
     return [s for group in splits for s in group], sum(len(group) for group in splits[:worthwhile])

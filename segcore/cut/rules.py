@@ -29,6 +29,11 @@ SMALLEST_BODY = 0.0002  # share of the total area below which even a whole body 
 NCUT_WEIGHT = 0.4  # of the normalized cut beside the learned share in the comparison of candidates
 # Learned share of kept pairs beyond which a cut is no sensible part any more; set by hand: nine of ten pairs.
 MOST_KEPT = 0.9
+# A shape is rarely one part: the people of every model of the benchmark separate 0.17 of the pairs or more on average.
+# If the worthwhile splits separate less than a tenth of them, splits that keep six of ten pairs are worthwhile as well.
+# Set by hand.
+LEAST_SEPARATED = 0.1
+MOST_KEPT_AT_FIRST = 0.6
 # Factors on the learned share q of a cut between bodies, and on 1 - q of a cut through a body of several: bodies are
 # parted before they are cut. Set by hand: see bench/RESULTS.md, "Authored assets".
 BETWEEN_BODIES = 0.7
@@ -39,6 +44,13 @@ THROUGH_BODY = 0.8
 _CONTACT_SHARE, _DIVIDED, _SMALL_WHOLE = (FEATURES.index(name) for name in ("contact_share", "divided", "small_whole"))
 _SMALL_AREA = FEATURES.index("small_area")
 _PIECES = [FEATURES.index("small_pieces"), FEATURES.index("large_pieces")]
+_LEAST_CHANCE = 1e-4  # of a share whose log-odds are taken
+# Features that tell the sets of assets apart rather than good cuts from bad ones: without them the models do better on
+# sets that they have not seen.
+OF_SETS = ("bodies", "mean_affinity", "small_confidence", "large_confidence")
+SEVERAL_BODIES_FEATURES = tuple(name for name in FEATURES if name not in OF_SETS)
+ORDER_FEATURES = ("kept", *SEVERAL_BODIES_FEATURES)  # kept: the log-odds of the share by the model of the cut
+_ORDER_COLUMNS = [FEATURES.index(name) for name in SEVERAL_BODIES_FEATURES]
 _NEARLY = 1e-6  # of a share of 0 or 1, for rounding
 
 
@@ -51,6 +63,7 @@ class Split:
     priority: float  # splits are made by increasing priority
     late: bool  # True if the smaller side is so small that the split comes after all others
     image: BoolArray | None = None  # (N,) the second part that the same step cuts off, disjoint from S
+    features: FloatArray | None = None  # (M,) of the cut; None if the rule does not need them
 
     def with_image(self, image: IntArray) -> "Split":
         """Return the split that also cuts off the mirror image of the side of the cut, if the two are a pair.
@@ -156,6 +169,7 @@ class LearnedRule:
         model = models.split if fields.bodies.count == 1 else models.split_of_bodies
         self._model = model
         self._columns = [FEATURES.index(name) for name in model.names]
+        self._order = models.order
         self._fields = fields
         self._parameters = parameters
         self._rng = rng
@@ -187,7 +201,7 @@ class LearnedRule:
         loss = [q + NCUT_WEIGHT * cut.ncut * size for q, cut in zip(kept, candidates, strict=True)]
         best = min(range(len(candidates)), key=lambda i: (late[i], loss[i]))
         cut = candidates[best]
-        return Split(cut, cut.ncut * size, float(kept[best]), bool(late[best]))
+        return Split(cut, cut.ncut * size, float(kept[best]), bool(late[best]), features=features[best])
 
     def candidates(self, segment: Segment, inside: SegmentFields) -> list[Cut]:
         """Return different cuts of a segment, each with connected sides."""
@@ -220,6 +234,15 @@ class LearnedRule:
         is_large = features[:, _SMALL_AREA] >= np.log(LARGE_BODY)
         return np.where(between, np.where(is_large, BETWEEN_LARGE_BODIES, BETWEEN_BODIES) * kept, through)
 
+    def _kept_in_tree(self, splits: Sequence[Split]) -> FloatArray:
+        """(S,) the share of the pairs across the splits of a tree that people keep together, again for the order."""
+        kept = np.array([split.priority for split in splits])
+        if self._order is None or not splits:
+            return kept
+        again = self._order.mean(order_features(kept, np.array([split.features for split in splits])))
+        again = np.where([split.late for split in splits], np.maximum(again, MOST_KEPT), again)
+        return np.where(kept > 1.0, kept, again)  # beyond 1: of a step that is not complete
+
     def _is_late(self, candidates: Sequence[Cut], features: FloatArray) -> BoolArray:
         smaller = np.array([min(cut.inside, cut.outside) for cut in candidates])
         is_body = _between_bodies(features) & (features[:, _SMALL_WHOLE] > 1.0 - _NEARLY)
@@ -232,10 +255,17 @@ class LearnedRule:
         # The cost of a split is the share of all pairs of points that it separates. Its gain is the part of them that
         # people separate, less the part that they keep together.
         pairs = np.array([2.0 * split.cut.inside * split.cut.outside / self._total**2 for split in learned])
-        kept = np.array([split.priority for split in learned])
-        gain = pairs * (1.0 - 2.0 * kept)
-        order, worthwhile = best_order_of_steps(tree.step[apart:] - apart, parent, gain, pairs)
+        gain = pairs * (1.0 - 2.0 * self._kept_in_tree(learned))
+        least = 0.0 if apart else LEAST_SEPARATED
+        most_loss = 2.0 * MOST_KEPT_AT_FIRST - 1.0
+        order, worthwhile = best_order_of_steps(tree.step[apart:] - apart, parent, gain, pairs, least, most_loss)
         return tree.reordered([*range(apart), *(apart + s for s in order)], apart + worthwhile + 1)
+
+
+def order_features(kept: FloatArray, features: FloatArray) -> FloatArray:
+    """(S, M) of ``ORDER_FEATURES`` for splits with the learned share (S,) and the features of their cuts."""
+    chance = np.clip(kept, _LEAST_CHANCE, 1.0 - _LEAST_CHANCE)
+    return np.column_stack([np.log(chance / (1.0 - chance)), features[:, _ORDER_COLUMNS]])
 
 
 def _between_bodies(features: FloatArray) -> BoolArray:

@@ -9,9 +9,10 @@ from functools import cache
 from importlib.resources import files
 from typing import Any
 
+from segcore.learned.forest import Forest
 from segcore.learned.logistic import LogisticModel
 
-_NAMES = ("boundary", "split", "split_of_bodies")
+_LOGISTIC = ("boundary", "split", "split_of_bodies")
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -21,16 +22,19 @@ class LearnedModels:
     boundary: LogisticModel  # probability of a cut along an edge, see segcore.affinity.boundary_features
     split: LogisticModel  # share of the pairs across a cut that people keep together, see segcore.cut.features
     split_of_bodies: LogisticModel  # the same on surfaces of several bodies
+    order: Forest | None = None  # the same for the splits of a finished tree; None: as the models above say
 
     @classmethod
     def from_document(cls, document: Mapping[str, Any]) -> "LearnedModels":
         """The inverse of ``document``."""
-        boundary, split, of_bodies = (LogisticModel.from_document(document[name]) for name in _NAMES)
-        return cls(boundary, split, of_bodies)
+        boundary, split, of_bodies = (LogisticModel.from_document(document[name]) for name in _LOGISTIC)
+        order = document.get("order")
+        return cls(boundary, split, of_bodies, None if order is None else Forest.from_document(order))
 
     def document(self) -> dict[str, Any]:
         """The models as plain values for JSON."""
-        return {name: getattr(self, name).document() for name in _NAMES}
+        logistic = {name: getattr(self, name).document() for name in _LOGISTIC}
+        return {**logistic, "order": None if self.order is None else self.order.document()}
 
 
 _override: ContextVar[LearnedModels | None] = ContextVar("learned models", default=None)

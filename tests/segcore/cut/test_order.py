@@ -64,3 +64,12 @@ def test_splits_of_a_step_stay_together_and_are_worth_what_all_of_them_are(fores
     np.testing.assert_array_equal(step[order], np.repeat(expected, size[expected]))
     assert worthwhile == size[expected[:least]].sum()
     assert sorted(order) == list(range(len(step)))
+
+
+def test_losing_splits_are_worthwhile_until_enough_is_spent_if_they_lose_little():
+    parent, gain, cost = np.array([-1, -1, -1, -1]), np.array([0.01, -0.1, -0.02, -5.0]), np.array([0.1, 1.0, 1.0, 5.0])
+    assert best_order(parent, gain, cost) == ([0, 2, 1, 3], 1)
+    assert best_order(parent, gain, cost, least_cost=1.0, most_loss=0.2)[1] == 2
+    assert best_order(parent, gain, cost, least_cost=2.0, most_loss=0.2)[1] == 3
+    # Beyond that every split loses more than it may, so that nothing is gained by a part of it.
+    assert best_order(parent, gain, cost, least_cost=3.0, most_loss=0.2)[1] == 1

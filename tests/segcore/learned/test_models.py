@@ -7,14 +7,15 @@ from segcore import segment, shapes
 from segcore.affinity.boundary_features import FEATURES as BOUNDARY_FEATURES
 from segcore.cut.features import FEATURES as SPLIT_FEATURES
 from segcore.cut.features import CutFeatures
+from segcore.cut.rules import ORDER_FEATURES
 from segcore.learned.logistic import LogisticModel
 from segcore.learned.models import LearnedModels, learned_models, using
 from segcore.parameters import SegmentationParameters
 
 
-def flat(names):
-    """A model with the probability 1/2 for all features."""
-    return LogisticModel(names, np.zeros(len(names)), np.ones(len(names)), np.zeros(4 * len(names)), 0.0)
+def flat(names, bias=0.0):
+    """A model with the same probability for all features, 1/2 by default."""
+    return LogisticModel(names, np.zeros(len(names)), np.ones(len(names)), np.zeros(4 * len(names)), bias)
 
 
 def test_the_shipped_models_have_the_features_of_the_code():
@@ -22,6 +23,7 @@ def test_the_shipped_models_have_the_features_of_the_code():
     assert models.boundary.names == BOUNDARY_FEATURES
     assert models.split.names == CutFeatures._fields
     assert set(models.split_of_bodies.names) < set(SPLIT_FEATURES)
+    assert models.order.names == ORDER_FEATURES
 
 
 def test_a_document_contains_the_whole_model():
@@ -42,10 +44,11 @@ def test_the_probability_is_the_logistic_function_of_the_basis():
 
 def test_other_models_are_used_inside_the_context_only():
     shipped = learned_models()
-    other = LearnedModels(flat(BOUNDARY_FEATURES), flat(SPLIT_FEATURES), flat(SPLIT_FEATURES))
+    kept = flat(SPLIT_FEATURES, bias=1.0)
+    other = LearnedModels(flat(BOUNDARY_FEATURES), kept, kept)
     with using(other):
         assert learned_models() is other
-        # With a gain of 0 for every split the automatic number is one.
+        # If people keep 73 % of the pairs across every cut together, the automatic number is one.
         assert segment(shapes.burr(4).mesh).automatic_segments == 1
     assert learned_models() is shipped
     assert segment(shapes.burr(4).mesh).automatic_segments == 7
