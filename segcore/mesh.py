@@ -27,6 +27,7 @@ class Mesh:
         one face.
     appearance : normals, texture coordinates, colours and groups of the file; None if they were not read.
     structure : the group and the material of every face; None if the file has neither.
+    notes : sentences on what the reader left out of the file or repaired.
 
     Raises
     ------
@@ -39,6 +40,7 @@ class Mesh:
     source_polygon: IntArray | None = None  # (F,)
     appearance: Appearance | None = None
     structure: FileStructure | None = None
+    notes: tuple[str, ...] = ()
 
     def __init__(
         self,
@@ -47,12 +49,14 @@ class Mesh:
         source_polygon: ArrayLike | None = None,
         appearance: Appearance | None = None,
         structure: FileStructure | None = None,
+        notes: tuple[str, ...] = (),
     ) -> None:
         object.__setattr__(self, "vertices", _checked_vertices(vertices))
         object.__setattr__(self, "faces", _checked_faces(faces, len(self.vertices)))
         object.__setattr__(self, "source_polygon", _checked_polygons(source_polygon, len(self.faces)))
         object.__setattr__(self, "appearance", appearance)
         object.__setattr__(self, "structure", structure)
+        object.__setattr__(self, "notes", notes)
         if appearance is not None and not appearance.fits(len(self.vertices), len(self.faces)):
             raise InvalidMesh(
                 "The arrays of the appearance do not match the numbers of vertices and faces of the mesh."

@@ -65,6 +65,7 @@ class MeshReport:
     structure: StructureCounts | None = None  # None in reports of earlier versions
     stitched_edges: int = 0  # border edges that are joined to others across cracks and at T-junctions
     stitched_gap: float = 0.0  # widest gap between two of them, in units of the mesh: the tolerance that was found
+    notes: tuple[str, ...] = ()  # what the reader left out of the file or repaired, in sentences
 
 
 def mesh_report(mesh: Mesh, surface: Surface | None = None) -> MeshReport:
@@ -112,6 +113,7 @@ def mesh_report(mesh: Mesh, surface: Surface | None = None) -> MeshReport:
         structure=counts,
         stitched_edges=surface.stitched_edges,
         stitched_gap=surface.stitched_gap * surface.unit,
+        notes=mesh.notes,
     )
 
 

@@ -50,7 +50,7 @@ def _lines(name: str, report: MeshReport) -> list[str]:
         lines.append(f"structure: {report.structure.in_words()}")
     if report.groups:
         lines.append(f"{_count(len(report.groups), 'group')}: {', '.join(name or '(none)' for name in report.groups)}")
-    return lines
+    return [*lines, *report.notes]
 
 
 def _defects(report: MeshReport) -> list[tuple[int, str, str]]:

@@ -57,6 +57,8 @@ def run(choices: argparse.Namespace) -> None:
         segments = fineness.segments_of(hierarchy)
         _write(choices, mesh, hierarchy, segments)
     say(f"{choices.mesh.name}: {len(mesh.faces)} faces, {len(mesh.vertices)} vertices")
+    for note in mesh.notes:
+        say(note)
     say(level_summary(hierarchy, segments, fineness))
     for line in _structure_lines(structure_counts(mesh, surface), parameters):
         say(line)
