@@ -38,6 +38,7 @@ _OBJ = re.compile(rb"(?:\s++|#[^\r\n]*+[\r\n])*+(?:v|vt|vn|vp|f|l|p|g|o|s|mg|use
 _OBJ_VERTEX = re.compile(rb"(?:^|[\r\n])[ \t]*+v[ \t]")
 _GLTF = re.compile(rb"\s*+\{")
 _ZIP, _ZIP_NAME = b"PK\x03\x04", 30  # the first bytes of an archive, and the offset of the name of its first member
+_RESULT_MEMBER = b"header.json"  # the first member of a .cleave file
 _FOREIGN = {
     _ZIP: "a ZIP archive, but not 3MF",
     b"Kaydara FBX Binary": "FBX",
@@ -94,6 +95,11 @@ def detect_format(data: bytes, declared: str | None) -> str:
     raise UnsupportedFormat(f"The content of the file is {content}: convert it to {_titles()}.")
 
 
+def is_plain_archive(data: bytes) -> bool:
+    """Whether a file is a ZIP archive that is neither 3MF nor a .cleave file."""
+    return data.startswith(_ZIP) and b".model" not in data and not data.startswith(_RESULT_MEMBER, _ZIP_NAME)
+
+
 def is_ascii_stl(data: bytes) -> bool:
     """Whether an STL file is text; a binary one may begin with the word ``solid`` too."""
     if _fills_stl(data):
@@ -117,7 +123,7 @@ def _titles() -> str:
 
 def _foreign(data: bytes) -> str | None:
     """The name of a known format that has no reader, or None."""
-    if data.startswith(_ZIP) and data.startswith(b"header.json", _ZIP_NAME):
+    if data.startswith(_ZIP) and data.startswith(_RESULT_MEMBER, _ZIP_NAME):
         return "a .cleave file, which cleave convert opens"
     return next((title for magic, title in _FOREIGN.items() if data.startswith(magic)), None)
 

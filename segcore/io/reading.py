@@ -1,12 +1,16 @@
 """read_mesh: a mesh file of any format in FORMATS, detected by its content."""
 
+import io
 import os
 from collections.abc import Callable
+from functools import partial
+from pathlib import Path
 from typing import BinaryIO
 
 import numpy as np
 
-from segcore.io.formats import declared_format, detect_format
+from segcore.io.file_sets import Companions, FolderCompanions, NoCompanions, model_in_archive, model_in_folder
+from segcore.io.formats import declared_format, detect_format, is_plain_archive
 from segcore.io.gltf.reader import read_gltf
 from segcore.io.limits import ReadLimits
 from segcore.io.obj.reader import read_obj
@@ -22,8 +26,6 @@ _READERS: dict[str, Callable[[bytes, ReadLimits, bool], Mesh]] = {
     "stl": read_stl,
     "ply": read_ply,
     "obj": read_obj,
-    "glb": read_gltf,
-    "gltf": read_gltf,
     "3mf": read_3mf,
 }
 
@@ -34,12 +36,14 @@ def read_mesh(
     *,
     limits: ReadLimits | None = None,
     appearance: bool = False,
+    neighbours: bool = False,
 ) -> Mesh:
-    """Read a mesh file, which may be compressed with gzip.
+    """Read a mesh file, which may be compressed with gzip, or the one mesh in a ZIP archive.
 
     Face i of the mesh is triangle i after the polygons of the file, in its order, are triangulated as fans;
     ``source_polygon`` is the polygon of each face if there are others than triangles. No vertex or face is dropped,
-    merged or moved, and no file but ``source`` is opened.
+    merged or moved. The buffers of a glTF file may be members of the archive that it is in. No file but ``source`` is
+    opened, unless ``neighbours`` is True.
 
     Parameters
     ----------
@@ -49,11 +53,14 @@ def read_mesh(
     limits : the largest input that is read, by default ``ReadLimits()``.
     appearance : keep normals, texture coordinates, colours of vertices and names of groups for the outputs, as far as
         they can be read. Reading is faster without.
+    neighbours : also read the files in the folder of a path, and below it, that the mesh file refers to; if the path is
+        a folder, read the one mesh in it.
 
     Raises
     ------
     UnsupportedFormat
-        If the format, or a feature that the file needs, cannot be read.
+        If the format, or a feature that the file needs, cannot be read, or an archive or a folder does not have exactly
+        one mesh.
     InvalidMesh
         If the file is damaged, cut short or without faces; the message has the line, the byte or the element.
     LimitExceeded
@@ -62,8 +69,17 @@ def read_mesh(
         If a path cannot be read.
     """
     limits = limits or ReadLimits()
+    companions: Companions = NoCompanions()
+    if neighbours and isinstance(source, str | os.PathLike):
+        source = model_in_folder(Path(source))
+        companions = FolderCompanions(source, limits)
     declared = declared_format(source, format)
     data = read_source(source, limits)
-    reader = _READERS[detect_format(data, declared)]
+    if declared is None and is_plain_archive(data):
+        model = model_in_archive(data, limits)
+        declared, companions = declared_format(model.name, None), model.companions
+        data = read_source(io.BytesIO(model.data), limits)
+    form = detect_format(data, declared)
+    reader = partial(read_gltf, companions=companions) if form in ("glb", "gltf") else _READERS[form]
     with np.errstate(all="ignore"):  # Mesh refuses numbers that overflow, as not finite
         return reader(data, limits, appearance)

@@ -12,7 +12,7 @@ from service.commands.console import say
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     parser.description = "Report what a mesh file contains: components, borders, and defects that segmentation repairs."
-    parser.add_argument("mesh", type=Path, metavar="MESH", help="the mesh file")
+    parser.add_argument("mesh", type=Path, metavar="MESH", help="the mesh file, or a folder or ZIP archive with one")
     parser.add_argument("--json", action="store_true", help="print the report as JSON")
 
 
@@ -26,7 +26,7 @@ def run(choices: argparse.Namespace) -> None:
     OSError
         If the file cannot be read.
     """
-    report = mesh_report(segcore.read_mesh(choices.mesh, appearance=True))
+    report = mesh_report(segcore.read_mesh(choices.mesh, appearance=True, neighbours=True))
     if choices.json:
         say(json.dumps(asdict(report), indent=2, allow_nan=False))
     else:

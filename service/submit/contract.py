@@ -51,9 +51,11 @@ JOB_BODY: dict[str, Any] = {
     "parameters": [_PARAMETERS_IN_QUERY],
     "requestBody": {
         "required": True,
-        "description": "The mesh file, optionally compressed with gzip, or a form that contains it.",
+        "description": "The mesh file, optionally compressed with gzip, or a form that contains it. A ZIP archive may "
+        "contain one mesh and the files that it refers to.",
         "content": {
             **{form.media_types[0]: {"schema": _MESH} for form in FORMATS.values()},
+            "application/zip": {"schema": _MESH},
             "application/octet-stream": {"schema": _MESH},
             FORM_TYPE: _form(_MESH),
         },

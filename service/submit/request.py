@@ -27,7 +27,8 @@ from service.submit.form import (
 from worker.jobs.store.upload import MeshUpload
 
 FORM_TYPE = "multipart/form-data"
-_UNSPECIFIED = ("", "application/octet-stream", FORM_TYPE)  # media types that declare no format
+# Media types that declare no format of a mesh; archives contain a mesh with its files.
+_UNSPECIFIED = ("", "application/octet-stream", "application/zip", "application/x-zip-compressed", FORM_TYPE)
 _MAX_LABEL_LENGTH = 255  # characters, as of a file name
 
 

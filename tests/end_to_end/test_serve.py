@@ -13,6 +13,8 @@ from urllib.parse import urlsplit
 import httpx
 import pytest
 
+from helpers.files.archives import archive
+from helpers.files.samples import gltf_square
 from helpers.installation import Installation
 from helpers.jobs import LONG, sphere
 from helpers.processes import is_alive
@@ -50,6 +52,25 @@ def test_a_bad_mesh_fails_with_its_error_code(installation: Installation) -> Non
     job = finished(installation, installation.submit(b"OFF\n1 0 0\n0 0 0\n"))
     assert job["status"] == "failed"
     assert job["error"]["code"] == "invalid_mesh"  # type: ignore[index]
+
+
+def test_a_mesh_in_an_archive_is_segmented_with_the_files_that_it_refers_to(installation: Installation) -> None:
+    asset = gltf_square()
+    asset.document["buffers"] = [{"byteLength": len(asset.binary), "uri": "data/square.bin"}]
+    scene, readme = json.dumps(asset.document).encode(), b"two faces"
+    body = archive({"model/scene.gltf": scene, "model/data/square.bin": asset.binary, "model/readme.txt": readme})
+    for content_type in ("application/zip", "application/octet-stream"):
+        headers = {"Content-Type": content_type, "Cache-Control": "no-cache"}
+        answer = httpx.post(f"{installation.url}/v1/jobs", content=body, headers=headers, timeout=60)
+        assert answer.status_code in (200, 202), answer.text
+        job = finished(installation, str(answer.headers["Location"]))
+        assert job["status"] == "succeeded", job
+        assert job["mesh"]["report"]["faces"] == 2  # type: ignore[index]
+    two = archive({"a.off": sphere(8), "b.off": sphere(9)})
+    answer = httpx.post(f"{installation.url}/v1/jobs", files={"mesh": ("two.zip", two)}, timeout=60)
+    job = finished(installation, str(answer.headers["Location"]))
+    assert job["status"] == "failed"
+    assert "2 meshes (a.off, b.off)" in job["error"]["message"]  # type: ignore[index]
 
 
 def test_progress_is_reported_and_never_decreases(installation: Installation) -> None:

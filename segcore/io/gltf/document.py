@@ -9,6 +9,7 @@ from dataclasses import dataclass, field
 from typing import Any, NoReturn
 
 from segcore.errors import InvalidMesh, UnsupportedFormat
+from segcore.io.file_sets import Companions, NoCompanions
 
 _MAGIC, _HEADER, _CHUNK_HEADER = b"glTF", 12, 8
 _JSON_CHUNK, _BINARY_CHUNK = b"JSON", b"BIN\0"
@@ -32,6 +33,7 @@ class Document:
     root: Item
     binary: memoryview | None  # the BIN chunk of a GLB file
     size: int  # bytes of the whole file
+    companions: Companions = field(default_factory=NoCompanions)  # the files of the buffers
     _buffers: dict[int, memoryview] = field(default_factory=dict)  # decoded once
 
     def item(self, name: str, index: int) -> Item:
@@ -47,7 +49,7 @@ class Document:
         return len(entries) if isinstance(entries, list) else 0
 
     def buffer(self, index: int) -> memoryview:
-        """Return the bytes of a buffer, which must be inside the file.
+        """Return the bytes of a buffer, which must be inside the file or in one that belongs to it.
 
         Raises
         ------
@@ -67,7 +69,8 @@ class Document:
         if uri is None and index == 0 and self.binary is not None:
             data = self.binary
         elif isinstance(uri, str):
-            data = memoryview(_data_uri(uri, where))
+            companion = None if uri.startswith("data:") else self.companions.read(uri)
+            data = memoryview(_data_uri(uri, where) if companion is None else companion)
         else:
             raise InvalidMesh(f"{where} of the glTF file has no data: it is cut short or its compression is optional.")
         if len(data) < length:
@@ -77,8 +80,8 @@ class Document:
         return data[:length]
 
 
-def read_document(data: bytes) -> Document:
-    """Parse a GLB or a glTF file.
+def read_document(data: bytes, companions: Companions | None = None) -> Document:
+    """Parse a GLB or a glTF file, with the files that belong to it.
 
     Raises
     ------
@@ -96,7 +99,7 @@ def read_document(data: bytes) -> Document:
     if not version.startswith("2."):
         raise UnsupportedFormat(f"glTF version {version[:20]!r} cannot be read: save it as glTF 2.0.")
     _check_extensions(root.get("extensionsRequired", []))
-    return Document(root, binary, len(data))
+    return Document(root, binary, len(data), companions or NoCompanions())
 
 
 def view_bytes(document: Document, index: int) -> memoryview:
@@ -201,7 +204,10 @@ def _check_extensions(required: object) -> None:
 def _data_uri(uri: str, where: str) -> bytes:
     head, comma, body = uri.partition(",")
     if not head.startswith("data:") or not comma:
-        raise UnsupportedFormat(f"{where} of the glTF file is another file: save it as GLB or with embedded buffers.")
+        raise UnsupportedFormat(
+            f"{where} of the glTF file is another file, {uri[:80]!r}, which is not here: send both in a ZIP archive or "
+            "save the model as GLB."
+        )
     if not head.endswith(";base64"):
         raise UnsupportedFormat(f"{where} of the glTF file is a data URI in another encoding than base64.")
     try:

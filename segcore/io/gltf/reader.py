@@ -1,9 +1,10 @@
-"""The glTF 2.0 reader, for GLB files and for JSON with embedded buffers."""
+"""The glTF 2.0 reader, for GLB files and for JSON with buffers that are embedded or files beside it."""
 
 import numpy as np
 
 from segcore.arrays import FloatArray, IntArray, transformed
 from segcore.errors import InvalidMesh
+from segcore.io.file_sets import Companions
 from segcore.io.gltf.accessors import Accessors
 from segcore.io.gltf.appearance import gltf_appearance
 from segcore.io.gltf.compression.draco import DRACO, decode_draco
@@ -15,7 +16,9 @@ from segcore.mesh import Mesh
 from segcore.structure import FileStructure, file_structure, numbered_runs
 
 
-def read_gltf(data: bytes, limits: ReadLimits, with_appearance: bool = False) -> Mesh:
+def read_gltf(
+    data: bytes, limits: ReadLimits, with_appearance: bool = False, companions: Companions | None = None
+) -> Mesh:
     """Read all triangles of the default scene, in the coordinates of the scene.
 
     Face order: the nodes of the scene depth first, the primitives of each mesh, the triangles of each primitive. A mesh
@@ -24,11 +27,15 @@ def read_gltf(data: bytes, limits: ReadLimits, with_appearance: bool = False) ->
     and COLOR_0, each if all primitives have it, and the names of the nodes or else of their meshes. The groups of the
     structure are the nodes.
 
+    Parameters
+    ----------
+    companions : the files that may be buffers; by default none.
+
     Raises
     ------
     InvalidMesh, UnsupportedFormat, LimitExceeded
     """
-    document = read_document(data)
+    document = read_document(data, companions)
     accessors = Accessors(document, limits)
     instances = mesh_instances(document)
     primitives = {mesh: _primitives(document, accessors, mesh) for mesh in {at.mesh for at in instances}}

@@ -81,7 +81,6 @@ def test_an_unknown_declaration_is_refused_with_the_formats_that_are_read() -> N
 @pytest.mark.parametrize(
     ("data", "message"),
     [
-        (b"PK\x03\x04 and more", "ZIP"),
         (b"Kaydara FBX Binary  \0", "FBX"),
         (b"<?xml version='1.0'?><COLLADA/>", "XML"),
         (b"\xff\xfeO\0F\0F\0", "UTF-16"),
