@@ -10,6 +10,7 @@ from segcore.affinity.mesh_graphs import mesh_graph
 from segcore.arrays import group_sums
 from segcore.clean.refinement import Refinement, refine, undivided
 from segcore.clean.surface import Surface, build_surface
+from segcore.clean.voxels import without_voxel_steps
 from segcore.coarsen.assembly import assemble
 from segcore.coarsen.authored import with_structure
 from segcore.coarsen.clusters import MOST_COMPONENTS, Clusters
@@ -62,7 +63,8 @@ def segment(
     progress("clean")
     surface = with_structure(surface or build_surface(mesh), mesh, chosen.structure)
     is_symmetric = chosen.is_symmetric and surface.authored is None
-    coarse = coarse_graph(surface, chosen, rng, is_symmetric, progress)
+    shape = without_voxel_steps(surface) if chosen.measures_shape else surface
+    coarse = coarse_graph(shape, chosen, rng, is_symmetric, progress)
     progress("cut")
     cut = partial(_tree, chosen, rng, partial(progress.after_splits, chosen.segment_limit))
     tree = with_connected_leaves(cut(coarse.symmetrised()), coarse.clusters)
@@ -72,7 +74,7 @@ def segment(
     clusters = coarse.clusters
     tree = replace(tree, step=sibling_steps(clusters.graph, clusters.points, tree))
     progress("label")
-    tree = _over_faces(tree, coarse, surface)
+    tree = _over_faces(tree, coarse, shape)
     hierarchy = _of_input(surface, tree)
     progress("label", 1.0)
     return hierarchy
