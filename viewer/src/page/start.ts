@@ -55,7 +55,7 @@ export class Start {
     byId("back").addEventListener("click", () => this.#events.onLeave());
     this.#listenToDrops();
     this.#fillSamples();
-    this.#input.accept = [...lists.inputFormats.flatMap(({ extensions }) => extensions), ".gz"].join(",");
+    this.#input.accept = [...lists.inputFormats.flatMap(({ extensions }) => extensions), ".gz", ".zip"].join(",");
     byId("formats").textContent = FORMATS;
     void this.#loadLimits();
   }
