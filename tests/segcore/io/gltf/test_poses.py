@@ -1,7 +1,9 @@
 """The rest pose of glTF scenes: skins, morph targets and copies, as viewers show them before anything moves."""
 
 import io
+import json
 import math
+from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -11,6 +13,7 @@ from helpers.files.gltf import FLOAT, Asset
 from helpers.files.polygon_soups import read
 from helpers.files.samples import SQUARE, gltf_with_attributes
 from helpers.files.samples import gltf_square as square
+from helpers.node.programs import install, run
 from segcore.errors import InvalidMesh, LimitExceeded
 from segcore.io import ReadLimits, read_mesh
 
@@ -325,3 +328,40 @@ def test_primitives_that_are_no_triangles_in_space_are_left_out_and_noted() -> N
     primitives += [{"attributes": {}}] * 10
     with pytest.raises(InvalidMesh, match="and 7 more"):
         read(asset.glb())
+
+
+def blended() -> Asset:
+    """Morph targets, then a skin with inverse bind matrices and weights that do not sum to 1; one vertex has none."""
+    weights = [(0.25, 0.25, 0, 0), (0.9, 0.3, 0.2, 0), (0.0, 0, 0, 0), (0, 1, 0, 0)]
+    asset = skinned([(0, 1, 0, 0)] * 4, weights, [shifted(1, 2, 3, 0.5), shifted(0, -1, 0)])
+    asset.document["nodes"][1]["rotation"] = [0.6, 0, 0, 0.8]
+    targets = [asset.accessor([(0.0, k, 4)] * 4, FLOAT) for k in range(2)]
+    asset.document["meshes"][0]["primitives"][0]["targets"] = [{"POSITION": target} for target in targets]
+    asset.document["meshes"][0]["weights"] = [0.5, -1]
+    asset.root(mesh=asset.add("meshes", {"primitives": [asset.primitive(0, [0, 1, 2])]}), scale=[3, 1, 1])
+    return asset
+
+
+def copied() -> Asset:
+    asset = instanced()
+    asset.document["nodes"][0] |= {"translation": [1, 2, 3], "scale": [2, 3, 4]}
+    asset.document["nodes"][0]["extensions"]["EXT_mesh_gpu_instancing"]["attributes"] = {
+        "TRANSLATION": asset.accessor([(float(k), 0, 0) for k in range(3)], FLOAT),
+        "ROTATION": asset.accessor([(0, 0, 0, 1), (0.6, 0, 0, 0.8), (0, 0.28, 0.96, 0)], FLOAT),
+        "SCALE": asset.accessor([(1.0, 2, 3)] * 3, FLOAT),
+    }
+    asset.document["extensionsUsed"] = ["EXT_mesh_gpu_instancing"]
+    return asset
+
+
+@pytest.mark.timeout(300)
+def test_three_js_has_every_corner_at_the_same_place(tmp_path: Path) -> None:
+    assets = {"blended": blended(), "copied": copied(), "morphed": morphed([0.5, 3])}
+    paths = {name: tmp_path / f"{name}.glb" for name in assets}
+    for name, asset in assets.items():
+        paths[name].write_bytes(asset.glb())
+    script = install("three", tmp_path) / "read.mjs"
+    found = json.loads(run(script, [], json.dumps([str(path) for path in paths.values()])))["parts"]
+    for name, asset in assets.items():
+        corners = np.concatenate([np.reshape(part["corners"], (-1, 3, 3)) for part in found[str(paths[name])]])
+        np.testing.assert_allclose(read(asset.glb()).corners, corners, atol=1e-5)
