@@ -8,9 +8,11 @@ from typing import Any
 
 import numpy as np
 import pytest
+from hypothesis import given
 
+from helpers.files.damage import damaged
 from helpers.files.gltf import FLOAT, Asset
-from helpers.files.polygon_soups import read
+from helpers.files.polygon_soups import read, read_or_none
 from helpers.files.samples import SQUARE, gltf_with_attributes
 from helpers.files.samples import gltf_square as square
 from helpers.node.programs import install, run
@@ -352,6 +354,11 @@ def copied() -> Asset:
     }
     asset.document["extensionsUsed"] = ["EXT_mesh_gpu_instancing"]
     return asset
+
+
+@given(damaged([blended().glb(), copied().glb(), morphed([0.5, 3]).glb()], b' \n{}[]",:0123456789-.\0\xff'))
+def test_a_damaged_file_gives_a_mesh_or_a_typed_error(data: bytes) -> None:
+    read_or_none(data)
 
 
 @pytest.mark.timeout(300)
