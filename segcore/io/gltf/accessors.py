@@ -11,7 +11,7 @@ from segcore.io.gltf.document import Document, Item, integer, member, view_bytes
 from segcore.io.limits import ReadLimits
 
 _COMPONENTS = {5120: "<i1", 5121: "<u1", 5122: "<i2", 5123: "<u2", 5125: "<u4", 5126: "<f4"}
-_WIDTHS = {"SCALAR": 1, "VEC2": 2, "VEC3": 3, "VEC4": 4}
+_WIDTHS = {"SCALAR": 1, "VEC2": 2, "VEC3": 3, "VEC4": 4, "MAT4": 16}
 _SMALL = 65536  # elements of an accessor without data that are allowed in a file of any size; set by hand
 
 
@@ -45,7 +45,7 @@ class Accessors:
 
         Parameters
         ----------
-        kind : ``SCALAR``, ``VEC2``, ``VEC3`` or ``VEC4``.
+        kind : ``SCALAR``, ``VEC2``, ``VEC3``, ``VEC4`` or ``MAT4``.
 
         Raises
         ------

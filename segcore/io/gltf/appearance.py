@@ -13,26 +13,24 @@ from segcore.appearance import (
     texture_coordinates,
     unit_normals,
 )
-from segcore.arrays import FloatArray, transformed
+from segcore.arrays import FloatArray
 from segcore.errors import CleaveError
 from segcore.io.gltf.accessors import Accessors
-from segcore.io.gltf.scene import Instance, Primitive
+from segcore.io.gltf.poses import Part, Pose, Poses
+from segcore.io.gltf.scene import Primitive
 from segcore.io.palette import srgb
 
 _NORMAL, _UV, _COLOR = "NORMAL", "TEXCOORD_0", "COLOR_0"
 _KINDS = {_NORMAL: ("VEC3",), _UV: ("VEC2",), _COLOR: ("VEC4", "VEC3")}
 
 
-def gltf_appearance(parts: list[tuple[Instance, Primitive]], accessors: Accessors) -> Appearance | None:
+def gltf_appearance(parts: list[Part], poses: Poses, accessors: Accessors) -> Appearance | None:
     """Return the appearance of the vertices and faces of all primitives in the order of the reader, or None."""
-    blocks: dict[tuple[int, bytes], tuple[Instance, list[Primitive]]] = {}
-    for instance, primitive in parts:
-        key = (primitive.positions, instance.transform.tobytes())
-        blocks.setdefault(key, (instance, []))[1].append(primitive)
-    normals = _rows(list(blocks.values()), accessors, _NORMAL)
-    uvs = _rows(list(blocks.values()), accessors, _UV)
-    colors = _rows(list(blocks.values()), accessors, _COLOR)
-    groups = group_appearance([instance.name for instance, _ in parts], [part.face_count for _, part in parts])
+    blocks: dict[Pose, list[Primitive]] = {}
+    for part in parts:
+        blocks.setdefault(part.pose, []).append(part.primitive)
+    normals, uvs, colors = (_rows(blocks, poses, accessors, name) for name in (_NORMAL, _UV, _COLOR))
+    groups = group_appearance([part.instance.name for part in parts], [part.primitive.face_count for part in parts])
     return appearance_or_none(
         Appearance(
             normals=None if normals is None else unit_normals(normals),
@@ -44,32 +42,28 @@ def gltf_appearance(parts: list[tuple[Instance, Primitive]], accessors: Accessor
     )
 
 
-def _rows(blocks: list[tuple[Instance, list[Primitive]]], accessors: Accessors, name: str) -> FloatArray | None:
+def _rows(blocks: dict[Pose, list[Primitive]], poses: Poses, accessors: Accessors, name: str) -> FloatArray | None:
     """(V, *) an attribute of all vertices; None if a primitive lacks it, or two primitives contradict each other."""
-    rows = [_block(instance, primitives, accessors, name) for instance, primitives in blocks]
-    if any(values is None for values in rows) or len({values.shape[1] for values in rows if values is not None}) != 1:
-        return None
-    return np.concatenate([values for values in rows if values is not None])
+    rows: list[FloatArray] = []
+    for pose, primitives in blocks.items():
+        values = _block(pose, primitives, poses, accessors, name)
+        if values is None or (rows and values.shape[1] != rows[0].shape[1]):
+            return None
+        rows.append(values)
+    return np.concatenate(rows) if rows else None
 
 
-def _block(instance: Instance, primitives: list[Primitive], accessors: Accessors, name: str) -> FloatArray | None:
+def _block(pose: Pose, primitives: list[Primitive], poses: Poses, accessors: Accessors, name: str) -> FloatArray | None:
     sources = {primitive.attributes.get(name) for primitive in primitives}
     source = sources.pop()
     if sources or type(source) is not int:
         return None
     values = _values(accessors, source, name)
-    if values is None or len(values) != accessors.count(primitives[0].positions):
+    if values is None or len(values) != accessors.count(pose.positions):
         return None
-    if name != _NORMAL:
-        return values
-    return _transformed(values, instance.transform[:3, :3])
-
-
-def _transformed(normals: FloatArray, matrix: FloatArray) -> FloatArray | None:
-    """(V, 3) normals N after the transform M: rows of N inverse(M); None if M is singular."""
     try:
-        return transformed(normals, np.asarray(np.linalg.inv(matrix).T, dtype=np.float64))
-    except np.linalg.LinAlgError:
+        return poses.normals(pose, values) if name == _NORMAL else poses.morphed(pose, name, values)
+    except CleaveError:
         return None
 
 

@@ -21,6 +21,7 @@ _HARMLESS = (
 )  # fmt: skip
 _UNDERSTOOD = (
     "KHR_mesh_quantization", "KHR_draco_mesh_compression", "EXT_meshopt_compression", "KHR_meshopt_compression",
+    "EXT_mesh_gpu_instancing",
 )  # fmt: skip
 
 Item = dict[str, Any]
@@ -126,6 +127,14 @@ def numbers(item: Item, key: str, where: str, default: list[float]) -> list[floa
     if not isinstance(values, list) or len(values) != len(default) or not all(_is_finite(value) for value in values):
         _refuse(where, key, f"{len(default)} finite numbers")
     return [float(value) for value in values]
+
+
+def number_list(item: Item, key: str, where: str) -> tuple[float, ...]:
+    """Return the member ``key``: a list of finite numbers, empty if it is missing."""
+    values = item.get(key, [])
+    if not isinstance(values, list) or not all(_is_finite(value) for value in values):
+        _refuse(where, key, "a list of finite numbers")
+    return tuple(float(value) for value in values)
 
 
 def indices(item: Item, key: str, where: str) -> list[int]:

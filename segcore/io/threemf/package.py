@@ -54,6 +54,14 @@ class Package:
             )
         return _USUAL_MODEL
 
+    def names(self) -> list[str]:
+        """Return the names of all parts in a normal form: in lower case, without a slash at the beginning."""
+        return list(self._parts)
+
+    def size(self, name: str) -> int:
+        """Return the number of bytes that a part unpacks to, as the archive states it."""
+        return self._parts[_key(name)].file_size
+
     def chunks(self, name: str) -> Iterator[bytes]:
         """Yield the bytes of a part in pieces.
 

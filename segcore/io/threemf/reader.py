@@ -8,6 +8,7 @@ from segcore.errors import InvalidMesh, LimitExceeded
 from segcore.io.limits import ReadLimits
 from segcore.io.threemf.model import MaterialKey, Model, ModelObject, ObjectKey, Placed, parse_model
 from segcore.io.threemf.package import Package
+from segcore.io.threemf.slicer import leave_out_volumes
 from segcore.mesh import Mesh
 from segcore.structure import NO_ENTRY, file_structure, numbered_runs
 
@@ -19,8 +20,9 @@ def read_3mf(data: bytes, limits: ReadLimits, with_appearance: bool = False) -> 
 
     Face order: the items of the build, the components of each in their order, the triangles of each. An object that is
     placed several times is repeated. If a transform mirrors an object, the orientation of its faces is reversed, so
-    that their outside stays outside. Materials, textures and thumbnails are ignored; the appearance is the names of the
-    objects.
+    that their outside stays outside. Volumes of slicer projects that are no part of the body (negative volumes,
+    modifiers, support blockers, support enforcers) are left out and noted. Materials, textures and thumbnails are
+    ignored; the appearance is the names of the objects.
 
     Raises
     ------
@@ -36,7 +38,8 @@ def read_3mf(data: bytes, limits: ReadLimits, with_appearance: bool = False) -> 
         raise LimitExceeded(f"The 3MF file places objects more than {_MOST_PLACES} times: merge them into fewer.")
     placed = _meshes(objects, counts)
     if not placed:
-        raise InvalidMesh("The 3MF file builds no mesh: its build has no item with triangles.")
+        notes = "".join(f" {note}" for note in objects.notes)
+        raise InvalidMesh(f"The 3MF file builds no mesh: its build has no item with triangles.{notes}")
     return _assemble(placed, objects, with_appearance)
 
 
@@ -48,6 +51,7 @@ class _Objects:
         self._limits = limits
         self._materials: dict[MaterialKey, int] = {}
         self.root = self._parse(package.root_model(), "")
+        self.notes = tuple(leave_out_volumes(self.root, package))
         self._models = {"": self.root}
 
     def __getitem__(self, key: ObjectKey) -> ModelObject:
@@ -127,7 +131,11 @@ def _assemble(placed: list[Placed], objects: _Objects, with_appearance: bool) ->
     sizes = np.diff(face_end, prepend=0).tolist()
     appearance = group_appearance([source.name for source in sources], sizes) if with_appearance else None
     return Mesh(
-        vertices, faces, None, appearance, file_structure(numbered_runs(range(len(sizes)), sizes), _materials(sources))
+        vertices,
+        faces,
+        appearance=appearance,
+        structure=file_structure(numbered_runs(range(len(sizes)), sizes), _materials(sources)),
+        notes=objects.notes,
     )
 
 

@@ -44,7 +44,7 @@ class Asset:
         return self.add("bufferViews", entry)
 
     def accessor(self, rows: list[tuple[float, ...]], component: int, gap: int = 0, **more: object) -> int:
-        kind = {1: "SCALAR", 3: "VEC3"}[len(rows[0])]
+        kind = {1: "SCALAR", 2: "VEC2", 3: "VEC3", 4: "VEC4", 16: "MAT4"}[len(rows[0])]
         view = self.view(rows, component, gap)
         entry = {"bufferView": view, "componentType": component, "count": len(rows), "type": kind, **more}
         return self.add("accessors", entry)

@@ -1,12 +1,13 @@
 // Prints, for each of the files named in the JSON list on standard input, what the readers of three.js find in it:
-// {"path": [{"name": string, "corners": [x, y, z, ...], "colors": [hex, ...] | null}, ...]}, a part for every mesh,
+// {"path": [{"name": string, "corners": [x, y, z, ...], "colors": [hex, ...] | null}, ...]}, a part for every mesh and
+// every copy of one, with morph targets and skins as they are before anything moves,
 // and for GLB files what glTF Transform finds in the property table: {"path": {"names": [...], "ids": {mesh: [...]}}}.
 
 import fs from "node:fs";
 import { NodeIO } from "@gltf-transform/core";
 import { EXTMeshFeatures, EXTStructuralMetadata, KHRMaterialsVariants } from "@gltf-transform/extensions";
 import { DOMParser } from "linkedom";
-import { Color, SRGBColorSpace, Vector3 } from "three";
+import { Color, Matrix4, SRGBColorSpace, Vector3 } from "three";
 import { ThreeMFLoader } from "three/addons/loaders/3MFLoader.js";
 import { GLTFLoader } from "three/addons/loaders/GLTFLoader.js";
 import { OBJLoader } from "three/addons/loaders/OBJLoader.js";
@@ -17,7 +18,7 @@ globalThis.DOMParser = DOMParser;
 globalThis.self = globalThis;
 
 const io = new NodeIO().registerExtensions([EXTMeshFeatures, EXTStructuralMetadata, KHRMaterialsVariants]);
-const geometryOnly = (geometry) => [{ name: "", ...soup(geometry, (point) => point) }];
+const geometryOnly = (geometry) => [{ name: "", ...soup(geometry, (i) => new Vector3().fromBufferAttribute(geometry.attributes.position, i)) }];
 const readers = {
   glb: async (data) => parts((await new GLTFLoader().parseAsync(data, "")).scene),
   obj: (data) => parts(new OBJLoader().parse(new TextDecoder().decode(data))),
@@ -32,16 +33,28 @@ function parts(root) {
   root.traverse((object) => {
     if (!object.isMesh) return;
     const name = object.userData.name ?? object.name;
-    found.push({ name, ...soup(object.geometry, (point) => point.applyMatrix4(object.matrixWorld)) });
+    for (const matrix of places(object)) {
+      const place = (i) => object.getVertexPosition(i, new Vector3()).applyMatrix4(matrix);
+      found.push({ name, ...soup(object.geometry, place) });
+    }
   });
   return found;
+}
+
+function places(object) {
+  if (!object.isInstancedMesh) return [object.matrixWorld];
+  return Array.from({ length: object.count }, (_, i) => {
+    const own = new Matrix4();
+    object.getMatrixAt(i, own);
+    return own.premultiply(object.matrixWorld);
+  });
 }
 
 /** The corners of all triangles one after the other, and the colour of each triangle where there are any. */
 function soup(geometry, place) {
   const { position, color } = geometry.attributes;
   const order = geometry.index ? Array.from(geometry.index.array) : Array.from({ length: position.count }, (_, i) => i);
-  const corners = order.flatMap((i) => place(new Vector3().fromBufferAttribute(position, i)).toArray());
+  const corners = order.flatMap((i) => place(i).toArray());
   const hex = (i) => new Color().fromBufferAttribute(color, i).getHex(SRGBColorSpace);
   return { corners, colors: color ? order.filter((_, i) => i % 3 === 0).map(hex) : null };
 }

@@ -79,12 +79,6 @@ def test_instances_are_expanded_in_the_order_of_the_nodes() -> None:
     assert mesh.vertices[4:].tolist() == [[x + 10, y, z] for x, y, z in SQUARE.vertices]
 
 
-def test_the_transform_of_a_node_with_a_skin_is_ignored() -> None:
-    asset = square()
-    asset.document["nodes"][0] |= {"skin": 0, "translation": [5, 5, 5]}
-    assert read(asset.glb()).vertices.tolist() == [list(point) for point in SQUARE.vertices]
-
-
 def test_without_scenes_all_trees_of_nodes_count() -> None:
     asset = square()
     asset.add("nodes", {"children": [0], "scale": [2, 2, 2]})
@@ -123,7 +117,7 @@ def change(path: str, value: object) -> bytes:
         ("nodes.0.scale", [1e200, 1, 1], "coordinate"),
         ("nodes.0.rotation", [0, 0, 0, 0], r"nodes\[0\].rotation"),
         ("meshes.0.primitives", {}, r"meshes\[0\].primitives"),
-        ("meshes.0.primitives.0.attributes", {}, r"meshes\[0\].primitives\[0\].attributes.POSITION"),
+        ("meshes.0.primitives.0.attributes", {}, r"no faces.*without positions.*meshes\[0\].primitives\[0\]"),
         ("accessors.1.type", "VEC3", r"accessors\[1\].*SCALAR"),
         ("meshes.0.primitives.0.mode", 0, "no faces"),
         ("accessors.1.count", 5, "not a multiple of 3"),
@@ -148,7 +142,7 @@ def test_an_accessor_without_data_is_all_zero() -> None:
     assert not read(change("accessors.0.bufferView", ...)).vertices.any()
 
 
-@pytest.mark.parametrize("name", ["EXT_mesh_gpu_instancing", "VENDOR_boxes"])
+@pytest.mark.parametrize("name", ["EXT_implicit_cylinder_region", "VENDOR_boxes"])
 def test_an_extension_that_changes_the_geometry_is_refused_by_name(name: str) -> None:
     with pytest.raises(UnsupportedFormat, match=name):
         read(change("extensionsRequired", [name]))
