@@ -63,6 +63,13 @@ class Words:
             return values
         return self.floats(first, last)
 
+    def numbers_at(self, indices: LongArray) -> NDArray[Any]:
+        """The words at ``indices`` (N,) as int64 or float64; raises InvalidMesh as :meth:`numbers` does."""
+        values = np.empty(len(indices), np.int64)
+        if parse_integers(self.characters, self.start[indices], values):
+            return values
+        return self.floats_at(indices)
+
     def floats(self, first: int, last: int) -> FloatArray:
         """Words first..last - 1 as float64; raises InvalidMesh as :meth:`numbers` does."""
         return self._floats(self.start[first:last], lambda place: first + place)
