@@ -11,9 +11,11 @@ import pytest
 
 from helpers.files.polygon_soups import read
 from segcore.clean.surface import build_surface
+from segcore.io import WRITERS, read_result
 from segcore.io.mesh_writer import write_mesh
 from segcore.io.picture import draw
 from segcore.mesh import Mesh
+from segcore.method import segment
 from segcore.report import mesh_report
 from segcore.shapes import icosphere
 
@@ -59,6 +61,23 @@ def test_written_meshes_read_back(form: str) -> None:
     else:
         np.testing.assert_array_equal(back.vertices, mesh.vertices)
         np.testing.assert_array_equal(back.faces, mesh.faces)
+
+
+def test_the_segments_are_those_of_the_mesh_without_them_and_every_format_is_written() -> None:
+    plain, strayed = segment(BALL), segment(with_strays())
+    np.testing.assert_array_equal(strayed.labels(2), plain.labels(2))
+    written = {name: io.BytesIO() for name in WRITERS}
+    for name, target in written.items():
+        WRITERS[name].write(target, with_strays(), strayed, 2)
+    for name in ("glb", "ply", "obj"):
+        np.testing.assert_allclose(mesh_report(read(written[name].getvalue())).area, mesh_report(BALL).area, rtol=1e-5)
+    (size,) = struct.unpack_from("<I", written["glb"].getvalue(), 12)
+    document = json.loads(written["glb"].getvalue()[20 : 20 + size], parse_constant=pytest.fail)
+    bounds = [entry[key] for entry in document["accessors"] for key in ("min", "max") if key in entry]
+    assert np.abs(np.concatenate([np.ravel(bound) for bound in bounds if len(bound) == 3])).max() <= 1
+    json.loads(written["json"].getvalue(), parse_constant=pytest.fail)
+    back = read_result(io.BytesIO(written["cleave"].getvalue()))
+    np.testing.assert_array_equal(back.mesh.vertices, with_strays().vertices)
 
 
 FILES = {
