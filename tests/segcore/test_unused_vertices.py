@@ -11,6 +11,7 @@ import pytest
 
 from helpers.files.polygon_soups import read
 from segcore.clean.surface import build_surface
+from segcore.errors import InvalidMesh
 from segcore.io import WRITERS, read_result
 from segcore.io.mesh_writer import write_mesh
 from segcore.io.picture import draw
@@ -125,6 +126,15 @@ def threemf(bad: float) -> bytes:
         archive.writestr("_rels/.rels", relationships)
         archive.writestr("3D/3dmodel.model", MODEL.format(bad=bad))
     return target.getvalue()
+
+
+@pytest.mark.parametrize(
+    "word", ["-nan", "nan(ind)", "-nan(ind)", "-1.#IND", "1.#QNAN0", "1.#INF00", "-Infinity", "1e999"]
+)
+def test_numbers_that_are_not_finite_are_read_as_c_programs_print_them(word: str) -> None:
+    assert len(read(FILES["ply"].format(bad=word).encode()).vertices) == 4
+    with pytest.raises(InvalidMesh, match=r"Vertex 1 .* not finite"):
+        read(FILES["ply"].format(bad=1).replace("\n1 0 0\n", f"\n{word} 0 0\n").encode())
 
 
 @pytest.mark.parametrize("bad", [np.nan, np.inf, -np.inf])
