@@ -7,7 +7,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from segcore.appearance import Appearance
-from segcore.arrays import FloatArray, IntArray
+from segcore.arrays import BoolArray, FloatArray, IntArray
 from segcore.errors import InvalidMesh
 from segcore.structure import FileStructure
 
@@ -20,7 +20,8 @@ class Mesh:
 
     Parameters
     ----------
-    vertices : (V, 3) finite coordinates, any unit.
+    vertices : (V, 3) coordinates, any unit; finite for the vertices that faces use. Other vertices count for nothing:
+        they keep their place in the array, and those without a usable position get that of a vertex of the first face.
     faces : (F, 3) indices into ``vertices``, F >= 1. Repeated indices, duplicate faces, open borders,
         non-manifold edges and several components are allowed.
     source_polygon : (F,) the polygon of the file, counted from 0, that each face is a part of; None if every polygon is
@@ -51,18 +52,33 @@ class Mesh:
         structure: FileStructure | None = None,
         notes: tuple[str, ...] = (),
     ) -> None:
-        object.__setattr__(self, "vertices", _checked_vertices(vertices))
-        object.__setattr__(self, "faces", _checked_faces(faces, len(self.vertices)))
+        points = _checked_vertices(vertices)
+        object.__setattr__(self, "faces", _checked_faces(faces, len(points)))
+        points, moved = _with_usable_positions(points, self.faces)
+        object.__setattr__(self, "vertices", points)
         object.__setattr__(self, "source_polygon", _checked_polygons(source_polygon, len(self.faces)))
         object.__setattr__(self, "appearance", appearance)
         object.__setattr__(self, "structure", structure)
-        object.__setattr__(self, "notes", notes)
+        object.__setattr__(self, "notes", (*notes, *moved))
         if appearance is not None and not appearance.fits(len(self.vertices), len(self.faces)):
             raise InvalidMesh(
                 "The arrays of the appearance do not match the numbers of vertices and faces of the mesh."
             )
         if structure is not None and not structure.fits(len(self.faces)):
             raise InvalidMesh("The groups and materials do not match the number of faces of the mesh.")
+
+    @property
+    def is_used(self) -> BoolArray:
+        """(V,) True for the vertices that a face uses."""
+        used = np.zeros(len(self.vertices), dtype=bool)
+        used[self.faces] = True
+        return used
+
+    @property
+    def bounds(self) -> tuple[FloatArray, FloatArray]:
+        """The lowest and the highest coordinates (3,) of the vertices that faces use."""
+        points = self.vertices[self.is_used]
+        return points.min(axis=0), points.max(axis=0)
 
     @property
     def corners(self) -> FloatArray:
@@ -92,16 +108,33 @@ def _checked_vertices(values: ArrayLike) -> FloatArray:
         raise InvalidMesh(f"Vertices must be an array of shape (V, 3), not {vertices.shape}.")
     if vertices.dtype.kind not in "fiu":
         raise InvalidMesh(f"Vertices must be real numbers, not {vertices.dtype}.")
-    vertices = np.ascontiguousarray(vertices, dtype=np.float64)
-    if len(vertices) == 0:
-        return vertices
-    low, high = float(vertices.min()), float(vertices.max())  # NaN if any coordinate is NaN
-    if not (np.isfinite(low) and np.isfinite(high)):
-        first = int(np.argmin(np.isfinite(vertices).all(axis=1)))
+    return np.ascontiguousarray(vertices, dtype=np.float64)
+
+
+def _with_usable_positions(vertices: FloatArray, faces: IntArray) -> tuple[FloatArray, tuple[str, ...]]:
+    """The vertices, those without a usable position moved to a vertex of the first face, and a note if there are some.
+
+    Raises InvalidMesh if a face uses such a vertex.
+    """
+    if -_LARGEST_COORDINATE <= vertices.min() <= vertices.max() <= _LARGEST_COORDINATE:  # false if there is a NaN
+        return vertices, ()
+    is_usable = np.abs(vertices).max(axis=1) <= _LARGEST_COORDINATE
+    wrong = faces[~is_usable[faces]]
+    if len(wrong):
+        first = int(wrong.min())
+        if np.isfinite(vertices[first]).all():
+            raise InvalidMesh(
+                f"Vertex {first} has a coordinate larger than {_LARGEST_COORDINATE:g}: use a larger unit of length."
+            )
         raise InvalidMesh(f"Vertex {first} has a coordinate that is not finite: repair the mesh before sending it.")
-    if max(-low, high) > _LARGEST_COORDINATE:
-        raise InvalidMesh(f"A coordinate is larger than {_LARGEST_COORDINATE:g}: use a larger unit of length.")
-    return vertices
+    target = int(faces[0, 0])
+    moved = np.where(is_usable[:, None], vertices, vertices[target])
+    count = int((~is_usable).sum())
+    if count == 1:
+        return moved, (f"A vertex that no face uses is not finite or too far away: it was moved to vertex {target}.",)
+    return moved, (
+        f"{count} vertices that no face uses are not finite or too far away: they were moved to vertex {target}.",
+    )
 
 
 def _checked_faces(values: ArrayLike, vertex_count: int) -> IntArray:

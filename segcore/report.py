@@ -84,8 +84,7 @@ def mesh_report(mesh: Mesh, surface: Surface | None = None) -> MeshReport:
     non_manifold = len(np.unique(dual.vertices[~dual.is_manifold], axis=0))
     pairs, chained = int(dual.is_manifold.sum()), int((~dual.is_manifold).sum())
     border = 3 * len(faces) - 2 * pairs - chained - non_manifold  # m chained faces have m - 1 dual edges
-    used = np.zeros(len(mesh.vertices), dtype=bool)
-    used[mesh.faces] = True
+    used = mesh.is_used
     representatives = np.zeros(len(mesh.vertices), dtype=bool)
     representatives[corners] = True
     is_closed = bool(proper.any()) and border == 0 and non_manifold == 0

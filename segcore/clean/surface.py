@@ -51,8 +51,9 @@ def build_surface(mesh: Mesh) -> Surface:
 
     If no face has three different corners, the surface consists of the first face, which represents all others.
     """
-    unit, scaled = _normalized(mesh.vertices)
-    corners = weld(mesh.vertices, mesh.faces)[mesh.faces]
+    positions, corners = _compacted(mesh.vertices, mesh.faces)
+    unit, scaled = _normalized(positions)
+    corners = weld(positions, corners)[corners]
     kept, representative = distinct_faces(corners)
     vertices, faces = _compacted(scaled, corners[kept])
     joined = stitch(vertices, faces, dual_edges(faces, len(vertices)))
@@ -87,6 +88,8 @@ def _compacted(positions: FloatArray, faces: IntArray) -> tuple[FloatArray, IntA
     """The positions that some face uses, and the faces with indices into them."""
     used = np.zeros(len(positions), dtype=bool)
     used[faces] = True
+    if used.all():
+        return positions, faces
     return positions[used], (np.cumsum(used, dtype=np.int32) - 1)[faces]
 
 

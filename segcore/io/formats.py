@@ -31,7 +31,8 @@ FORMATS: dict[str, Format] = {
 }
 
 _BOM = b"\xef\xbb\xbf"
-_OFF = re.compile(rb"(?:\s++|#[^\r\n]*+[\r\n])*+(?:ST)?C?N?4?n?OFF")
+_OFF = re.compile(rb"(?:\s++|#[^\r\n]*+[\r\n])*+(?:ST|[CN4n])*+OFF")
+_PLY = re.compile(rb"ply[ \t]*+[\r\n]")
 _ASCII_STL = re.compile(rb"\s*+solid\b[^\r\n]*+[\r\n]\s*+(?:facet\s|endsolid\b)", re.IGNORECASE)
 _SOLID = re.compile(rb"\s*+solid\b", re.IGNORECASE)
 _OBJ = re.compile(rb"(?:\s++|#[^\r\n]*+[\r\n])*+(?:v|vt|vn|vp|f|l|p|g|o|s|mg|usemtl|mtllib)(?=[ \t])")
@@ -133,7 +134,7 @@ def _found(data: bytes) -> str | None:
         return "glb"
     if data.startswith(_ZIP) and b".model" in data:
         return "3mf"
-    if data.startswith((b"ply\n", b"ply\r")):
+    if _PLY.match(data):
         return "ply"
     if _fills_stl(data):
         return "stl"

@@ -59,7 +59,7 @@ def _encoder(target: str | os.PathLike[str] | BinaryIO, declared: str | None) ->
 
 
 def _checked_stl(mesh: Mesh) -> Iterator[bytes]:
-    check_coordinates(mesh.vertices)  # before the file is opened
+    check_coordinates(mesh)  # before the file is opened
     return encode_stl(mesh.vertices, mesh.faces)
 
 

@@ -42,8 +42,9 @@ def draw(mesh: Mesh, labels: IntArray, size: int = 512, azimuth: float = 30.0, e
     (size, size, 4) uint8, red, green, blue and opacity: an orthographic view of the whole mesh, y up.
     """
     view = _view(azimuth, elevation)
-    seen = transformed(mesh.vertices, view)
-    low, high = seen.min(axis=0), seen.max(axis=0)
+    seen = transformed(np.clip(mesh.vertices, *mesh.bounds), view)
+    used = seen[mesh.is_used]
+    low, high = used.min(axis=0), used.max(axis=0)
     resolution = size * _SAMPLES
     scale = resolution * (1 - 2 * _MARGIN) / max(float((high - low)[:2].max()), float(np.finfo(float).tiny))
     screen = (seen - 0.5 * (low + high)) * scale

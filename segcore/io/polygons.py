@@ -25,6 +25,7 @@ def mesh_of_polygons(
     limits: ReadLimits,
     appearance: Appearance | None = None,
     structure: FileStructure | None = None,
+    notes: tuple[str, ...] = (),
 ) -> Mesh:
     """Return the mesh whose faces are the fans of polygons, in their order.
 
@@ -42,11 +43,11 @@ def mesh_of_polygons(
     limits.check_vertices(len(vertices))
     if (polygons.sizes == 3).all():
         limits.check_faces(len(polygons.sizes))
-        return Mesh(vertices, polygons.corners.reshape(-1, 3), None, appearance, structure)
+        return Mesh(vertices, polygons.corners.reshape(-1, 3), None, appearance, structure, notes)
     triangles = np.maximum(polygons.sizes - 2, 0)
     limits.check_faces(int(triangles.sum()))
     source_polygon = np.repeat(np.arange(len(triangles), dtype=np.int32), triangles)
-    return Mesh(vertices, polygons.corners[fan_corners(polygons.sizes)], source_polygon, appearance, structure)
+    return Mesh(vertices, polygons.corners[fan_corners(polygons.sizes)], source_polygon, appearance, structure, notes)
 
 
 def ragged_range(start: LongArray, length: LongArray) -> LongArray:

@@ -24,9 +24,7 @@ class Placement:
 
 def place(mesh: Mesh) -> Placement:
     """Return the positions, moved to the centre and scaled only if they would be rounded visibly otherwise."""
-    used = np.zeros(len(mesh.vertices), dtype=bool)
-    used[mesh.faces] = True
-    low, high = mesh.vertices[used].min(axis=0), mesh.vertices[used].max(axis=0)
+    low, high = mesh.bounds
     extent = float((high - low).max())
     centre = 0.5 * low + 0.5 * high
     scale = 1.0 if extent == 0 or _PLAIN_EXTENT[0] <= extent <= _PLAIN_EXTENT[1] else extent
@@ -34,7 +32,7 @@ def place(mesh: Mesh) -> Placement:
         positions, translation = mesh.vertices, np.zeros(3)
     else:
         positions, translation = (np.clip(mesh.vertices, low, high) - centre) / scale, centre
-    inside = np.where(used[:, None], positions, (centre - translation) / scale)
+    inside = np.where(mesh.is_used[:, None], positions, (centre - translation) / scale)
     rows = inside.astype("<f4")
     if mesh.appearance is not None and len(mesh.appearance.extra_vertex):
         rows = np.concatenate([rows, rows[mesh.appearance.extra_vertex]])

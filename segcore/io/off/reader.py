@@ -15,11 +15,15 @@ from segcore.io.polygons import Polygons, mesh_of_polygons, ragged_range
 from segcore.io.text.words import Words, find_words, plain_text, whole_numbers, without_comments
 from segcore.mesh import Mesh
 
-_KEYWORD = re.compile(rb"\s*+(ST)?(C)?(N)?(4)?(n)?OFF(\s+BINARY)?")
+_KEYWORD = re.compile(rb"\s*+((?:ST|[CN4n])*+)OFF(\s+BINARY)?")
+_UNIT = 0.01  # largest deviation from the length 1 of a normal: files with two digits
 
 
 def read_off(data: bytes, limits: ReadLimits, with_appearance: bool = False) -> Mesh:
     """Read an OFF file, also with the prefixes ST, C and N: texture coordinates, colours and normals, the appearance.
+
+    The prefixes may be in any order. The number of edges may be missing. A vertex is its position, its normal, its
+    colour and its texture coordinates; the normal may also follow the colour.
 
     The prefixes give the number of words of a vertex, over any lines. If the file cannot be read so, each line is a
     vertex, and the words after its coordinates are ignored. A face ends with its line; the words after its indices are
@@ -35,56 +39,65 @@ def read_off(data: bytes, limits: ReadLimits, with_appearance: bool = False) -> 
     keyword = _KEYWORD.match(text)
     if keyword is None:
         raise InvalidMesh("The file does not begin with the word OFF: send an OFF file, or name its real format.")
-    texture, color, normal, *unread = keyword.groups()
-    if any(unread):
+    prefixes, binary = keyword.groups()
+    if binary or b"4" in prefixes or b"n" in prefixes:
         raise UnsupportedFormat(
             "OFF files in binary or with four or more dimensions cannot be read: save it as plain OFF."
         )
     words = find_words(text, keyword.end())
-    vertex_count, face_count = _counts(words, limits)
-    width = 3 + (2 if texture else 0) + (4 if color else 0) + (3 if normal else 0)
+    texture, color, normal = b"ST" in prefixes, b"C" in prefixes, b"N" in prefixes
+    body = _words_of_counts(words)
+    vertex_count, face_count = _counts(words, body, limits)
+    width = 3 + 2 * texture + 4 * color + 3 * normal
     problem = InvalidMesh(f"The OFF file ends within its {vertex_count} vertices: it is cut short.")
-    for first in (_vertex_words(words, vertex_count, width), _vertex_lines(words, vertex_count)):
+    for first in (_vertex_words(words, body, vertex_count, width), _vertex_lines(words, body, vertex_count)):
         try:
             if first is not None:
                 polygons = _polygons(words, int(first[-1]), face_count)
                 appearance = None
                 if with_appearance and (normal or color or texture):
-                    appearance = _appearance(words, first, bool(normal), bool(color), bool(texture))
+                    appearance = _appearance(words, first, normal, color, texture)
                 return mesh_of_polygons(_vertices(words, first), polygons, limits, appearance)
         except InvalidMesh as error:
             problem = error
     raise problem
 
 
-def _counts(words: Words, limits: ReadLimits) -> tuple[int, int]:
-    if words.count < 3:
+def _words_of_counts(words: Words) -> int:
+    """2 if the number of edges is missing: the first two words end a line, and the next line has more than one."""
+    ends_of_lines = words.line_start[1:4].tolist()
+    return 2 if 2 in ends_of_lines and 3 not in ends_of_lines else 3
+
+
+def _counts(words: Words, body: int, limits: ReadLimits) -> tuple[int, int]:
+    """The numbers of vertices and faces; ``body`` is the first word after them and the number of edges."""
+    if words.count < body:
         raise InvalidMesh("The OFF file ends before the numbers of vertices, faces and edges: it is cut short.")
-    counts = whole_numbers(words.numbers(0, 3))
+    counts = whole_numbers(words.numbers(0, body))
     if counts is None or (counts < 0).any():
         raise InvalidMesh(f"Line {words.line_number(0)}: the numbers of vertices, faces and edges must be whole.")
-    vertex_count, face_count, _ = counts.tolist()
+    vertex_count, face_count = counts[:2].tolist()
     limits.check_vertices(vertex_count)
     limits.check_faces(face_count)
-    if 3 * vertex_count + face_count > words.count - 3:
+    if 3 * vertex_count + face_count > words.count - body:
         raise InvalidMesh(
-            f"The OFF file announces {vertex_count} vertices and {face_count} faces, but has only {words.count - 3} "
+            f"The OFF file announces {vertex_count} vertices and {face_count} faces, but has only {words.count - body} "
             "numbers for them: it is cut short."
         )
     return vertex_count, face_count
 
 
-def _vertex_words(words: Words, count: int, width: int) -> LongArray | None:
+def _vertex_words(words: Words, body: int, count: int, width: int) -> LongArray | None:
     """(V + 1,) the first word of each vertex, then the word after the last one; None if there are too few words."""
-    first = 3 + width * np.arange(count + 1, dtype=np.int64)
+    first = body + width * np.arange(count + 1, dtype=np.int64)
     return first if first[-1] <= words.count else None
 
 
-def _vertex_lines(words: Words, count: int) -> LongArray | None:
+def _vertex_lines(words: Words, body: int, count: int) -> LongArray | None:
     """The same if each vertex is a line, else None."""
-    body = int(np.searchsorted(words.line_start, 3))
-    first = words.line_start[body : body + count + 1]
-    if len(first) <= count or first[0] != 3 or (np.diff(first) < 3).any():
+    line = int(np.searchsorted(words.line_start, body))
+    first = words.line_start[line : line + count + 1]
+    if len(first) <= count or first[0] != body or (np.diff(first) < 3).any():
         return None
     return first
 
@@ -101,14 +114,34 @@ def _appearance(words: Words, first: LongArray, normal: bool, color: bool, textu
         return None
     width = int(widths[0])
     table = words.floats(int(first[0]), int(first[-1])).reshape(-1, width)
-    begin, end = 3 + 3 * normal, width - 2 * texture
+    if width < 3 + 3 * normal + 2 * texture:
+        return None
+    normals_and_colors, uvs = np.split(table[:, 3:], [width - 3 - 2 * texture], axis=1)
+    colors = normals_and_colors
+    if normal:
+        normals, colors = np.split(normals_and_colors, [3], axis=1)
+        if color and _colors_precede_normals(normals_and_colors):
+            colors, normals = np.split(normals_and_colors, [-3], axis=1)
     return appearance_or_none(
         Appearance(
-            normals=unit_normals(table[:, 3:6]) if normal and begin <= end else None,
-            uvs=texture_coordinates(table[:, end:]) if texture and begin <= end else None,
-            colors=color_bytes(table[:, begin:end]) if color and begin <= end else None,
+            normals=unit_normals(normals) if normal else None,
+            uvs=texture_coordinates(uvs) if texture else None,
+            colors=color_bytes(colors) if color else None,
         )
     )
+
+
+def _colors_precede_normals(values: FloatArray) -> bool:
+    """Whether (V, K) are K - 3 colours and normals rather than normals and K - 3 colours.
+
+    Colours must be valid; if they are in both orders, more of the normals have the length 1 in the right one.
+    """
+    if color_bytes(values[:, :-3]) is None:
+        return False
+    first, last = (
+        int((np.abs(np.linalg.norm(part, axis=1) - 1) <= _UNIT).sum()) for part in (values[:, :3], values[:, -3:])
+    )
+    return last > first or (last == first and color_bytes(values[:, 3:]) is None)
 
 
 def _polygons(words: Words, first: int, count: int) -> Polygons:

@@ -47,7 +47,7 @@ def closed_parts(mesh: Mesh, hierarchy: Hierarchy, segments: int | None = None) 
     labels = hierarchy.labels(segments)
     count = len(hierarchy.segment_nodes(segments))
     surface = build_surface(mesh)
-    low, high = mesh.vertices.min(axis=0), mesh.vertices.max(axis=0)
+    low, high = mesh.bounds
     vertices = surface.vertices * surface.unit + (0.5 * low + 0.5 * high)  # the surface is centred on the box
     label_of_face = np.zeros(len(surface.faces), dtype=np.int32)
     label_of_face[surface.face_of_input[::-1]] = labels[::-1]  # if they differ, that of the first input face

@@ -47,7 +47,7 @@ def write_parts(
     if part_format not in get_args(PartFormat):
         raise InvalidParameters(f"Parts are written as {' or '.join(get_args(PartFormat))}, not {part_format!r}.")
     if part_format == "stl":
-        check_coordinates(mesh.vertices)
+        check_coordinates(mesh)
     count = len(hierarchy.segment_nodes(segments))
     parts = (closed_parts if capped else segment_parts)(mesh, hierarchy, segments)
     stems, called = file_stems(names, count), group_names(names, count)

@@ -11,7 +11,7 @@ _BYTE_ORDERS: dict[str, Literal["little", "big"]] = {"<": "little", ">": "big"}
 
 
 class BinaryBody:
-    """Reads the elements of a binary file in their order."""
+    """Reads the elements of a binary file in their order; bytes after the last one are ignored, as elsewhere."""
 
     def __init__(self, data: bytes, offset: int, byte_order: str) -> None:
         self._data = data
@@ -33,9 +33,6 @@ class BinaryBody:
         if element.count * least > room:
             raise cut_short(element, room // least)
         return self._equal_rows(element) or self._any_rows(element)
-
-    def finish(self) -> None:
-        """Ignore bytes after the last element, as other programs do."""
 
     def _equal_rows(self, element: Element) -> Rows | None:
         """All rows at once if their lists are as long as those of the first row, else None."""

@@ -1,5 +1,6 @@
 """The header of a PLY file: its elements and their properties."""
 
+import re
 from dataclasses import dataclass
 from typing import Any, Literal
 
@@ -14,6 +15,9 @@ _TYPES = {
     "int8": "i1", "uint8": "u1", "int16": "i2", "uint16": "u2", "int32": "i4", "uint32": "u4",
     "float": "f4", "float32": "f4", "double": "f8", "float64": "f8",
 }  # fmt: skip
+_FIRST_LINE = re.compile(rb"ply[ \t]*+(\r+\n|\n\r|\n|\r)")
+_LAST_LINE = re.compile(rb"(?<=[\r\n])end_header[ \t\v\f]*+(?=[\r\n])")
+_LINE_END, _LINE_END_OF_CR = re.compile(rb"\r+\n|\n\r|\n"), re.compile(rb"\r\n|\n|\r")
 _ENCODINGS: dict[str, Literal["", "<", ">"]] = {"ascii": "", "binary_little_endian": "<", "binary_big_endian": ">"}
 
 
@@ -51,6 +55,14 @@ class Rows:
     lists: dict[str, Lists]
 
 
+@dataclass(frozen=True, slots=True, eq=False)
+class Elements:
+    """The rows of all elements by name, and what was left out of the file."""
+
+    elements: dict[str, Rows]
+    notes: tuple[str, ...] = ()
+
+
 @dataclass(frozen=True, slots=True)
 class Header:
     byte_order: Literal["", "<", ">"]  # empty for text
@@ -76,7 +88,7 @@ def cut_short(element: Element, row: int) -> InvalidMesh:
 
 
 def read_header(data: bytes) -> Header:
-    """Read a PLY header; its lines end with a newline, a carriage return or both.
+    """Read a PLY header; its lines end with a newline, a carriage return or both in any order.
 
     Raises
     ------
@@ -105,15 +117,23 @@ def read_header(data: bytes) -> Header:
 
 
 def _split(data: bytes) -> tuple[list[str], int]:
-    """The lines before ``end_header``, and the offset of the first byte after its line."""
-    if not data.startswith((b"ply\n", b"ply\r")):
+    """The lines before ``end_header``, and the offset of the first byte after its line.
+
+    The line of ``end_header`` ends as the line before it does, because the first bytes of binary data may be a newline
+    or a carriage return too.
+    """
+    first = _FIRST_LINE.match(data)
+    if first is None:
         raise InvalidMesh("The file does not begin with the word 'ply': send a PLY file, or name its real format.")
-    newline = b"\r\n" if data.startswith(b"ply\r\n") else data[3:4]
-    end = data.find(newline + b"end_header")
-    after = data.find(newline, end + len(newline))
-    if end < 0 or after < 0 or data[end:after].strip() != b"end_header":
+    last = _LAST_LINE.search(data, first.end())
+    if last is None:
         raise InvalidMesh("The PLY header does not end with 'end_header': the file is cut short.")
-    return data[:end].decode("latin-1").split(newline.decode()), after + len(newline)
+    line_end = _LINE_END_OF_CR if first[1] == b"\r" else _LINE_END
+    header = data[: last.start()]
+    ends: list[bytes] = line_end.findall(header)
+    likely = (end for end in (*ends[:-2:-1], first[1], b"\r\n", b"\n", b"\r") if data.startswith(end, last.end()))
+    lines = [line.decode("latin-1") for line in line_end.split(header)]
+    return lines[:-1], last.end() + len(next(likely))
 
 
 def _encoding(word: str, number: int) -> Literal["", "<", ">"]:

@@ -10,8 +10,8 @@ from segcore.arrays import FloatArray, IntArray, LongArray
 from segcore.errors import InvalidMesh
 from segcore.io.limits import ReadLimits
 from segcore.io.ply.binary_elements import BinaryBody
-from segcore.io.ply.header import Header, Rows, read_header
-from segcore.io.ply.text_elements import TextBody
+from segcore.io.ply.header import Elements, Header, Rows, read_header
+from segcore.io.ply.text_elements import read_text_elements
 from segcore.io.polygons import Polygons, mesh_of_polygons, strip_faces
 from segcore.io.text.words import whole_numbers
 from segcore.mesh import Mesh
@@ -37,23 +37,24 @@ def read_ply(data: bytes, limits: ReadLimits, with_appearance: bool = False) -> 
     InvalidMesh, UnsupportedFormat, LimitExceeded
     """
     header = read_header(data)
-    rows = _read_elements(data, header, limits)
+    read = _read_elements(data, header, limits)
+    rows = read.elements
     if _VERTICES not in rows:
         raise InvalidMesh("The PLY file has no element 'vertex'.")
     vertices = _vertices(rows[_VERTICES])
     parts = [_polygons(name, rows[name]) for name in rows if name in (_FACES, _STRIPS)]
     appearance = _appearance(rows[_VERTICES]) if with_appearance else None
-    return mesh_of_polygons(vertices, _joined(parts), limits, appearance)
+    return mesh_of_polygons(vertices, _joined(parts), limits, appearance, notes=read.notes)
 
 
-def _read_elements(data: bytes, header: Header, limits: ReadLimits) -> dict[str, Rows]:
+def _read_elements(data: bytes, header: Header, limits: ReadLimits) -> Elements:
     for element in header.elements:
         if element.name in _LIMITS:
             limits.check(f"max_{_LIMITS[element.name]}", element.count, _LIMITS[element.name])
-    body = BinaryBody(data, header.size, header.byte_order) if header.byte_order else TextBody(data, header.size)
-    rows = {element.name: body.read(element) for element in header.elements}
-    body.finish()
-    return rows
+    if not header.byte_order:
+        return read_text_elements(data, header)
+    body = BinaryBody(data, header.size, header.byte_order)
+    return Elements({element.name: body.read(element) for element in header.elements})
 
 
 def _vertices(rows: Rows) -> FloatArray:

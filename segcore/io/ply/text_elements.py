@@ -1,24 +1,48 @@
 """Elements of PLY files in text."""
 
+from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
+from segcore.arrays import LongArray
 from segcore.errors import InvalidMesh
-from segcore.io.ply.header import Element, Lists, Rows, cut_short, empty_rows
+from segcore.io.ply.header import Element, Elements, Header, Lists, Property, Rows, cut_short, empty_rows
 from segcore.io.polygons import ragged_range
-from segcore.io.text.words import find_words, plain_text, whole_numbers
+from segcore.io.text.words import Words, find_words, plain_text, whole_numbers
 
 _BLANK = bytes(byte if byte in b"\r\n" else ord(" ") for byte in range(256))
+
+
+def read_text_elements(data: bytes, header: Header) -> Elements:
+    """Read the elements of a text file: each row on a line, or all rows as one stream of words over any lines.
+
+    If a row is a line, the words after those that the header declares are ignored.
+
+    Raises
+    ------
+    InvalidMesh
+        If the file ends before they do or goes on after them, or a word is not a number; the message has the place.
+    """
+    # Empty lines replace the header, so that the line numbers of errors are those of the file.
+    words = find_words(plain_text(data[: header.size].translate(_BLANK) + data[header.size :]))
+    if len(words.line_start) - 1 == sum(element.count for element in header.elements if element.properties):
+        try:
+            return _read_lines(words, header)
+        except InvalidMesh:
+            pass  # the lines are too short: the rows may have other lines
+    body = TextBody(words)
+    rows = {element.name: body.read(element) for element in header.elements}
+    body.finish()
+    return Elements(rows)
 
 
 class TextBody:
     """Reads the elements of a text file in their order; line ends are only white space."""
 
-    def __init__(self, data: bytes, offset: int) -> None:
-        # Empty lines replace the header, so that the line numbers of errors are those of the file.
-        self._words = find_words(plain_text(data[:offset].translate(_BLANK) + data[offset:]))
+    def __init__(self, words: Words) -> None:
+        self._words = words
         self._at = 0
 
     def read(self, element: Element) -> Rows:
@@ -46,31 +70,11 @@ class TextBody:
 
     def _equal_rows(self, element: Element) -> Rows | None:
         """All rows at once if their lists are as long as those of the first row, else None."""
-        at, columns = self._at, []
-        for entry in element.properties:
-            length = 1
-            if entry.count_type is not None:
-                if at >= self._words.count or (count := whole_numbers(self._words.numbers(at, at + 1))) is None:
-                    return None
-                length = int(count[0])
-                at += 1
-            columns.append((entry, at - self._at, length))
-            at += length
-        width = at - self._at
-        if min(length for _, _, length in columns) < 0 or element.count * width > self._words.count - self._at:
-            return None
-        table = self._words.numbers(self._at, self._at + element.count * width).reshape(element.count, width)
-        numbers, lists = {}, {}
-        for entry, first, length in columns:
-            values = table[:, first : first + length].reshape(-1)
-            if entry.count_type is None:
-                numbers[entry.name] = values
-            elif (table[:, first - 1] == length).all():
-                lists[entry.name] = Lists(values, np.full(element.count, length, dtype=np.int64))
-            else:
-                return None
-        self._at += element.count * width
-        return Rows(numbers, lists)
+        row = _row_at(self._words, self._at, element)
+        rows = None if row is None else _table(self._words, self._at, element, row)
+        if row is not None and rows is not None:
+            self._at += element.count * row.width
+        return rows
 
     def _any_rows(self, element: Element) -> Rows:
         """All rows, one at a time."""
@@ -106,3 +110,95 @@ class TextBody:
         self._at += at
         shape = (element.count, len(is_list))
         return np.array(heads, dtype=np.int64).reshape(shape), np.array(sizes, dtype=np.int64).reshape(shape)
+
+
+@dataclass(frozen=True, slots=True)
+class _Row:
+    """The places of the values of a row: the property, the first word of its values and their number."""
+
+    columns: tuple[tuple[Property, int, int], ...]
+    width: int  # words
+
+
+def _row_at(words: Words, first: int, element: Element) -> _Row | None:
+    """The row that begins at a word; None if there is none."""
+    at, columns = 0, []
+    for entry in element.properties:
+        length = 1
+        if entry.count_type is not None:
+            place = first + at
+            if place >= words.count or (count := whole_numbers(words.numbers(place, place + 1))) is None:
+                return None
+            length = int(count[0])
+            at += 1
+        columns.append((entry, at, length))
+        at += length
+    return _Row(tuple(columns), at) if min(length for _, _, length in columns) >= 0 else None
+
+
+def _table(words: Words, begin: int, element: Element, row: _Row) -> Rows | None:
+    """All rows of an element from a word on, if their lists are as long as those of the first row, else None."""
+    if element.count * row.width > words.count - begin:
+        return None
+    table = words.numbers(begin, begin + element.count * row.width).reshape(element.count, row.width)
+    numbers, lists = {}, {}
+    for entry, first, length in row.columns:
+        values = table[:, first : first + length].reshape(-1)
+        if entry.count_type is None:
+            numbers[entry.name] = values
+        elif (table[:, first - 1] == length).all():
+            lists[entry.name] = Lists(values, np.full(element.count, length, dtype=np.int64))
+        else:
+            return None
+    return Rows(numbers, lists)
+
+
+def _read_lines(words: Words, header: Header) -> Elements:
+    """The elements if each row is a line; raises InvalidMesh if a line is too short for its row."""
+    elements: dict[str, Rows] = {}
+    notes = []
+    line = 0
+    for element in header.elements:
+        if element.count == 0 or not element.properties:
+            elements[element.name] = empty_rows(element)
+            continue
+        starts = words.line_start[line : line + element.count + 1].astype(np.int64)
+        line += element.count
+        row = _row_at(words, int(starts[0]), element)
+        rows = None
+        if row is not None and (np.diff(starts) == row.width).all():
+            rows = _table(words, int(starts[0]), element, row)
+        if rows is None:
+            rows, ends = _columns(words, starts, element)
+            longer = np.flatnonzero(ends < starts[1:])
+            if len(longer):
+                notes.append(_note(element, len(longer), words.line_number(int(ends[longer[0]]))))
+        elements[element.name] = rows
+    return Elements(elements, tuple(notes))
+
+
+def _columns(words: Words, starts: LongArray, element: Element) -> tuple[Rows, LongArray]:
+    """The rows of an element, each from the first word of its line on, and (count,) the words after them."""
+    at, limit = starts[:-1], starts[1:]
+    numbers, lists = {}, {}
+    for entry in element.properties:
+        sizes: LongArray | None = np.ones(len(at), dtype=np.int64)
+        if entry.count_type is not None:
+            if (at >= limit).any():
+                raise InvalidMesh("A line is shorter than its row.")
+            sizes = whole_numbers(words.numbers_at(at))
+            at = at + 1
+        if sizes is None or (sizes < 0).any() or (sizes > limit - at).any():
+            raise InvalidMesh("A line is shorter than its row.")
+        values = words.numbers_at(at if entry.count_type is None else ragged_range(at, sizes))
+        if entry.count_type is None:
+            numbers[entry.name] = values
+        else:
+            lists[entry.name] = Lists(values, sizes)
+        at = at + sizes
+    return Rows(numbers, lists), at
+
+
+def _note(element: Element, count: int, line: int) -> str:
+    rows = f"{count} of the {element.count} lines of the element {element.name[:40]!r}"
+    return f"{rows} have more values than the header declares, first line {line}: the rest of each line was ignored."

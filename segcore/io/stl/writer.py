@@ -7,7 +7,7 @@ import numpy as np
 from segcore.arrays import FloatArray, IntArray
 from segcore.errors import InvalidParameters
 from segcore.io.stl.reader import FACE, HEADER
-from segcore.mesh import face_normals_and_areas
+from segcore.mesh import Mesh, face_normals_and_areas
 
 _LARGEST = float(np.finfo(np.float32).max)
 _ROWS = 2**14  # faces in a piece, 0.8 MB
@@ -33,7 +33,7 @@ def encode_stl(vertices: FloatArray, faces: IntArray, note: bytes = _NOTE) -> It
         yield table.tobytes()
 
 
-def check_coordinates(vertices: FloatArray) -> None:
-    """Raise InvalidParameters if a coordinate is outside the range of float32."""
-    if np.abs(vertices).max() > _LARGEST:
+def check_coordinates(mesh: Mesh) -> None:
+    """Raise InvalidParameters if a coordinate of a face is outside the range of float32."""
+    if np.abs(mesh.bounds).max() > _LARGEST:
         raise InvalidParameters(f"STL files hold coordinates up to {_LARGEST:.3g}: choose OBJ.")

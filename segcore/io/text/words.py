@@ -1,5 +1,6 @@
 """The words of a text file, parsed as numbers in bulk."""
 
+import math
 import re
 from collections.abc import Callable
 from dataclasses import dataclass
@@ -17,6 +18,7 @@ _WHITE_SPACE = b" \t\n\v\f\r"
 _NO_CONTROLS = _WHITE_SPACE + bytes(range(33, 256))
 _PADDING = b"\0\x1a"  # of blocks, and the end-of-file mark of DOS
 _NUMBER = re.compile(r"[-+]?((\d+\.?\d*|\.\d+)(e[-+]?\d+)?|nan|inf(inity)?)", re.ASCII | re.IGNORECASE)
+_NOT_FINITE = re.compile(r"[-+]?(nan\(\w*\)|1\.#(qnan|snan|ind|inf)\d*)", re.ASCII | re.IGNORECASE)  # as C prints them
 _EXACT = 2.0**53  # whole numbers up to here are exact in float64
 
 
@@ -63,6 +65,13 @@ class Words:
             return values
         return self.floats(first, last)
 
+    def numbers_at(self, indices: LongArray) -> NDArray[Any]:
+        """The words at ``indices`` (N,) as int64 or float64; raises InvalidMesh as :meth:`numbers` does."""
+        values = np.empty(len(indices), np.int64)
+        if parse_integers(self.characters, self.start[indices], values):
+            return values
+        return self.floats_at(indices)
+
     def floats(self, first: int, last: int) -> FloatArray:
         """Words first..last - 1 as float64; raises InvalidMesh as :meth:`numbers` does."""
         return self._floats(self.start[first:last], lambda place: first + place)
@@ -80,8 +89,13 @@ class Words:
         return values
 
     def float(self, index: int) -> float:
-        """One word as a number, including ``inf`` and ``nan``; raises InvalidMesh with its line if it is not one."""
+        """One word as a number, including ``inf`` and ``nan`` as C programs print them.
+
+        Raises InvalidMesh with its line if it is not one.
+        """
         word = self.word(index)
+        if _NOT_FINITE.fullmatch(word):
+            return math.nan
         if not _NUMBER.fullmatch(word):
             raise InvalidMesh(f"Line {self.line_number(index)}: {word[:40]!r} is not a number.")
         return float(word)

@@ -21,9 +21,7 @@ _NUMBER = re.compile(rb"[-+]?(\d+\.?\d*|\.\d+)([eE][-+]?\d+)?")
 
 def number(word: bytes) -> float:
     assert _NUMBER.fullmatch(word), word
-    value = float(word)
-    assert abs(value) <= 1e100
-    return value
+    return float(word)
 
 
 def whole(word: bytes) -> int:
@@ -39,7 +37,13 @@ def fan(polygon: list[int]) -> list[Triangle]:
 def checked(vertices: list[Point], faces: list[Triangle]) -> Result:
     assert faces
     assert all(0 <= corner < len(vertices) for face in faces for corner in face)
-    return vertices, faces
+    used = {corner for face in faces for corner in face}
+    assert all(_is_usable(vertices[corner]) for corner in used)
+    return [point if _is_usable(point) else vertices[faces[0][0]] for point in vertices], faces
+
+
+def _is_usable(point: Point) -> bool:
+    return all(abs(value) <= 1e100 for value in point)
 
 
 def lines_of(data: bytes) -> list[bytes]:
@@ -50,25 +54,29 @@ def lines_of(data: bytes) -> list[bytes]:
 
 def slow_off(data: bytes) -> Result:
     text = b"\n".join(line.partition(b"#")[0] for line in lines_of(data))
-    keyword = re.match(rb"\s*(ST)?(C)?(N)?OFF(?!\s+BINARY)", text)
+    keyword = re.match(rb"\s*((?:ST|C|N)*)OFF(?!\s+BINARY)", text)
     assert keyword
+    prefixes = keyword[1]
     rest = text[keyword.end() :].split(b"\n")
     words = [(row, word) for row, line in enumerate(rest) for word in line.split()]
-    vertex_count, face_count, _ = (whole(word) for _, word in words[:3])
+    lines = [row for row, _ in words]
+    has_edges = lines[1] == lines[2] or lines.count(lines[2]) == 1
+    at = 3 if has_edges else 2
+    vertex_count, face_count = [whole(word) for _, word in words[:at]][:2]
     assert vertex_count >= 0
     assert face_count >= 0
-    width = 3 + 2 * bool(keyword[1]) + 4 * bool(keyword[2]) + 3 * bool(keyword[3])
-    first = [3 + width * i for i in range(vertex_count)]
+    width = 3 + 2 * (b"ST" in prefixes) + 4 * (b"C" in prefixes) + 3 * (b"N" in prefixes)
+    first = [at + width * i for i in range(vertex_count)]
     try:
-        assert 3 + width * vertex_count <= len(words)
-        return _off_faces(words, first, 3 + width * vertex_count, face_count)
+        assert at + width * vertex_count <= len(words)
+        return _off_faces(words, first, at + width * vertex_count, face_count)
     except (AssertionError, IndexError, ValueError):
-        return _off_with_vertex_lines(words, vertex_count, face_count)
+        return _off_with_vertex_lines(words, at, vertex_count, face_count)
 
 
-def _off_with_vertex_lines(words: list[tuple[int, bytes]], vertex_count: int, face_count: int) -> Result:
-    assert words[3][0] != words[2][0]
-    first, at = [], 3
+def _off_with_vertex_lines(words: list[tuple[int, bytes]], at: int, vertex_count: int, face_count: int) -> Result:
+    assert words[at][0] != words[at - 1][0]
+    first = []
     for _ in range(vertex_count):
         first.append(at)
         row = words[at][0]
@@ -127,14 +135,17 @@ _PLY = {
 
 
 def slow_ply(data: bytes) -> Result:
-    newline = b"\r\n" if data[3:5] == b"\r\n" else data[3:4]
-    end = re.search(newline + rb"end_header[ \t\v\f]*" + newline, data)
+    first = re.match(rb"ply[ \t]*(\r+\n|\n\r|\n|\r)", data)
+    end = re.search(rb"[\r\n](end_header[ \t\v\f]*)[\r\n]", data)
+    assert first
     assert end
-    header, body = data[: end.start()], data[end.end() :]
-    assert header.startswith(b"ply")
+    newline = rb"\r\n|\n|\r" if first[1] == b"\r" else rb"\r+\n|\n\r|\n"
+    header, rest = data[: end.start(1)], data[end.end(1) :]
+    endings = [re.findall(newline, header)[-1], first[1], b"\r\n", b"\n", b"\r"]
+    body = rest.removeprefix(next(ending for ending in endings if rest.startswith(ending)))
     elements: list[tuple[bytes, int, list[list[bytes]]]] = []
     encoding = b""
-    for line in header.split(newline)[1:]:
+    for line in re.split(newline, header)[1:]:
         words = line.split()
         if words[:1] == [b"format"]:
             encoding = words[1]
@@ -148,12 +159,17 @@ def slow_ply(data: bytes) -> Result:
             elements[-1][2].append(words[1:])
         else:
             assert not words or words[0] in (b"comment", b"obj_info")
-    take = _take_words(body) if encoding == b"ascii" else _take_bytes(body, encoding)
-    rows = {name: [_ply_row(properties, take) for _ in range(count)] for name, count, properties in elements}
     if encoding == b"ascii":
-        with_nothing_left(take)
+        try:
+            rows = _rows_of_lines(data, len(header), elements)
+        except (AssertionError, ValueError):
+            take = _take_words(body)
+            rows = {name: [_ply_row(properties, take) for _ in range(count)] for name, count, properties in elements}
+            with_nothing_left(take)
+    else:
+        take = _take_bytes(body, encoding)
+        rows = {name: [_ply_row(properties, take) for _ in range(count)] for name, count, properties in elements}
     vertices = [(float(row[b"x"]), float(row[b"y"]), float(row[b"z"])) for row in rows[b"vertex"]]
-    assert all(abs(value) <= 1e100 for vertex in vertices for value in vertex)
     faces: list[Triangle] = []
     for name, listed in rows.items():
         for row in listed:
@@ -163,6 +179,17 @@ def slow_ply(data: bytes) -> Result:
                 corners = [int(index) for index in indices]
                 faces += fan(corners) if name == b"face" else _strips(corners)
     return checked(vertices, faces)
+
+
+def _rows_of_lines(data: bytes, begin: int, elements: list[tuple[bytes, int, list[list[bytes]]]]) -> dict:
+    """The rows if there is exactly one line for each of them; what a line has too much is ignored."""
+    lines = [line for line in lines_of(b" " * begin + data[begin:].replace(b"end_header", b" ", 1)) if line.split()]
+    wanted = [(name, properties) for name, count, properties in elements if properties for _ in range(count)]
+    assert len(lines) == len(wanted)
+    rows: dict[bytes, list] = {name: [] for name, _, _ in elements}
+    for line, (name, properties) in zip(lines, wanted, strict=True):
+        rows[name].append(_ply_row(properties, _take_words(line)))
+    return rows
 
 
 def _strips(corners: list[int]) -> list[Triangle]:
@@ -247,6 +274,7 @@ def slow_ascii_stl(data: bytes) -> Result:
         begin = len(vertices)
         while words[at] == b"vertex":
             x, y, z = (number(word) for word in words[at + 1 : at + 4])
+            assert _is_usable((x, y, z))
             vertices.append((x, y, z))
             at += 4
         assert words[at : at + 2] == [b"endloop", b"endfacet"]

@@ -17,6 +17,7 @@ MIXED = (
     b"COFF # made by hand\n5 3 9\n0 0 0 1 0 0 1\n1 0 0 1 0 0 1\n1 1 0 1 0 0 1\n0 1 0 1 0 0 1\n.5 .5 1 0 1 0 1\n"
     b"4 0 1 2 3 255 0 0\n3 0 1 4 0.5 0.5 0.5 1\n5 0 1 2 3 4\n"
 )
+TWO_COUNTS = SQUARE.replace(b"4 2 0", b"4 2")
 line_ends = st.sampled_from(["\n", "\r\n", "\n\n", " \t\n", "\n# a comment 1 2 3\n", " # 7\n"])
 gaps = st.sampled_from([" ", "  ", "\t", " \t "])
 colors = st.sampled_from(["", " 7", " 255 0 0", " 0.5 0.25 1", " 1 0 0 0.5"])
@@ -26,9 +27,11 @@ colors = st.sampled_from(["", " 7", " 255 0 0", " 0.5 0.25 1", " 1 0 0 0.5"])
 def off_files(draw: st.DrawFn, soup: Soup) -> bytes:
     """The soup with any prefix, gaps, line ends, comments and face colours."""
     texture, color, normal = (draw(st.sampled_from(["", prefix])) for prefix in ("ST", "C", "N"))
+    prefixes = "".join(draw(st.permutations([texture, color, normal])))
     extra = (3 if normal else 0) + (4 if color else 0) + (2 if texture else 0)
-    counts = f"{len(soup.vertices)} {len(soup.polygons)} 0"
-    lines = [f"{texture}{color}{normal}OFF{draw(st.sampled_from([' ', chr(10)]))}{counts}"]
+    edges = draw(st.sampled_from([" 0", ""])) if len(soup.vertices) else " 0"
+    counts = f"{len(soup.vertices)} {len(soup.polygons)}{edges}"
+    lines = [f"{prefixes}OFF{draw(st.sampled_from([' ', chr(10)]))}{counts}"]
     lines += [" ".join(map(repr, vertex)) + " 0.5" * extra for vertex in soup.vertices]
     lines += [draw(gaps).join(map(str, [len(p), *p])) + draw(colors) for p in soup.polygons]
     return "".join(line + draw(line_ends) for line in lines).encode()
@@ -61,13 +64,14 @@ def test_records_may_be_broken_over_lines(data: st.DataObject, soup: Soup) -> No
     assert slow_off(file) == (soup.vertices, soup.triangles)
 
 
-@given(damaged([SQUARE, MIXED, SQUARE.replace(b"\n", b"\r\n")], b" \n\r\t#0123456789.-+eEOFCNST\0\xff"))
+@given(damaged([SQUARE, MIXED, TWO_COUNTS, SQUARE.replace(b"\n", b"\r\n")], b" \n\r\t#0123456789.-+eEOFCNST\0\xff"))
 def test_a_damaged_file_is_read_as_it_stands_or_refused(data: bytes) -> None:
     assert_agrees(data, "off", slow_off)
 
 
-def test_a_cut_file_is_never_half_read() -> None:
-    assert_never_half_read(SQUARE, SOUP, "off")
+@pytest.mark.parametrize("data", [SQUARE, TWO_COUNTS], ids=["three counts", "two counts"])
+def test_a_cut_file_is_never_half_read(data: bytes) -> None:
+    assert_never_half_read(data, SOUP, "off")
 
 
 @pytest.mark.parametrize(
@@ -83,6 +87,13 @@ def test_a_cut_file_is_never_half_read() -> None:
         b"# a comment before the keyword\n\n" + SQUARE,
         b"COFF\n4 2 0\n0 0 0 9 9 9\n1 0 0 9 9 9\n1 1 0 9 9 9\n0 1 .5 9 9 9\n3 0 1 2\n3 0 2 3\n",
         SQUARE.replace(b"1 0 0", b"1 0 0 0.5 0.5 0.5"),
+        TWO_COUNTS,
+        TWO_COUNTS.replace(b"OFF\n", b"OFF "),
+        TWO_COUNTS.replace(b"4 2\n", b"4 2  # vertices and faces\n\n# no edges\n"),
+        SQUARE.replace(b"4 2 0", b"4\n2\n0"),
+        SQUARE.replace(b"4 2 0", b"4 2\n0"),
+        SQUARE.replace(b"4 2 0", b"4\n2 0"),
+        SQUARE.replace(b"4 2 0", b"4\n2"),
     ],
     ids=[
         "no end of line",
@@ -95,6 +106,13 @@ def test_a_cut_file_is_never_half_read() -> None:
         "comment",
         "RGB",
         "undeclared",
+        "no edges",
+        "no edges, on the first line",
+        "no edges, comments",
+        "a count a line",
+        "edges on a line of their own",
+        "vertices on a line of their own",
+        "no edges, a count a line",
     ],
 )
 def test_usual_variants_are_read(data: bytes) -> None:
@@ -146,7 +164,7 @@ def test_counts_beyond_the_limits_are_refused_by_name() -> None:
             read(SQUARE, limits=limits)
 
 
-@pytest.mark.parametrize("keyword", [b"4OFF", b"nOFF", b"OFF BINARY"])
+@pytest.mark.parametrize("keyword", [b"4OFF", b"nOFF", b"OFF BINARY", b"N4OFF", b"CnSTOFF"])
 def test_other_kinds_of_off_are_refused_as_such(keyword: bytes) -> None:
     with pytest.raises(UnsupportedFormat, match="plain OFF"):
         read(SQUARE.replace(b"OFF", keyword))
@@ -164,3 +182,34 @@ def test_off_with_all_prefixes() -> None:
 def test_off_with_colours_of_three_numbers(colors: str, expected: list[int]) -> None:
     data = f"COFF\n3 1 0\n0 0 0 {colors}\n1 0 0 {colors}\n0 1 0 {colors}\n3 0 1 2\n".encode()
     assert read_look(data).colors.tolist() == [expected] * 3
+
+
+@pytest.mark.parametrize("keyword", ["NCOFF", "CNOFF"])
+@pytest.mark.parametrize("row", ["{normal} {color}", "{color} {normal}"])
+@pytest.mark.parametrize(
+    ("color", "expected"),
+    [
+        ("255 0 0 128", [255, 0, 0, 128]),
+        ("0.2 1 0 1", [51, 255, 0, 255]),
+        ("1 0 0 1", [255, 0, 0, 255]),
+        ("10 20 30", [10, 20, 30, 255]),
+    ],
+)
+def test_normals_and_colours_in_any_order(keyword: str, row: str, color: str, expected: list[int]) -> None:
+    normals = ["0 0 1", "0 0.6 0.8", "-0.57735 0.57735 0.57735"]
+    places = ["0 0 0", "1 0 0", "0 1 0"]
+    rows = [f"{place} {row.format(normal=normal, color=color)}" for place, normal in zip(places, normals, strict=True)]
+    data = "\n".join([keyword, "3 1 0", *rows, "3 0 1 2\n"]).encode()
+    look = read_look(data)
+    assert look.colors.tolist() == [expected] * 3
+    assert look.normals[1].tolist() == pytest.approx([0, 0.6, 0.8])
+    assert read(data).vertices.tolist() == [[0, 0, 0], [1, 0, 0], [0, 1, 0]]
+
+
+@pytest.mark.parametrize("keyword", ["NCSTOFF", "CSTNOFF", "NSTCOFF", "STNCOFF"])
+def test_texture_coordinates_are_last_with_any_order_of_the_prefixes(keyword: str) -> None:
+    rows = ["0 0 0  0 0 1  255 0 0 128  0 1", "1 0 0  0 1 0  0 255 0 255  .5 .25", "0 1 0  1 0 0  1 2 3 4  1 1"]
+    look = read_look((f"{keyword}\n3 1\n" + "\n".join(rows) + "\n3 0 1 2\n").encode())
+    assert look.normals.tolist() == [[0, 0, 1], [0, 1, 0], [1, 0, 0]]
+    assert look.colors.tolist() == [[255, 0, 0, 128], [0, 255, 0, 255], [1, 2, 3, 4]]
+    assert look.uvs.tolist() == [[0, 1], [0.5, 0.25], [1, 1]]

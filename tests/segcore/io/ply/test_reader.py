@@ -30,6 +30,7 @@ MIXED_ELEMENTS: list[tuple[str, Properties, Rows]] = [
     ),
     ("edge", [("int", "vertex1"), ("int", "vertex2")], [[0, 1]]),
 ]
+LONG_LINES = SQUARES["ascii"].replace(b"3 0 1 2\n", b"3 0 1 2 9 9\n").replace(b"3 0 2 3\n", b"3 0 2 3 9\n")
 MIXED = [ply(name, MIXED_ELEMENTS) for name in ENCODINGS]
 
 
@@ -58,7 +59,9 @@ def ply_files(draw: st.DrawFn, soup: Soup) -> bytes:
         if name not in [element[0] for element in elements]:
             rows = [[[1] * draw(st.integers(0, 2)), 2.5] for _ in range(draw(st.integers(0, 2)))]
             elements.insert(draw(st.integers(0, 2)), (name, [("list", "uint8", "int", "l"), ("float", "w")], rows))
-    return ply(draw(st.sampled_from(list(ENCODINGS))), elements, draw(st.sampled_from(["\n", "\r\n", "\r"])), "a b")
+    return ply(
+        draw(st.sampled_from(list(ENCODINGS))), elements, draw(st.sampled_from(["\n", "\r\n", "\r", "\n\r"])), "a b"
+    )
 
 
 @given(data=st.data(), soup=soups())
@@ -68,7 +71,7 @@ def test_every_vertex_and_face_keeps_its_place_in_any_layout(data: st.DataObject
     assert slow_ply(file) == (soup.vertices, soup.triangles)
 
 
-@given(damaged([SQUARES["ascii"], MIXED[0]], b" \n\r\t0123456789.-+exyzlist\0\xff"))
+@given(damaged([SQUARES["ascii"], MIXED[0], LONG_LINES], b" \n\r\t0123456789.-+exyzlist\0\xff"))
 def test_a_damaged_text_is_read_as_it_stands_or_refused(data: bytes) -> None:
     assert_agrees(data, "ply", slow_ply)
 
@@ -160,3 +163,65 @@ def test_ply_colours_of_any_type(kind: str, value: float, expected: int) -> None
     rows = [[*vertex, value, 0, top] for vertex in SOUP.vertices]
     data = ply("binary_big_endian", [("vertex", columns, rows), ("face", INDICES, [[[0, 1, 2]]])])
     assert read_look(data).colors.tolist() == [[expected, 0, 255, 255]] * 4
+
+
+@pytest.mark.parametrize("line_end", ["\n", "\r", "\r\n", "\n\r", "\r\r\n"])
+@pytest.mark.parametrize("x", [0x0A0A0A0A, 0x0D0D0D0D, 0x0A0D0A0D, 0x0D0A0D0A])
+def test_the_first_bytes_of_binary_data_may_look_like_line_ends(line_end: str, x: int) -> None:
+    columns: Properties = [("uint32", "x"), ("uint32", "y"), ("uint32", "z")]
+    corners: Rows = [[x, 0, 0], [0, 1, 0], [0, 0, 1]]
+    data = ply("binary_big_endian", [("vertex", columns, corners), ("face", INDICES, [[[0, 1, 2]]])])
+    begin = data.index(b"end_header\n") + len(b"end_header\n")
+    header = data[:begin].replace(b"\n", line_end.encode())
+    assert_same_mesh(read(header + data[begin:]), [tuple(corner) for corner in corners], [(0, 1, 2)])
+
+
+@pytest.mark.parametrize("encoding", ENCODINGS)
+def test_a_header_may_have_line_ends_of_two_kinds(encoding: str) -> None:
+    data = SQUARES[encoding]
+    begin = data.index(b"element")
+    end = data.index(b"end_header\n") + len(b"end_header\n")
+    assert_is_soup(read(data[:begin] + data[begin:end].replace(b"\n", b"\r\n") + data[end:]), SOUP)
+    assert_is_soup(read(data[:begin].replace(b"\n", b"\r\n") + data[begin:]), SOUP)
+
+
+def test_what_a_line_has_too_much_is_ignored_with_a_note() -> None:
+    mesh = read(LONG_LINES)
+    assert_is_soup(mesh, SOUP)
+    assert mesh.notes == (
+        "2 of the 2 lines of the element 'face' have more values than the header declares, first line 16: "
+        "the rest of each line was ignored.",
+    )
+    assert read(SQUARES["ascii"]).notes == ()
+
+
+@pytest.mark.parametrize("more", ["255 255 255", "0", "3 0 1 2", "white", "nan"])
+def test_every_line_may_have_more_values_than_declared(more: str) -> None:
+    head, body = SQUARES["ascii"].decode().split("end_header\n")
+    lines = "".join(f"{line} {more}\n" for line in body.splitlines())
+    mesh = read(f"{head}end_header\n{lines}".encode())
+    assert_is_soup(mesh, SOUP)
+    assert len(mesh.notes) == 2
+
+
+def test_lists_of_other_values_than_declared_do_not_move_the_next_line() -> None:
+    head = SQUARES["ascii"].decode().split("element face")[0]
+    head += "element face 2\nproperty list uchar int vertex_indices\nproperty list uchar float texcoord\n"
+    head += "".join(f"property uchar {name}\n" for name in ("red", "green", "blue", "alpha")) + "end_header\n"
+    points = "0 0 0\n1 0 0\n1 1 0\n0 1 0\n"
+    faces = f"3 0 1 2 6 {'0.5 ' * 6}9 {'1 ' * 9}\n4 0 1 2 3 8 {'0.5 ' * 8}12 {'1 ' * 12}\n"
+    mesh = read((head + points + faces).encode())
+    assert mesh.faces.tolist() == [[0, 1, 2], [0, 1, 2], [0, 2, 3]]
+    assert mesh.source_polygon is not None
+    assert mesh.source_polygon.tolist() == [0, 1, 1]
+
+
+def test_colours_are_the_same_if_lines_are_too_long() -> None:
+    columns = [*XYZ, ("uint8", "red"), ("uint8", "green"), ("uint8", "blue")]
+    rows = [[*vertex, 51, 0, 255] for vertex in SOUP.vertices]
+    data = ply("ascii", [("vertex", columns, rows), ("face", INDICES, [[[0, 1, 2]]])])
+    longer = data.replace(b"3 0 1 2\n", b"3 0 1 2 7\n")
+    assert read_look(longer).colors.tolist() == read_look(data).colors.tolist()
+    head, body = data.split(b"end_header\n")
+    every = head + b"end_header\n" + body.replace(b"\n", b" 7\n")
+    assert read_look(every).colors.tolist() == read_look(data).colors.tolist()
