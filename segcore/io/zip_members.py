@@ -56,6 +56,15 @@ class ZipMembers:
     def __contains__(self, name: str) -> bool:
         return normal_name(name) in self._members
 
+    @property
+    def normal_names(self) -> list[str]:
+        """The names of the files in the form in which they are compared: in lower case, without a slash in front."""
+        return list(self._members)
+
+    def size(self, name: str) -> int:
+        """Return the number of bytes that a member unpacks to, as the archive states it."""
+        return self._members[normal_name(name)].file_size
+
     def read(self, name: str) -> bytes:
         """Return the bytes of a member; see ``chunks``."""
         return b"".join(self.chunks(name))

@@ -64,7 +64,7 @@ def leave_out_volumes(model: Model, package: Package) -> list[str]:
     """
     notes = []
     titles = []
-    for name in package.names():
+    for name in package.normal_names:
         if name != _BAMBU and not (name.startswith("metadata/") and name.endswith(_PRUSA)):
             continue
         try:
