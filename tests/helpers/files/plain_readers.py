@@ -229,6 +229,9 @@ def _take_bytes(body: bytes, encoding: bytes) -> Callable[[str], float]:
 
 def slow_binary_stl(data: bytes) -> Result:
     (count,) = struct.unpack_from("<I", data, 80)
+    there, rest = divmod(len(data) - 84, 50)
+    if rest == 0 and (count < there or count == 2**32 - 1):
+        count = there
     values = [struct.unpack_from("<12fH", data, 84 + 50 * i)[3:12] for i in range(count)]
     assert all(math.isfinite(value) for row in values for value in row)
     vertices = [(row[k], row[k + 1], row[k + 2]) for row in values for k in (0, 3, 6)]
@@ -236,9 +239,18 @@ def slow_binary_stl(data: bytes) -> Result:
 
 
 def slow_ascii_stl(data: bytes) -> Result:
-    lines = [line for line in lines_of(data.lower()) if line.strip()]
-    assert lines[-1].split()[0] == b"endsolid"
-    words = [word for line in lines if line.split()[0] not in (b"solid", b"endsolid") for word in line.split()]
+    words: list[bytes] = []
+    is_open = True
+    for line in (line for line in lines_of(data.lower()) if line.strip()):
+        first = line.split()[0]
+        if first == b"solid" or re.match(rb"\s*end[ \t_-]*solid", line):
+            is_open = first == b"solid"
+        elif words[-1:] in ([], [b"endfacet"]) and first != b"facet" and re.match(rb"[^-+.\d]", first):
+            assert not re.search(rb"outer\s+loop|endloop|endfacet", line)
+        else:
+            words += line.split()
+            is_open = True
+    assert not is_open
     vertices: list[Point] = []
     faces: list[list[int]] = []
     at = 0
