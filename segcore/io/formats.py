@@ -33,8 +33,18 @@ FORMATS: dict[str, Format] = {
 _BOM = b"\xef\xbb\xbf"
 _OFF = re.compile(rb"(?:\s++|#[^\r\n]*+[\r\n])*+(?:ST|[CN4n])*+OFF")
 _PLY = re.compile(rb"ply[ \t]*+[\r\n]")
-_ASCII_STL = re.compile(rb"\s*+solid\b[^\r\n]*+[\r\n]\s*+(?:facet\s|endsolid\b)", re.IGNORECASE)
-_SOLID = re.compile(rb"\s*+solid\b", re.IGNORECASE)
+_ASCII_STL = re.compile(  # up to 20 other lines may stand between the line of the solid and the first face
+    rb"(?:\s++|#[^\r\n]*+[\r\n])*+solid\b[^\r\n]*+(?:[\r\n]\s*+(?!facet\s|end[ \t_-]*+solid)[^\r\n]*+){0,20}+"
+    rb"[\r\n]\s*+(?:facet\s|end[ \t_-]*+solid)",
+    re.IGNORECASE,
+)
+_SOLID = re.compile(rb"(?:\s++|#[^\r\n]*+[\r\n])*+solid\b", re.IGNORECASE)
+_MARKUP = re.compile(rb"(?:\s++|<\?.*?\?>|<!--.*?-->)*+<(!doctype\s++)?+([a-z][\w:.-]*+)", re.IGNORECASE | re.DOTALL)
+_HTML = (b"html", b"head", b"body", b"title", b"meta", b"script", b"div", b"center", b"h1", b"p", b"pre")
+# Roots of XML formats with meshes.
+_XML_MESHES = (b"collada", b"x3d", b"amf", b"model", b"vtkfile", b"kml", b"citymodel", b"scene", b"mesh")
+_JSON_MESH = re.compile(rb'"(?:asset|meshes|accessors|buffers|bufferViews|nodes|scenes|scene|extensions)"\s*+:')
+_MARKUP_BYTES = 2**12  # from the beginning of a file, in which its first element is looked for
 _OBJ = re.compile(rb"(?:\s++|#[^\r\n]*+[\r\n])*+(?:v|vt|vn|vp|f|l|p|g|o|s|mg|usemtl|mtllib)(?=[ \t])")
 _OBJ_VERTEX = re.compile(rb"(?:^|[\r\n])[ \t]*+v[ \t]")
 _GLTF = re.compile(rb"\s*+\{")
@@ -81,6 +91,9 @@ def detect_format(data: bytes, declared: str | None) -> str:
     UnsupportedFormat
         If the content has another format than the declared one, or one that cannot be read.
     """
+    page = _page(data)
+    if page is not None:
+        raise UnsupportedFormat(f"The file is {page}, not a mesh: download the mesh itself and send that.")
     found = _found(data)
     if found is not None and declared in (None, found):
         return found
@@ -106,7 +119,8 @@ def is_ascii_stl(data: bytes) -> bool:
     if _fills_stl(data):
         return False
     text = data.removeprefix(_BOM)
-    return _ASCII_STL.match(text) is not None or (_SOLID.match(text) is not None and b"\0" not in text[:_STL_HEADER])
+    first = text.rstrip(b"\0")[: _STL_HEADER + _STL_FACE]
+    return _ASCII_STL.match(text) is not None or (_SOLID.match(text) is not None and b"\0" not in first)
 
 
 def _named(declaration: str) -> str:
@@ -127,6 +141,24 @@ def _foreign(data: bytes) -> str | None:
     if data.startswith(_ZIP) and data.startswith(_RESULT_MEMBER, _ZIP_NAME):
         return "a .cleave file, which cleave convert opens"
     return next((title for magic, title in _FOREIGN.items() if data.startswith(magic)), None)
+
+
+def _page(data: bytes) -> str | None:
+    """What a file is if it is an answer of a server that was saved in place of a mesh, else None."""
+    if data.startswith(b"version https://git-lfs"):
+        return "a pointer of Git LFS"
+    text = data[:_MARKUP_BYTES].removeprefix(_BOM)
+    if _GLTF.match(text):
+        return None if _JSON_MESH.search(data) or b"\0" in text else "a JSON document"
+    root = None if _fills_stl(data) else _MARKUP.match(text)
+    if root is None:
+        return None
+    name = root[2].lower()
+    if name in _HTML:
+        return "a page of HTML"
+    if root[1] or name.rpartition(b":")[2] in _XML_MESHES:
+        return None
+    return f"an XML document <{root[2].decode('ascii', 'replace')[:40]}>"
 
 
 def _found(data: bytes) -> str | None:

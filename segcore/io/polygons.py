@@ -7,8 +7,11 @@ import numpy as np
 from segcore.appearance import Appearance
 from segcore.arrays import BoolArray, FloatArray, IntArray, LongArray
 from segcore.io.limits import ReadLimits
+from segcore.io.polygon_kernels import clip_concave_polygons
 from segcore.mesh import Mesh
 from segcore.structure import FileStructure
+
+_STEPS = 10**8  # of clipping in a file: a few seconds
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -27,10 +30,7 @@ def mesh_of_polygons(
     structure: FileStructure | None = None,
     notes: tuple[str, ...] = (),
 ) -> Mesh:
-    """Return the mesh whose faces are the fans of polygons, in their order.
-
-    A polygon with corners c0, c1, ... becomes the faces (c0, c1, c2), (c0, c2, c3), ...; a polygon with fewer than
-    three corners becomes none.
+    """Return the mesh whose faces are the triangles of polygons, in their order; see :func:`triangle_corners`.
 
     Parameters
     ----------
@@ -47,7 +47,27 @@ def mesh_of_polygons(
     triangles = np.maximum(polygons.sizes - 2, 0)
     limits.check_faces(int(triangles.sum()))
     source_polygon = np.repeat(np.arange(len(triangles), dtype=np.int32), triangles)
-    return Mesh(vertices, polygons.corners[fan_corners(polygons.sizes)], source_polygon, appearance, structure, notes)
+    corners, fans = triangle_corners(vertices, polygons)
+    if fans:
+        notes += (f"{fans} concave polygons have too many corners to be clipped: they are triangulated as fans.",)
+    return Mesh(vertices, polygons.corners[corners], source_polygon, appearance, structure, notes)
+
+
+def triangle_corners(vertices: FloatArray, polygons: Polygons, steps: int = _STEPS) -> tuple[LongArray, int]:
+    """(F, 3) indices into ``Polygons.corners`` of the corners of each face, and the number of concave fans.
+
+    A polygon with corners c0, c1, ... becomes the faces (c0, c1, c2), (c0, c2, c3), ...; a polygon with fewer than
+    three corners becomes none. If some of these faces are opposite to the Newell normal of the polygon, it is concave,
+    and becomes as many ears that are not, without new vertices. A polygon that has no area or intersects itself stays
+    a fan, and so do concave ones after ``steps`` steps of clipping, whose number is returned.
+    """
+    faces = fan_corners(polygons.sizes)
+    corners = np.ascontiguousarray(polygons.corners)
+    if polygons.sizes.max(initial=0) <= 3:
+        return faces, 0
+    return faces, clip_concave_polygons(
+        np.ascontiguousarray(vertices, dtype=np.float64), corners, polygons.sizes, faces, steps
+    )
 
 
 def ragged_range(start: LongArray, length: LongArray) -> LongArray:
@@ -57,7 +77,7 @@ def ragged_range(start: LongArray, length: LongArray) -> LongArray:
 
 
 def fan_corners(sizes: LongArray) -> LongArray:
-    """(F, 3) indices into ``Polygons.corners`` of the corners of each face."""
+    """(F, 3) indices into ``Polygons.corners`` of the corners of each face of fans."""
     triangles = np.maximum(sizes - 2, 0)
     begin = np.cumsum(sizes) - sizes
     first, second = np.repeat(begin, triangles), ragged_range(begin + 1, triangles)

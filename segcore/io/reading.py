@@ -40,7 +40,8 @@ def read_mesh(
 ) -> Mesh:
     """Read a mesh file, which may be compressed with gzip, or the one mesh in a ZIP archive.
 
-    Face i of the mesh is triangle i after the polygons of the file, in its order, are triangulated as fans;
+    Face i of the mesh is triangle i after the polygons of the file, in its order, are triangulated: convex ones as
+    fans, concave ones by clipping ears, without new vertices;
     ``source_polygon`` is the polygon of each face if there are others than triangles. No vertex or face is dropped,
     merged or moved. The buffers of a glTF file may be members of the archive that it is in. No file but ``source`` is
     opened, unless ``neighbours`` is True.

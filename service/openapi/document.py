@@ -28,7 +28,7 @@ PARAMETERS = {"$ref": _PLACE.format(model="Parameters")}
 _ABOUT = """\
 Submit a mesh, poll the job or read its events, and get labels, the hierarchy of parts, and coloured models at any
 number of segments. Labels are per face, in the order of the file: face *i* is the *i*-th triangle after polygons are
-split into fans.
+split into triangles.
 
 Every error is `application/problem+json` (RFC 9457): a stable `code` for programs and a `detail` that says what to do.
 """

@@ -8,7 +8,7 @@ from segcore.arrays import BoolArray, FloatArray, IntArray, LongArray
 from segcore.errors import InvalidMesh
 from segcore.io.obj.corner_rows import CornerRows, rows_of_corners
 from segcore.io.obj.kernels import parse_corner_picks
-from segcore.io.polygons import Polygons, fan_corners
+from segcore.io.polygons import Polygons, triangle_corners
 from segcore.io.text.words import Words
 
 _UV, _NORMAL = b"vt", b"vn"
@@ -16,7 +16,9 @@ _WIDTHS = {_UV: 2, _NORMAL: 3}  # numbers on a line
 _PLACES = {_UV: 0, _NORMAL: 1}  # column of picks: the number after the first or second slash of a corner 7/8/9
 
 
-def obj_appearance(words: Words, is_vertex: BoolArray, is_face: BoolArray, polygons: Polygons) -> Appearance | None:
+def obj_appearance(
+    words: Words, is_vertex: BoolArray, is_face: BoolArray, vertices: FloatArray, polygons: Polygons
+) -> Appearance | None:
     """Return the appearance of the faces that the polygons are triangulated into, or None if there is none."""
     tables = {key: table for key, width in _WIDTHS.items() if (table := _table(words, key, width)) is not None}
     picks = _picks(words, is_face, polygons, tables)
@@ -30,7 +32,7 @@ def obj_appearance(words: Words, is_vertex: BoolArray, is_face: BoolArray, polyg
             uvs=_uvs(tables.get(_UV), picks.get(_UV), rows),
             colors=None if colors is None else np.vstack([colors, colors[rows.extra_vertex]]),
             extra_vertex=rows.extra_vertex,
-            corners=rows.of_corner[fan_corners(polygons.sizes)] if len(rows.extra_vertex) else None,
+            corners=rows.of_corner[triangle_corners(vertices, polygons)[0]] if len(rows.extra_vertex) else None,
             face_group=face_group,
             group_names=names,
         )

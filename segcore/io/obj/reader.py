@@ -15,6 +15,9 @@ from segcore.io.text.words import Words, find_words, plain_text, without_comment
 from segcore.mesh import Mesh
 
 _CONTINUATION = re.compile(rb"\\[ \t\r]*\n")
+_NUMBERS = re.compile(
+    rb"[ \t\v\f\r]*+(?:v|vt|vn|vp|f|fo|l|p|curv|curv2|surf|parm|trim|hole|scrv|sp|bmat|step|deg|con)[ \t\v\f\r]"
+)  # the beginning of a line that goes on after a backslash
 _CORNER = re.compile(r"[-+]?\d+(/-?\d*){0,2}", re.ASCII)
 
 
@@ -22,7 +25,8 @@ def read_obj(data: bytes, limits: ReadLimits, with_appearance: bool = False) -> 
     """Read the vertices and polygons of an OBJ file.
 
     Points and lines are ignored, and no file that is named in it is opened. A negative index counts back from the last
-    vertex before its line. The appearance is the texture coordinates and normals of the corners, the colours of the
+    vertex before its line. A line of numbers continues after a backslash at its end; other lines do not, because names
+    and paths may end in one. The appearance is the texture coordinates and normals of the corners, the colours of the
     vertices and the names of groups and objects. The structure is the groups and objects, and the names of materials.
 
     An OBJ file does not specify its length: a file that is cut short between two lines cannot be detected.
@@ -31,18 +35,27 @@ def read_obj(data: bytes, limits: ReadLimits, with_appearance: bool = False) -> 
     ------
     InvalidMesh, LimitExceeded
     """
-    text = without_comments(plain_text(data))
-    if b"\\" in text:
-        text = _CONTINUATION.sub(lambda end: b" " * len(end[0]), text)
-    words = find_words(text)
+    words = find_words(_joined_lines(without_comments(plain_text(data))))
     is_vertex, is_face = words.lines_with(b"v"), words.lines_with(b"f")
     limits.check_vertices(int(is_vertex.sum()))
     limits.check_faces(int(is_face.sum()))
     vertices = _vertices(words, is_vertex)
     polygons = _polygons(words, is_vertex, is_face)
-    appearance = obj_appearance(words, is_vertex, is_face, polygons) if with_appearance else None
+    appearance = obj_appearance(words, is_vertex, is_face, vertices, polygons) if with_appearance else None
     structure = obj_structure(words, is_vertex, is_face, polygons.sizes)
     return mesh_of_polygons(vertices, polygons, limits, appearance, structure)
+
+
+def _joined_lines(text: bytes) -> bytes:
+    """Replace backslashes at the end of lines of numbers, and the newlines after them, by spaces."""
+    pieces: list[bytes | memoryview] = []
+    at, next_line = 0, -1
+    for end in _CONTINUATION.finditer(text) if b"\\" in text else ():
+        begin = text.rfind(b"\n", 0, end.start()) + 1
+        if begin == next_line or _NUMBERS.match(text, begin, end.start()):
+            pieces += [memoryview(text)[at : end.start()], b" " * len(end[0])]
+            at = next_line = end.end()
+    return b"".join([*pieces, memoryview(text)[at:]]) if pieces else text
 
 
 def _values_per_line(words: Words, lines: LongArray, what: str) -> LongArray:

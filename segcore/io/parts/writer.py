@@ -4,17 +4,19 @@ import zipfile
 from collections.abc import Callable, Iterator
 from typing import BinaryIO, Literal, get_args
 
+from segcore.arrays import FloatArray
 from segcore.errors import InvalidParameters
 from segcore.hierarchy import Hierarchy
 from segcore.io.archive import FAST, member
 from segcore.io.names import SegmentNames, file_stems, group_names
 from segcore.io.parts.pieces import Part, closed_parts, segment_parts
-from segcore.io.stl.writer import check_coordinates, encode_stl
+from segcore.io.stl.writer import check_coordinates, encode_stl, offset_of
 from segcore.io.text.rows import format_rows
 from segcore.mesh import Mesh
 
 PartFormat = Literal["stl", "obj"]
 
+_OFFSET = "%r %r %r\nThe parts are moved to the origin. Add these numbers to x, y and z for the place in the input.\n"
 _STL_NOTE = b"binary STL, one segment, written by Cleave"
 
 
@@ -30,7 +32,9 @@ def write_parts(
 ) -> None:
     """Write a ZIP archive with a file for each segment: ``segment_0.stl``, ``segment_1.stl``, ...
 
-    A file has the faces of its segment in input order. Only one segment at a time is held in memory.
+    A file has the faces of its segment in input order. If float32 would lose details of a mesh that is far from the
+    origin, all parts as STL are moved by one offset, which the last member, ``offset.txt``, holds. Only one segment at
+    a time is held in memory.
 
     Parameters
     ----------
@@ -48,14 +52,22 @@ def write_parts(
         raise InvalidParameters(f"Parts are written as {' or '.join(get_args(PartFormat))}, not {part_format!r}.")
     if part_format == "stl":
         check_coordinates(mesh)
+    offset = offset_of(mesh) if part_format == "stl" else None
     count = len(hierarchy.segment_nodes(segments))
     parts = (closed_parts if capped else segment_parts)(mesh, hierarchy, segments)
     stems, called = file_stems(names, count), group_names(names, count)
     with zipfile.ZipFile(target, "w", compresslevel=FAST) as archive:
-        for part in parts:
+        for part in parts if offset is None else _moved(parts, offset):
             info = member(f"{stems[part.label]}.{part_format}", compressed=True)
             with archive.open(info, "w", force_zip64=True) as file:
                 file.writelines(_PARTS[part_format](part, called[part.label]))
+        if offset is not None:
+            archive.writestr(member("offset.txt"), _OFFSET % tuple(offset.tolist()))
+
+
+def _moved(parts: Iterator[Part], offset: FloatArray) -> Iterator[Part]:
+    for part in parts:
+        yield Part(part.label, part.vertices - offset, part.faces)
 
 
 def _stl(part: Part, _: str) -> Iterator[bytes]:

@@ -10,6 +10,7 @@ from segcore.io.stl.reader import FACE, HEADER
 from segcore.mesh import Mesh, face_normals_and_areas
 
 _LARGEST = float(np.finfo(np.float32).max)
+_FAR_OUT = 16.0  # distance from the origin, in extents of the mesh, beyond which float32 loses 1e-6 of the extent
 _ROWS = 2**14  # faces in a piece, 0.8 MB
 _NOTE = b"binary STL, written by Cleave"  # must not begin with "solid", as STL in text does
 
@@ -37,3 +38,17 @@ def check_coordinates(mesh: Mesh) -> None:
     """Raise InvalidParameters if a coordinate of a face is outside the range of float32."""
     if np.abs(mesh.bounds).max() > _LARGEST:
         raise InvalidParameters(f"STL files hold coordinates up to {_LARGEST:.3g}: choose OBJ.")
+
+
+def offset_of(mesh: Mesh) -> FloatArray | None:
+    """(3,) a round point near the centre, from which float32 coordinates are precise; None if they are as they stand.
+
+    Coordinates far from the origin, as those of maps, lose details in float32.
+    """
+    low, high = mesh.bounds
+    extent = float((high - low).max())
+    if extent == 0 or np.abs([low, high]).max() <= _FAR_OUT * extent:
+        return None
+    step = 10.0 ** np.floor(np.log10(extent))
+    offset: FloatArray = np.round((0.5 * low + 0.5 * high) / step) * step
+    return offset

@@ -121,7 +121,7 @@ class Words:
 def plain_text(data: bytes) -> bytes:
     """Return the text with newlines as line ends, without byte order mark and without padding at its end.
 
-    Offsets do not change.
+    Offsets do not change. Line ends of several kinds may be mixed.
 
     Raises
     ------
@@ -132,8 +132,8 @@ def plain_text(data: bytes) -> bytes:
     if has_controls(np.frombuffer(data, np.uint8)):
         first = data.index(data.translate(None, _NO_CONTROLS)[:1])
         raise InvalidMesh(f"Byte {first}: the file has a control character in its text: it is damaged.")
-    if b"\r" in data and b"\n" not in data:
-        data = data.replace(b"\r", b"\n")
+    if data.count(b"\r") != data.count(b"\r\n"):
+        data = data.replace(b"\r\r\n", b" \r\n").replace(b"\r\n", b" \n").replace(b"\r", b"\n")
     return b"   " + data[3:] if data.startswith(b"\xef\xbb\xbf") else data
 
 

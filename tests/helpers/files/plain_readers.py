@@ -13,7 +13,7 @@ import zipfile
 from collections.abc import Callable
 from xml.etree import ElementTree
 
-from helpers.files.polygon_soups import Point, Triangle
+from helpers.files.polygon_soups import Point, Triangle, triangulated
 
 Result = tuple[list[Point], list[Triangle]]
 _NUMBER = re.compile(rb"[-+]?(\d+\.?\d*|\.\d+)([eE][-+]?\d+)?")
@@ -30,13 +30,10 @@ def whole(word: bytes) -> int:
     return int(value)
 
 
-def fan(polygon: list[int]) -> list[Triangle]:
-    return [(polygon[0], polygon[i], polygon[i + 1]) for i in range(1, len(polygon) - 1)]
-
-
-def checked(vertices: list[Point], faces: list[Triangle]) -> Result:
+def checked(vertices: list[Point], polygons: list[list[int]]) -> Result:
+    assert all(0 <= corner < len(vertices) for polygon in polygons if len(polygon) > 2 for corner in polygon)
+    faces = triangulated(vertices, polygons)
     assert faces
-    assert all(0 <= corner < len(vertices) for face in faces for corner in face)
     used = {corner for face in faces for corner in face}
     assert all(_is_usable(vertices[corner]) for corner in used)
     return [point if _is_usable(point) else vertices[faces[0][0]] for point in vertices], faces
@@ -49,7 +46,7 @@ def _is_usable(point: Point) -> bool:
 def lines_of(data: bytes) -> list[bytes]:
     data = data.rstrip(b"\0\x1a").removeprefix(b"\xef\xbb\xbf")
     assert not re.search(rb"[\x00-\x08\x0e-\x1f]", data)
-    return (data if b"\n" in data else data.replace(b"\r", b"\n")).split(b"\n")
+    return re.split(rb"\r*\n|\r", data)
 
 
 def slow_off(data: bytes) -> Result:
@@ -88,12 +85,12 @@ def _off_with_vertex_lines(words: list[tuple[int, bytes]], at: int, vertex_count
 
 def _off_faces(words: list[tuple[int, bytes]], first: list[int], at: int, face_count: int) -> Result:
     end = at
-    faces: list[Triangle] = []
+    faces: list[list[int]] = []
     for _ in range(face_count):
         size = whole(words[at][1])
         assert size >= 0
         last = words[at + size]
-        faces += fan([whole(word) for _, word in words[at + 1 : at + 1 + size]])
+        faces.append([whole(word) for _, word in words[at + 1 : at + 1 + size]])
         at += size + 1
         while at < len(words) and words[at][0] == last[0]:
             at += 1
@@ -106,11 +103,19 @@ def _off_faces(words: list[tuple[int, bytes]], first: list[int], at: int, face_c
 
 def slow_obj(data: bytes) -> Result:
     text = b"\n".join(line.partition(b"#")[0] for line in lines_of(data))
-    text = re.sub(rb"\\[ \t\r]*\n", b" ", text)
-    statements = [line.split() for line in text.split(b"\n")]
+    statements: list[list[bytes]] = []
+    goes_on = False
+    for line in text.split(b"\n"):
+        words = line.rstrip(b" \t").removesuffix(b"\\").split()
+        if goes_on:
+            statements[-1] += words
+        else:
+            statements.append(words)
+        is_broken = line.rstrip(b" \t").endswith(b"\\")
+        goes_on = is_broken and statements[-1][:1] in ([b"v"], [b"f"], [b"vt"], [b"vn"], [b"vp"], [b"l"], [b"p"])
     total = sum(words[:1] == [b"v"] for words in statements)
     vertices: list[Point] = []
-    faces: list[Triangle] = []
+    faces: list[list[int]] = []
     for words in statements:
         if words[:1] == [b"v"]:
             values = [number(word) for word in words[1:]]
@@ -123,7 +128,7 @@ def slow_obj(data: bytes) -> Result:
             assert 0 not in indices
             assert min(corners) >= 0
             assert max(corners) < total
-            faces += fan(corners)
+            faces.append(corners)
     return checked(vertices, faces)
 
 
@@ -170,14 +175,14 @@ def slow_ply(data: bytes) -> Result:
         take = _take_bytes(body, encoding)
         rows = {name: [_ply_row(properties, take) for _ in range(count)] for name, count, properties in elements}
     vertices = [(float(row[b"x"]), float(row[b"y"]), float(row[b"z"])) for row in rows[b"vertex"]]
-    faces: list[Triangle] = []
+    faces: list[list[int]] = []
     for name, listed in rows.items():
         for row in listed:
             if name in (b"face", b"tristrips"):
                 indices = row[b"vertex_indices"] if b"vertex_indices" in row else row[b"vertex_index"]
                 assert all(index == int(index) for index in indices)
                 corners = [int(index) for index in indices]
-                faces += fan(corners) if name == b"face" else _strips(corners)
+                faces += [corners] if name == b"face" else _strips(corners)
     return checked(vertices, faces)
 
 
@@ -192,14 +197,14 @@ def _rows_of_lines(data: bytes, begin: int, elements: list[tuple[bytes, int, lis
     return rows
 
 
-def _strips(corners: list[int]) -> list[Triangle]:
-    faces: list[Triangle] = []
+def _strips(corners: list[int]) -> list[list[int]]:
+    faces: list[list[int]] = []
     strip: list[int] = []
     for corner in corners:
         strip = [] if corner == -1 else [*strip, corner]
         if len(strip) > 2:
             a, b, c = strip[-3:]
-            faces.append((a, b, c) if len(strip) % 2 else (a, c, b))
+            faces.append([a, b, c] if len(strip) % 2 else [a, c, b])
     return faces
 
 
@@ -251,6 +256,9 @@ def _take_bytes(body: bytes, encoding: bytes) -> Callable[[str], float]:
 
 def slow_binary_stl(data: bytes) -> Result:
     (count,) = struct.unpack_from("<I", data, 80)
+    there, rest = divmod(len(data) - 84, 50)
+    if rest == 0 and (count < there or count == 2**32 - 1):
+        count = there
     values = [struct.unpack_from("<12fH", data, 84 + 50 * i)[3:12] for i in range(count)]
     assert all(math.isfinite(value) for row in values for value in row)
     vertices = [(row[k], row[k + 1], row[k + 2]) for row in values for k in (0, 3, 6)]
@@ -258,11 +266,20 @@ def slow_binary_stl(data: bytes) -> Result:
 
 
 def slow_ascii_stl(data: bytes) -> Result:
-    lines = [line for line in lines_of(data.lower()) if line.strip()]
-    assert lines[-1].split()[0] == b"endsolid"
-    words = [word for line in lines if line.split()[0] not in (b"solid", b"endsolid") for word in line.split()]
+    words: list[bytes] = []
+    is_open = True
+    for line in (line for line in lines_of(data.lower()) if line.strip()):
+        first = line.split()[0]
+        if first == b"solid" or re.match(rb"\s*end[ \t_-]*solid", line):
+            is_open = first == b"solid"
+        elif words[-1:] in ([], [b"endfacet"]) and first != b"facet" and re.match(rb"[^-+.\d]", first):
+            assert not re.search(rb"outer\s+loop|endloop|endfacet", line)
+        else:
+            words += line.split()
+            is_open = True
+    assert not is_open
     vertices: list[Point] = []
-    faces: list[Triangle] = []
+    faces: list[list[int]] = []
     at = 0
     while at < len(words):
         assert words[at] == b"facet"
@@ -280,7 +297,7 @@ def slow_ascii_stl(data: bytes) -> Result:
         assert words[at : at + 2] == [b"endloop", b"endfacet"]
         assert len(vertices) >= begin + 3
         at += 2
-        faces += fan(list(range(begin, len(vertices))))
+        faces.append(list(range(begin, len(vertices))))
     return checked(vertices, faces)
 
 

@@ -8,6 +8,7 @@ from hypothesis import strategies as st
 
 from segcore.errors import CleaveError
 from segcore.io import ReadLimits, read_mesh
+from segcore.io.polygons import Polygons, triangle_corners
 from segcore.mesh import Mesh
 
 Point = tuple[float, float, float]
@@ -23,12 +24,19 @@ class Soup:
 
     @property
     def triangles(self) -> list[Triangle]:
-        """The fans of the polygons, in order."""
-        return [(p[0], p[i], p[i + 1]) for p in self.polygons for i in range(1, len(p) - 1)]
+        return triangulated(self.vertices, self.polygons)
 
     @property
     def source_polygons(self) -> list[int]:
         return [number for number, p in enumerate(self.polygons) for _ in range(len(p) - 2)]
+
+
+def triangulated(vertices: list[Point], polygons: list[list[int]]) -> list[Triangle]:
+    """The triangles of polygons, in order; ``test_polygons.py`` tests which ones these are."""
+    corners = np.array([corner for polygon in polygons for corner in polygon], dtype=np.int64)
+    table = Polygons(corners, np.array([len(polygon) for polygon in polygons], dtype=np.int64))
+    points = np.array(vertices, dtype=np.float64).reshape(-1, 3)
+    return [(a, b, c) for a, b, c in corners[triangle_corners(points, table)[0]].tolist()]
 
 
 coordinates = st.floats(-1e6, 1e6, width=32, allow_subnormal=False)

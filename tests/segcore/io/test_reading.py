@@ -94,6 +94,28 @@ def test_other_content_is_refused_with_its_name_if_it_is_known(data: bytes, mess
         read(data)
 
 
+@pytest.mark.parametrize("declared", [None, *FORMATS])
+@pytest.mark.parametrize(
+    ("data", "what"),
+    [
+        (b"<!DOCTYPE html><html><body>Login</body></html>" + b" " * 200, "a page of HTML"),
+        (b"\xef\xbb\xbf\r\n <!-- v 1 2 3 -->\n<HTML lang='en'>", "a page of HTML"),
+        (b"<?xml version='1.0'?>\n<!DOCTYPE html PUBLIC '-//W3C'><html>", "a page of HTML"),
+        (b"<head><title>404</title></head>", "a page of HTML"),
+        (
+            b"<?xml version='1.0' encoding='UTF-8'?>\n<Error><Code>AccessDenied</Code></Error>",
+            "an XML document <Error>",
+        ),
+        (b"<svg xmlns='http://www.w3.org/2000/svg'/>", "an XML document <svg>"),
+        (b'{"error": "not found", "status": 404}', "a JSON document"),
+        (b"version https://git-lfs.github.com/spec/v1\noid sha256:0\nsize 9\n", "a pointer of Git LFS"),
+    ],
+)
+def test_the_answer_of_a_server_that_was_saved_as_a_mesh_is_named(data: bytes, what: str, declared: str | None) -> None:
+    with pytest.raises(UnsupportedFormat, match=f"^The file is {what}, not a mesh: download the mesh itself"):
+        read(data, declared)
+
+
 @pytest.mark.parametrize(("name", "data"), ALL)
 def test_files_compressed_with_gzip_are_read(name: str, data: bytes, tmp_path: Path) -> None:
     path = tmp_path / f"mesh{FORMATS[name].extensions[0]}.gz"

@@ -113,3 +113,41 @@ def test_counts_beyond_the_limits_are_refused_by_name() -> None:
     for limits, name in ((ReadLimits(max_faces=1), "max_faces = 1"), (ReadLimits(max_vertices=3), "max_vertices = 3")):
         with pytest.raises(LimitExceeded, match=name):
             read(SQUARE, limits=limits)
+
+
+@pytest.mark.parametrize(
+    "line",
+    [
+        b"g \x95\\",  # Shift-JIS for one letter
+        b"o a\\",
+        b"usemtl a\\",
+        b"mtllib textures\\",
+        b"mtllib textures\\ ",
+        b"s off\\",
+        b"# a comment\\",
+        b"g a # a comment\\",
+        b"\tg a\\\ng b\\",
+        b"unknown\\",
+    ],
+)
+@pytest.mark.parametrize("end", [b"\n", b"\r\n", b"\r"])
+def test_a_name_a_path_or_a_comment_may_end_in_a_backslash(line: bytes, end: bytes) -> None:
+    for place in range(7):
+        lines = SQUARE.splitlines()
+        lines.insert(place, line.replace(b"\n", end))
+        assert_is_soup(read(end.join(lines), "obj"), SOUP)
+
+
+def test_a_line_of_numbers_continues_over_any_number_of_lines() -> None:
+    data = SQUARE.replace(b"v 1 1 0", b" v 1 \\\n 1 \\\n \\\r\n 0").replace(b"f 1 3 4", b"f\t\\\n1 \\\n3 4\ng a\\")
+    assert_is_soup(read(data), SOUP)
+    assert_is_soup(read(data.replace(b"\r", b"").replace(b"\n", b"\r")), SOUP)
+
+
+@pytest.mark.parametrize(
+    "ends", [(b"\r", b"\n"), (b"\r\n", b"\r"), (b"\n", b"\r"), (b"\r\r\n", b"\n"), (b"\n\r", b"\r")]
+)
+def test_line_ends_of_several_kinds_in_one_file_are_read(ends: tuple[bytes, bytes]) -> None:
+    for place in range(7):
+        lines = [line + (ends[1] if i == place else ends[0]) for i, line in enumerate([b"# a", *SQUARE.splitlines()])]
+        assert_is_soup(read(b"".join(lines), "obj"), SOUP)

@@ -26,10 +26,32 @@ def test_the_archive_of_parts_holds_every_face_once(segmented: Segmented) -> Non
     labels = hierarchy.labels(segments)
     for part_format in ("stl", "obj"):
         files = members(written("zip", *segmented, part_format=part_format))
+        offset = np.array(files.pop("offset.txt", b"0 0 0").split()[:3], dtype=np.float64)
         assert sorted(files) == [f"segment_{k}.{part_format}" for k in range(segments)]
         for k in range(segments):
             corners = read(files[f"segment_{k}.{part_format}"], part_format).corners
-            np.testing.assert_array_equal(corners.astype("f4"), mesh.corners[labels == k].astype("f4"))
+            np.testing.assert_array_equal(corners.astype("f4"), (mesh.corners[labels == k] - offset).astype("f4"))
+
+
+@pytest.mark.parametrize("capped", [False, True])
+def test_stl_parts_far_from_the_origin_keep_their_details(burr: tuple[Mesh, Hierarchy], capped: bool) -> None:
+    mesh, hierarchy = burr
+    place = np.array([500_000.0, 4_500_000.0, 100.0])
+    far = Mesh(mesh.vertices + place, mesh.faces)
+    near = members(written("zip", mesh, hierarchy, 7, capped=capped))
+    files = members(written("zip", far, hierarchy, 7, capped=capped))
+    assert list(files) == [*near, "offset.txt"]
+    offset = np.array(files["offset.txt"].split()[:3], dtype=np.float64)
+    np.testing.assert_allclose(offset, place, atol=np.ptp(mesh.vertices))
+    size = np.ptp(mesh.vertices)
+    for name, data in near.items():
+        moved = read(files[name]).corners + offset - place
+        assert np.ptp(moved.reshape(-1, 3), axis=0) == pytest.approx(
+            np.ptp(read(data).vertices, axis=0), abs=1e-6 * size
+        )
+        if not capped:
+            np.testing.assert_allclose(moved, read(data).corners, atol=1e-6 * size)
+    assert "offset.txt" not in members(written("zip", far, hierarchy, 7, part_format="obj"))
 
 
 def test_the_normals_of_stl_parts_are_those_of_the_faces() -> None:

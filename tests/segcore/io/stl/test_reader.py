@@ -1,5 +1,6 @@
 """The STL reader, for text and binary: every face in its place, no file half read."""
 
+import numpy as np
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
@@ -14,6 +15,7 @@ from helpers.files.samples import UNSHARED_SQUARE as SOUP
 from helpers.files.samples import binary_stl as binary
 from segcore.errors import InvalidMesh, LimitExceeded
 from segcore.io import ReadLimits
+from segcore.mesh import face_normals_and_areas
 
 line_ends = st.sampled_from(["\n", "\r\n", "\n\n", " \t\n"])
 gaps = st.sampled_from([" ", "  ", "\t", "\n", "\r\n\t"])
@@ -113,3 +115,131 @@ def test_several_solids_are_groups_and_one_solid_is_none() -> None:
     assert read(ASCII).structure is None
     assert read(BINARY).structure is None
     assert read(ASCII + b"\n" + ASCII).structure.group.tolist() == [0, 0, 1, 1]
+
+
+END = b"endsolid a facet of it\n"
+
+
+@pytest.mark.parametrize(
+    "end",
+    [
+        b"end solid a\n",
+        b"endsolid",
+        b"ENDSOLID A\n",
+        b"End Solid\r\n",
+        b"  end\tsolid a\n",
+        b"end_solid\n",
+        b"endsolida\n",
+        b"endsolid a\n# exported by Foo 1.0\n",
+        b"endsolid a\n\n// a comment about a facet and its vertex\nunits mm\n",
+    ],
+)
+def test_the_end_of_a_solid_is_read_as_programs_write_it(end: bytes) -> None:
+    assert_is_soup(read(ASCII.replace(END, end), "stl"), SOUP)
+    two = read(ASCII.replace(END, end) + b"\n" + ASCII.replace(END, end), "stl")
+    assert two.structure is not None
+    assert two.structure.group.tolist() == [0, 0, 1, 1]
+
+
+@pytest.mark.parametrize(
+    "line", [b"color 0.5 0.5 0.5", b"  attribute 7", b"# facet 2", b"; vertex 1 2 3", b"\xff", b"usemtl facet"]
+)
+@pytest.mark.parametrize("end", [b"\n", b"\r\n"])
+def test_lines_between_faces_are_skipped_with_a_note(line: bytes, end: bytes) -> None:
+    for before in (b"facet normal", b"endsolid"):
+        data = ASCII.replace(before, line + b"\n" + before).replace(b"\n", end)
+        mesh = read(data, "stl", appearance=True)
+        assert_is_soup(mesh, SOUP)
+        (note,) = mesh.notes
+        assert "no part of a face were skipped" in note
+        assert_is_soup(read(data.replace(b"0" + end, b"0 "), "stl"), SOUP)
+    assert mesh.appearance is not None
+    assert mesh.appearance.group_names == ("a facet of it",)
+    assert_never_half_read(ASCII.replace(b"facet normal", line + b"\nfacet normal"), SOUP, "stl")
+
+
+def test_a_colour_before_the_first_face_does_not_hide_the_format() -> None:
+    assert_is_soup(read(ASCII.replace(b"of it\nfacet", b"of it\ncolor 1 1 1\nfacet", 1)), SOUP)
+    assert_is_soup(read(b"# a comment\n" + ASCII), SOUP)
+
+
+@pytest.mark.parametrize(
+    "damage",
+    [
+        (b"facet normal 0 0 1\nouter", b"fcet normal 0 0 1\nouter"),
+        (b"outer loop\n", b"color 1 1 1\nouter loop\n"),
+        (b"endfacet\n", b"\n"),
+        (END, b""),
+        (END, END + b"facet normal 0 0 1\nouter loop\n"),
+        (END, END + b"solid b\n"),
+        (ASCII[20:110].replace(b"\n", b" "), b"fcet" + ASCII[25:110].replace(b"\n", b" ")),
+    ],
+)
+def test_damage_to_a_face_is_not_taken_for_a_line_between_faces(damage: tuple[bytes, bytes]) -> None:
+    data = ASCII if damage[0] in ASCII else ASCII[:20] + ASCII[20:110].replace(b"\n", b" ") + ASCII[110:]
+    assert damage[0] in data
+    with pytest.raises(InvalidMesh):
+        read(data.replace(*damage), "stl")
+
+
+def counted(count: int, header: bytes = b"") -> bytes:
+    data = binary(TRIANGLES, header)
+    return data[:80] + count.to_bytes(4, "little") + data[84:]
+
+
+@pytest.mark.parametrize("header", [b"", b"solid part", b"\0"])
+@pytest.mark.parametrize("count", [0, 1, 2**32 - 1])
+def test_the_size_of_a_binary_decides_if_its_number_of_faces_is_none_or_too_small(count: int, header: bytes) -> None:
+    mesh = read(counted(count, header), "stl")
+    assert_is_soup(mesh, SOUP)
+    (note,) = mesh.notes
+    assert f"says {count}; there are 2" in note
+
+
+def test_a_binary_without_the_field_for_its_number_of_faces_is_read_if_the_normals_agree() -> None:
+    data = BINARY[:80] + BINARY[84:]
+    with pytest.raises(InvalidMesh, match="announces"):
+        read(data, "stl")
+    corners = np.array(TRIANGLES)
+    normals = face_normals_and_areas(corners)[0].astype("<f4")
+    for i in range(2):
+        data = data[: 80 + 50 * i] + normals[i].tobytes() + data[92 + 50 * i :]
+    if data[80:84] == bytes(4):
+        normals[0, 0] = 1e-3
+        data = data[:80] + normals[0].tobytes() + data[92:]
+    mesh = read(data, "stl")
+    assert_is_soup(mesh, SOUP)
+    assert "is missing" in mesh.notes[0]
+
+
+@pytest.mark.parametrize(("count", "size"), [(0, 37), (2**32 - 1, 37), (3, 0), (1_000, 37), (0, -1)])
+def test_a_number_of_faces_that_does_not_fit_is_refused_with_the_number_and_the_size(count: int, size: int) -> None:
+    data = (counted(count) + bytes(max(size, 0)))[: len(BINARY) + size]
+    with pytest.raises(InvalidMesh, match=f"announces {count} faces.*{len(data)}"):
+        read(data, "stl")
+
+
+@pytest.mark.parametrize("sizes", [(2, 2), (0, 5), (7, 0), (300, 1)])
+def test_bytes_that_an_attribute_announces_are_skipped(sizes: tuple[int, int]) -> None:
+    data = BINARY[:84]
+    for i, size in enumerate(sizes):
+        data += BINARY[84 + 50 * i : 132 + 50 * i] + size.to_bytes(2, "little") + b"A" * size
+    mesh = read(data, "stl")
+    assert_is_soup(mesh, SOUP)
+    assert len(mesh.notes) == 1
+
+
+def test_bytes_between_faces_that_nothing_announces_are_refused() -> None:
+    ball = [tuple((x + i, y, z) for x, y, z in TRIANGLES[0]) for i in range(40)]
+    data = binary(ball)
+    faces = b"".join(data[84 + 50 * i : 134 + 50 * i] + b"AB" for i in range(40))
+    with pytest.raises(InvalidMesh, match="not coordinates"):
+        read(data[:84] + faces + b"AB", "stl")
+
+
+def test_colours_in_attributes_announce_no_bytes() -> None:
+    assert read(BINARY).notes == ()
+
+
+def test_zeros_after_the_faces_are_no_faces() -> None:
+    assert_is_soup(read(BINARY + bytes(100)), SOUP)
