@@ -39,7 +39,7 @@ def clip_concave_polygons(
     """
     begin, face, left_out = 0, 0, 0
     for size in sizes:
-        if size > 3:
+        if size > 3 and not _has_right_fan(vertices, corners, begin, size):
             ring = _concave_ring(vertices, corners[begin : begin + size])
             if len(ring.x):
                 if steps > 0:
@@ -48,6 +48,34 @@ def clip_concave_polygons(
         face += max(size - 2, 0)
         begin += size
     return left_out
+
+
+@njit(cache=True)
+def _has_right_fan(vertices: FloatArray, corners: NDArray[np.signedinteger[Any]], begin: int, size: int) -> bool:
+    """Whether all triangles of the fan clearly have the side of the normal of the polygon: most polygons are convex."""
+    for corner in range(begin, begin + size):
+        if corners[corner] < 0 or corners[corner] >= len(vertices):
+            return False
+    n0, n1, n2 = 0.0, 0.0, 0.0
+    for i in range(1, size - 1):
+        t0, t1, t2 = _fan_cross(vertices, corners, begin, i)
+        n0, n1, n2 = n0 + t0, n1 + t1, n2 + t2
+    for i in range(1, size - 1):
+        t0, t1, t2 = _fan_cross(vertices, corners, begin, i)
+        if not t0 * n0 + t1 * n1 + t2 * n2 > 0.0:
+            return False
+    return True
+
+
+@njit(cache=True)
+def _fan_cross(
+    vertices: FloatArray, corners: NDArray[np.signedinteger[Any]], begin: int, i: int
+) -> tuple[float, float, float]:
+    """Twice the area vector of triangle i of the fan of the polygon that begins at ``begin``."""
+    o, p, q = corners[begin], corners[begin + i], corners[begin + i + 1]
+    p0, p1, p2 = vertices[p, 0] - vertices[o, 0], vertices[p, 1] - vertices[o, 1], vertices[p, 2] - vertices[o, 2]
+    q0, q1, q2 = vertices[q, 0] - vertices[o, 0], vertices[q, 1] - vertices[o, 1], vertices[q, 2] - vertices[o, 2]
+    return p1 * q2 - p2 * q1, p2 * q0 - p0 * q2, p0 * q1 - p1 * q0
 
 
 @njit(cache=True)

@@ -132,7 +132,7 @@ def plain_text(data: bytes) -> bytes:
     if has_controls(np.frombuffer(data, np.uint8)):
         first = data.index(data.translate(None, _NO_CONTROLS)[:1])
         raise InvalidMesh(f"Byte {first}: the file has a control character in its text: it is damaged.")
-    if data.count(b"\r") != data.count(b"\r\n"):
+    if b"\r" in data and data.count(b"\r") != data.count(b"\r\n"):
         data = data.replace(b"\r\r\n", b" \r\n").replace(b"\r\n", b" \n").replace(b"\r", b"\n")
     return b"   " + data[3:] if data.startswith(b"\xef\xbb\xbf") else data
 
