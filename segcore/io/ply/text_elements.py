@@ -12,6 +12,7 @@ from segcore.io.ply.header import Element, Elements, Header, Lists, Property, Ro
 from segcore.io.polygons import ragged_range
 from segcore.io.text.words import Words, find_words, plain_text, whole_numbers
 
+_LEAST_CORNERS = 3  # of a list on a line with further values
 _BLANK = bytes(byte if byte in b"\r\n" else ord(" ") for byte in range(256))
 
 
@@ -171,6 +172,8 @@ def _read_lines(words: Words, header: Header) -> Elements:
         if rows is None:
             rows, ends = _columns(words, starts, element)
             longer = np.flatnonzero(ends < starts[1:])
+            if any((lists.sizes[longer] < _LEAST_CORNERS).any() for lists in rows.lists.values()):
+                raise InvalidMesh("A list is shorter than a face, though its line goes on: its length is damaged.")
             if len(longer):
                 notes.append(_note(element, len(longer), words.line_number(int(ends[longer[0]]))))
         elements[element.name] = rows

@@ -225,3 +225,10 @@ def test_colours_are_the_same_if_lines_are_too_long() -> None:
     head, body = data.split(b"end_header\n")
     every = head + b"end_header\n" + body.replace(b"\n", b" 7\n")
     assert read_look(every).colors.tolist() == read_look(data).colors.tolist()
+
+
+def test_a_face_whose_number_of_corners_is_too_small_for_its_line_is_damage() -> None:
+    data = ply("ascii", [("vertex", XYZ, [list(vertex) for vertex in SOUP.vertices]), ("face", INDICES, [[[0, 1, 2]]])])
+    for row in (b"2 0 1 2\n", b"1 0 1 2\n", b"0 0 1 2\n"):
+        with pytest.raises(InvalidMesh):
+            read(data.replace(b"3 0 1 2\n", row))
