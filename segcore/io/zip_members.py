@@ -43,7 +43,9 @@ class ZipMembers:
             self._archive = zipfile.ZipFile(io.BytesIO(data))
         except (zipfile.BadZipFile, NotImplementedError, UnicodeDecodeError, ValueError, OverflowError) as error:
             raise InvalidMesh(f"The {what} is damaged or cut short: send it again.") from error
-        self._members = {normal_name(entry.filename): entry for entry in self._archive.infolist() if not entry.is_dir()}
+        entries = self._archive.infolist()
+        # ``ZipInfo.is_dir`` of Python 3.11 raises IndexError if a name is empty.
+        self._members = {normal_name(e.filename): e for e in entries if not e.filename.endswith("/")}
         self._what = what
         self._limits = limits
         self._unpacked = 0

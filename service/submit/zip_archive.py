@@ -54,7 +54,8 @@ def _members(archive: zipfile.ZipFile) -> Iterator[zipfile.ZipInfo]:
     """Yield the files of an archive, without folders, hidden files and files that operating systems add."""
     for member in archive.infolist():
         parts = PurePosixPath(member.filename).parts
-        if not member.is_dir() and not any(part.startswith(".") or part == "__MACOSX" for part in parts):
+        is_folder = not parts or member.filename.endswith("/")  # ``is_dir`` fails if the name is empty
+        if not is_folder and not any(part.startswith(".") or part == "__MACOSX" for part in parts):
             yield member
 
 

@@ -13,11 +13,11 @@ from urllib.parse import urlsplit
 import httpx
 import pytest
 
-from helpers.files.archives import archive
 from helpers.files.samples import gltf_square
 from helpers.installation import Installation
 from helpers.jobs import LONG, sphere
 from helpers.processes import is_alive
+from helpers.uploads import zip_of
 from helpers.waiting import wait_until
 
 
@@ -58,7 +58,7 @@ def test_a_mesh_in_an_archive_is_segmented_with_the_files_that_it_refers_to(inst
     asset = gltf_square()
     asset.document["buffers"] = [{"byteLength": len(asset.binary), "uri": "data/square.bin"}]
     scene, readme = json.dumps(asset.document).encode(), b"two faces"
-    body = archive({"model/scene.gltf": scene, "model/data/square.bin": asset.binary, "model/readme.txt": readme})
+    body = zip_of({"model/scene.gltf": scene, "model/data/square.bin": asset.binary, "model/readme.txt": readme})
     for content_type in ("application/zip", "application/octet-stream"):
         headers = {"Content-Type": content_type, "Cache-Control": "no-cache"}
         answer = httpx.post(f"{installation.url}/v1/jobs", content=body, headers=headers, timeout=60)
@@ -66,7 +66,7 @@ def test_a_mesh_in_an_archive_is_segmented_with_the_files_that_it_refers_to(inst
         job = finished(installation, str(answer.headers["Location"]))
         assert job["status"] == "succeeded", job
         assert job["mesh"]["report"]["faces"] == 2  # type: ignore[index]
-    two = archive({"a.off": sphere(8), "b.off": sphere(9)})
+    two = zip_of({"a.off": sphere(8), "b.off": sphere(9)})
     answer = httpx.post(f"{installation.url}/v1/jobs", files={"mesh": ("two.zip", two)}, timeout=60)
     job = finished(installation, str(answer.headers["Location"]))
     assert job["status"] == "failed"
