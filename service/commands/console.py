@@ -1,5 +1,7 @@
 """Output on a terminal: lines of text, a progress bar, and a board of progress bars."""
 
+import os
+import sys
 import threading
 from types import TracebackType
 from typing import TextIO
@@ -9,8 +11,14 @@ _NAME_WIDTH = 24  # of a name on the board; longer names are cut
 
 
 def say(text: str) -> None:
-    """Print text at once, also if the standard output is a pipe."""
-    print(text, flush=True)
+    """Print text at once. If the standard output is a pipe that has been closed, as ``head`` does, print nothing."""
+    try:
+        print(text, flush=True)
+    except BrokenPipeError:
+        # The work goes on. Otherwise the interpreter would complain when it writes the rest at its end.
+        nowhere = os.open(os.devnull, os.O_WRONLY)
+        os.dup2(nowhere, sys.stdout.fileno())
+        os.close(nowhere)
 
 
 class ProgressBar:

@@ -103,3 +103,16 @@ def test_the_summary_has_the_structure_of_the_file_and_says_if_it_fills_the_hier
 def test_a_file_without_groups_cannot_be_cut_by_them(mesh: Path, capsys: pytest.CaptureFixture[str]) -> None:
     assert main(["segment", str(mesh), "--structure", "groups"]) == 2
     assert "This file has no groups: use structure=shells" in capsys.readouterr().err
+
+
+def test_a_pipe_that_is_closed_early_is_no_error(mesh: Path, tmp_path: Path) -> None:
+    output = tmp_path / "parts.glb"
+    program = "import sys; from service.commands.main import main; sys.exit(main(sys.argv[1:]))"
+    command = [sys.executable, "-c", program, "segment", str(mesh), "-o", str(output)]
+    with subprocess.Popen(command, stdout=subprocess.PIPE, stderr=subprocess.PIPE) as process:
+        assert process.stdout is not None
+        assert process.stderr is not None
+        process.stdout.close()
+        errors = process.stderr.read()
+    assert (process.returncode, errors) == (0, b"")
+    assert output.stat().st_size > 0
