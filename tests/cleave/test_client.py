@@ -85,7 +85,7 @@ def test_the_asyncio_client_does_the_same(url: str, mesh: Path, tmp_path: Path) 
 
 def test_a_job_without_a_result_says_why(url: str) -> None:
     with Client(url) as client, pytest.raises(JobEnded, match="convert it") as ended:
-        client.segment(b"PK\3\4 this is no mesh")
+        client.segment(b"Kaydara FBX Binary  \0 this is no mesh")
     assert ended.value.job.status == "failed"
 
 
