@@ -43,7 +43,7 @@ MANY = zip_of({f"{number}.off": b"x" for number in range(6)})
         (b"PK\3\4 no archive", 400, "malformed_request"),
         (zip_of({}), 400, "malformed_request"),
         (zip_of(MESHES)[:-30], 400, "malformed_request"),
-        (zip_of({"a.off": b"abc"}).replace(b"a.off", b"\0.off"), 400, "malformed_request"),  # a name of no letters
+        (zip_of({"a.off": b"abc"}).replace(b"a.off", b"\0.off"), 400, "malformed_request"),  # an empty name
         (zip_of({"a.off": b"abc", "b.off": b""}), 422, "invalid_mesh"),
         (zip_of({"bomb.off": bytes(50_000_000)}), 413, "too_large"),
         (zip_of({f"{number}.off": bytes(150_000) for number in range(4)}), 413, "too_large"),
