@@ -11,7 +11,7 @@ import numpy as np
 
 from bench.learning.boundaries import boundary_rows
 from bench.learning.fitting import fit
-from bench.learning.folds import Fold
+from bench.learning.folds import Fold, apply_unseen, with_unseen
 from bench.learning.forests import grow_forest
 from bench.learning.rows import concatenated
 from bench.learning.splits import cut_rows, split_rows
@@ -21,7 +21,7 @@ from segcore.cut.features import FEATURES as CUT_FEATURES
 from segcore.cut.features import CutFeatures
 from segcore.cut.rules import SEVERAL_BODIES_FEATURES
 from segcore.learned.logistic import LogisticModel
-from segcore.learned.models import LearnedModels, using
+from segcore.learned.models import LearnedModels
 from segcore.warm_up import warm_up
 
 if TYPE_CHECKING:
@@ -69,9 +69,9 @@ def train(meshes: Sequence[Example], grouping: Grouping, jobs: int) -> list[Fold
         for name, left_out in groups.items()
     ]
     for _ in range(_ROUNDS):
-        cuts = map_in_processes(partial(_grow, _documents(folds)), meshes, jobs, warm_up)
+        cuts = map_in_processes(partial(apply_unseen, cut_rows), with_unseen(meshes, _documents(folds)), jobs, warm_up)
         folds = [replace(fold, models=_with_splits(fold.models, _seen(meshes, cuts, fold.left_out))) for fold in folds]
-    splits = map_in_processes(partial(_split, _documents(folds)), meshes, jobs, warm_up)
+    splits = map_in_processes(partial(apply_unseen, split_rows), with_unseen(meshes, _documents(folds)), jobs, warm_up)
     seen = [_seen(meshes, splits, fold.left_out, _ASSETS_IN_FOREST) for fold in folds]
     orders = map_in_processes(grow_forest, seen, jobs, warm_up)
     return [replace(fold, models=replace(fold.models, order=order)) for fold, order in zip(folds, orders, strict=True)]
@@ -108,16 +108,6 @@ def _groups(meshes: Sequence[Example], grouping: Grouping) -> dict[str, frozense
         name = example.group if grouping == "category" else f"fifth{position % 5 + 1}"
         groups.setdefault(name, set()).add(example.key)
     return {name: frozenset(numbers) for name, numbers in groups.items()}
-
-
-def _grow(models_of: dict[int | str, dict[str, object]], example: Example) -> Rows:
-    with using(LearnedModels.from_document(models_of[example.key])):
-        return cut_rows(example)
-
-
-def _split(models_of: dict[int | str, dict[str, object]], example: Example) -> Rows:
-    with using(LearnedModels.from_document(models_of[example.key])):
-        return split_rows(example)
 
 
 def _seen(meshes: Sequence[Example], rows: Sequence[Rows], left_out: frozenset[int | str], assets: float = 1.0) -> Rows:

@@ -9,6 +9,7 @@ from typing import BinaryIO
 
 from segcore.errors import UnsupportedFormat
 from segcore.io.source import GZIP_MAGIC
+from segcore.io.zip_members import ZIP_MAGIC
 
 
 @dataclass(frozen=True, slots=True)
@@ -48,10 +49,10 @@ _MARKUP_BYTES = 2**12  # from the beginning of a file, in which its first elemen
 _OBJ = re.compile(rb"(?:\s++|#[^\r\n]*+[\r\n])*+(?:v|vt|vn|vp|f|l|p|g|o|s|mg|usemtl|mtllib)(?=[ \t])")
 _OBJ_VERTEX = re.compile(rb"(?:^|[\r\n])[ \t]*+v[ \t]")
 _GLTF = re.compile(rb"\s*+\{")
-_ZIP, _ZIP_NAME = b"PK\x03\x04", 30  # the first bytes of an archive, and the offset of the name of its first member
+_ZIP_NAME = 30  # the offset of the name of the first member of an archive
 _RESULT_MEMBER = b"header.json"  # the first member of a .cleave file
 _FOREIGN = {
-    _ZIP: "a ZIP archive, but not 3MF",
+    ZIP_MAGIC: "a ZIP archive, but not 3MF",
     b"Kaydara FBX Binary": "FBX",
     b"<?xml": "XML (COLLADA, X3D or other)",
     b"ISO-10303-21": "STEP",
@@ -111,7 +112,7 @@ def detect_format(data: bytes, declared: str | None) -> str:
 
 def is_plain_archive(data: bytes) -> bool:
     """Whether a file is a ZIP archive that is neither 3MF nor a .cleave file."""
-    return data.startswith(_ZIP) and b".model" not in data and not data.startswith(_RESULT_MEMBER, _ZIP_NAME)
+    return data.startswith(ZIP_MAGIC) and b".model" not in data and not data.startswith(_RESULT_MEMBER, _ZIP_NAME)
 
 
 def is_ascii_stl(data: bytes) -> bool:
@@ -138,7 +139,7 @@ def _titles() -> str:
 
 def _foreign(data: bytes) -> str | None:
     """The name of a known format that has no reader, or None."""
-    if data.startswith(_ZIP) and data.startswith(_RESULT_MEMBER, _ZIP_NAME):
+    if data.startswith(ZIP_MAGIC) and data.startswith(_RESULT_MEMBER, _ZIP_NAME):
         return "a .cleave file, which cleave convert opens"
     return next((title for magic, title in _FOREIGN.items() if data.startswith(magic)), None)
 
@@ -164,7 +165,7 @@ def _page(data: bytes) -> str | None:
 def _found(data: bytes) -> str | None:
     if data.startswith(b"glTF"):
         return "glb"
-    if data.startswith(_ZIP) and b".model" in data:
+    if data.startswith(ZIP_MAGIC) and b".model" in data:
         return "3mf"
     if _PLY.match(data):
         return "ply"
