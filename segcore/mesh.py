@@ -8,6 +8,7 @@ from numpy.typing import ArrayLike
 
 from segcore.appearance import Appearance
 from segcore.arrays import BoolArray, FloatArray, IntArray
+from segcore.coordinates import UNKNOWN, Coordinates
 from segcore.errors import InvalidMesh
 from segcore.structure import FileStructure
 
@@ -20,8 +21,8 @@ class Mesh:
 
     Parameters
     ----------
-    vertices : (V, 3) coordinates, any unit; finite for the vertices that faces use. Other vertices count for nothing:
-        they keep their place in the array, and those without a usable position get that of a vertex of the first face.
+    vertices : (V, 3) coordinates; finite for the vertices that faces use. Other vertices count for nothing: they keep
+        their place in the array, and those without a usable position get that of a vertex of the first face.
     faces : (F, 3) indices into ``vertices``, F >= 1. Repeated indices, duplicate faces, open borders,
         non-manifold edges and several components are allowed.
     source_polygon : (F,) the polygon of the file, counted from 0, that each face is a part of; None if every polygon is
@@ -29,6 +30,7 @@ class Mesh:
     appearance : normals, texture coordinates, colours and groups of the file; None if they were not read.
     structure : the group and the material of every face; None if the file has neither.
     notes : sentences on what the reader left out of the file or repaired.
+    coordinates : the unit of length and the axis that points up, as far as they are known.
 
     Raises
     ------
@@ -42,6 +44,7 @@ class Mesh:
     appearance: Appearance | None = None
     structure: FileStructure | None = None
     notes: tuple[str, ...] = ()
+    coordinates: Coordinates = UNKNOWN
 
     def __init__(
         self,
@@ -51,6 +54,7 @@ class Mesh:
         appearance: Appearance | None = None,
         structure: FileStructure | None = None,
         notes: tuple[str, ...] = (),
+        coordinates: Coordinates = UNKNOWN,
     ) -> None:
         points = _checked_vertices(vertices)
         object.__setattr__(self, "faces", _checked_faces(faces, len(points)))
@@ -60,6 +64,7 @@ class Mesh:
         object.__setattr__(self, "appearance", appearance)
         object.__setattr__(self, "structure", structure)
         object.__setattr__(self, "notes", (*notes, *moved))
+        object.__setattr__(self, "coordinates", coordinates)
         if appearance is not None and not appearance.fits(len(self.vertices), len(self.faces)):
             raise InvalidMesh(
                 "The arrays of the appearance do not match the numbers of vertices and faces of the mesh."

@@ -9,6 +9,7 @@ from segcore.clean.surface import Surface, build_surface, distinct_faces
 from segcore.clean.topology import dual_edges
 from segcore.clean.welding import weld
 from segcore.coarsen.authored import MOST_AUTHORED, authored_parts
+from segcore.coordinates import Axis, Unit
 from segcore.mesh import Mesh
 from segcore.parameters import Structure
 
@@ -65,6 +66,9 @@ class MeshReport:
     structure: StructureCounts | None = None  # None in reports of earlier versions
     stitched_edges: int = 0  # border edges that are joined to others across cracks and at T-junctions
     stitched_gap: float = 0.0  # widest gap between two of them, in units of the mesh: the tolerance that was found
+    unit: Unit | None = None  # of the coordinates; None if it is not known
+    up: Axis | None = None  # the axis that points up; None if it is not known
+    shown_up: Axis = "y"  # the axis that points up in pictures
     notes: tuple[str, ...] = ()  # what the reader left out of the file or repaired, in sentences
 
 
@@ -112,6 +116,9 @@ def mesh_report(mesh: Mesh, surface: Surface | None = None) -> MeshReport:
         structure=counts,
         stitched_edges=surface.stitched_edges,
         stitched_gap=surface.stitched_gap * surface.unit,
+        unit=mesh.coordinates.unit,
+        up=mesh.coordinates.up,
+        shown_up=mesh.coordinates.shown_up,
         notes=mesh.notes,
     )
 

@@ -59,16 +59,26 @@ class Connection:
 
 def submission_of(
     mesh: Mesh,
+    *,
     parameters: Mapping[str, object] | None,
     format: str | None,  # noqa: A002
-    webhook: str | None,
-    idempotency_key: str | None,
-    recompute: bool,
+    unit: str | None,
+    up: str | None,
+    webhook: str | None = None,
+    idempotency_key: str | None = None,
+    recompute: bool = False,
 ) -> Submission:
     source = mesh if isinstance(mesh, bytes) else Path(mesh)
     key = {} if idempotency_key is None else {"idempotency_key": idempotency_key}
     return Submission(
-        mesh=source, format=format, parameters=parameters or {}, webhook=webhook, recompute=recompute, **key
+        mesh=source,
+        format=format,
+        unit=unit,
+        up=up,
+        parameters=parameters or {},
+        webhook=webhook,
+        recompute=recompute,
+        **key,
     )
 
 

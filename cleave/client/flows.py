@@ -41,6 +41,8 @@ class Submission:
     mesh: Path | bytes
     file_name: str | None = None
     format: str | None = None
+    unit: str | None = None
+    up: str | None = None
     parameters: Mapping[str, object] = field(default_factory=dict)
     webhook: str | None = None
     idempotency_key: str = field(default_factory=lambda: secrets.token_urlsafe(16))
@@ -51,6 +53,8 @@ class Submission:
         params = {
             "file_name": name,
             "format": self.format,
+            "unit": self.unit,
+            "up": self.up,
             "parameters": json.dumps(dict(self.parameters)) if self.parameters else None,
             "webhook": self.webhook,
             **(level or {}),

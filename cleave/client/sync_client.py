@@ -59,12 +59,30 @@ class Client:
         *,
         parameters: Mapping[str, object] | None = None,
         format: str | None = None,  # noqa: A002
+        unit: str | None = None,
+        up: str | None = None,
         webhook: str | None = None,
         idempotency_key: str | None = None,
         recompute: bool = False,
     ) -> Job:
-        """Submit a mesh and return its job at once."""
-        return self._run(flows.submit(submission_of(mesh, parameters, format, webhook, idempotency_key, recompute)))
+        """Submit a mesh and return its job at once.
+
+        Parameters
+        ----------
+        unit, up : the unit of the coordinates, such as ``mm``, and the axis that points up, ``y`` or ``z``, if the file
+            does not name them.
+        """
+        submission = submission_of(
+            mesh,
+            parameters=parameters,
+            format=format,
+            unit=unit,
+            up=up,
+            webhook=webhook,
+            idempotency_key=idempotency_key,
+            recompute=recompute,
+        )
+        return self._run(flows.submit(submission))
 
     def segment(
         self,
@@ -74,6 +92,8 @@ class Client:
         granularity: float | None = None,
         parameters: Mapping[str, object] | None = None,
         format: str | None = None,  # noqa: A002
+        unit: str | None = None,
+        up: str | None = None,
     ) -> Segmentation:
         """Submit a mesh and wait for its labels.
 
@@ -81,8 +101,9 @@ class Client:
         ----------
         segments : number of segments; None for the automatic number.
         granularity : 0 (coarse) to 1 (fine), in place of a number of segments.
+        unit, up : as of ``submit``.
         """
-        submission = submission_of(mesh, parameters, format, None, None, False)
+        submission = submission_of(mesh, parameters=parameters, format=format, unit=unit, up=up)
         return self._run(flows.segment(submission, flows.level_of(segments, granularity)))
 
     def job(self, job_id: str, *, wait_s: float = 0.0) -> Job:

@@ -6,6 +6,7 @@ functions by name), plain meshes (``write_mesh``), labels and the hierarchy as J
 (``write_result``, ``read_result``) and pictures (``draw``, ``write_png``).
 """
 
+from segcore.io.converting import with_coordinates
 from segcore.io.formats import FORMATS, Format, declared_format
 from segcore.io.gltf.writer import write_glb
 from segcore.io.labels import hierarchy_document, labels_document, runs_document, write_json, write_npy, write_seg
@@ -39,6 +40,7 @@ __all__ = [
     "read_mesh",
     "read_result",
     "runs_document",
+    "with_coordinates",
     "write_3mf",
     "write_glb",
     "write_json",

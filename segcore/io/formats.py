@@ -7,6 +7,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import BinaryIO
 
+from segcore.coordinates import UNKNOWN, Coordinates
 from segcore.errors import UnsupportedFormat
 from segcore.io.source import GZIP_MAGIC
 from segcore.io.zip_members import ZIP_MAGIC
@@ -14,21 +15,34 @@ from segcore.io.zip_members import ZIP_MAGIC
 
 @dataclass(frozen=True, slots=True)
 class Format:
-    """The names of a mesh format."""
+    """The names of a mesh format, and what its coordinates mean."""
 
     title: str
     extensions: tuple[str, ...]  # with the dot, the usual one first
     media_types: tuple[str, ...]  # the usual one first
+    coordinates: Coordinates = UNKNOWN
 
+
+_GLTF_COORDINATES = Coordinates("meter", "y")
 
 FORMATS: dict[str, Format] = {
     "off": Format("OFF", (".off", ".coff", ".noff", ".cnoff"), ("model/off", "application/off", "application/x-off")),
-    "stl": Format("STL", (".stl", ".stla", ".stlb"), ("model/stl", "application/sla", "application/vnd.ms-pki.stl")),
+    "stl": Format(
+        "STL",
+        (".stl", ".stla", ".stlb"),
+        ("model/stl", "application/sla", "application/vnd.ms-pki.stl"),
+        Coordinates(usual_up="z"),
+    ),
     "ply": Format("PLY", (".ply",), ("model/ply", "application/ply", "application/x-ply")),
     "obj": Format("OBJ", (".obj",), ("model/obj", "application/x-tgif")),
-    "glb": Format("GLB", (".glb",), ("model/gltf-binary",)),
-    "gltf": Format("glTF", (".gltf",), ("model/gltf+json",)),
-    "3mf": Format("3MF", (".3mf",), ("model/3mf", "application/vnd.ms-package.3dmanufacturing-3dmodel+xml")),
+    "glb": Format("GLB", (".glb",), ("model/gltf-binary",), _GLTF_COORDINATES),
+    "gltf": Format("glTF", (".gltf",), ("model/gltf+json",), _GLTF_COORDINATES),
+    "3mf": Format(
+        "3MF",
+        (".3mf",),
+        ("model/3mf", "application/vnd.ms-package.3dmanufacturing-3dmodel+xml"),
+        Coordinates("millimeter", "z", "z"),  # the reader converts other units to millimetres
+    ),
 }
 
 _BOM = b"\xef\xbb\xbf"

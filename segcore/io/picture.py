@@ -9,6 +9,7 @@ from numba import njit
 from numpy.typing import NDArray
 
 from segcore.arrays import FloatArray, IntArray, transformed
+from segcore.coordinates import Coordinates
 from segcore.io.palette import segment_colors
 from segcore.mesh import Mesh, face_normals_and_areas
 
@@ -35,13 +36,15 @@ def draw(mesh: Mesh, labels: IntArray, size: int = 512, azimuth: float = 30.0, e
     ----------
     labels : (F,) the segment of each face.
     size : width and height in pixels.
-    azimuth, elevation : direction to the viewer in degrees: about the y axis from +z to +x, and above the xz plane.
+    azimuth, elevation : direction to the viewer in degrees: about the vertical axis, from the front of the mesh (+z, or
+        -y if z points up) to its +x, and above the horizontal plane.
 
     Returns
     -------
-    (size, size, 4) uint8, red, green, blue and opacity: an orthographic view of the whole mesh, y up.
+    (size, size, 4) uint8, red, green, blue and opacity: an orthographic view of the whole mesh, upright.
     """
-    view = _view(azimuth, elevation)
+    upright = Coordinates(up=mesh.coordinates.shown_up).rotation_to("y")
+    view = transformed(_view(azimuth, elevation), upright.T)
     seen = transformed(np.clip(mesh.vertices, *mesh.bounds), view)
     used = seen[mesh.is_used]
     low, high = used.min(axis=0), used.max(axis=0)

@@ -3,14 +3,17 @@
 import io
 import os
 from collections.abc import Callable
+from dataclasses import replace
 from functools import partial
 from pathlib import Path
 from typing import BinaryIO
 
 import numpy as np
 
+from segcore.coordinates import axis_named, unit_named
+from segcore.io.converting import with_coordinates
 from segcore.io.file_sets import Companions, FolderCompanions, NoCompanions, model_in_archive, model_in_folder
-from segcore.io.formats import declared_format, detect_format, is_plain_archive
+from segcore.io.formats import FORMATS, declared_format, detect_format, is_plain_archive
 from segcore.io.gltf.reader import read_gltf
 from segcore.io.limits import ReadLimits
 from segcore.io.obj.reader import read_obj
@@ -37,6 +40,8 @@ def read_mesh(
     limits: ReadLimits | None = None,
     appearance: bool = False,
     neighbours: bool = False,
+    unit: str | None = None,
+    up: str | None = None,
 ) -> Mesh:
     """Read a mesh file, which may be compressed with gzip, or the one mesh in a ZIP archive.
 
@@ -56,9 +61,14 @@ def read_mesh(
         they can be read. Reading is faster without.
     neighbours : also read the files in the folder of a path, and below it, that the mesh file refers to; if the path is
         a folder, read the one mesh in it.
+    unit : the unit of the coordinates, such as ``mm``, if the file does not name it or names a wrong one. The
+        coordinates do not change; they are known to be in this unit (:class:`segcore.coordinates.Coordinates`).
+    up : the axis that points up, ``y`` or ``z``, in the same way.
 
     Raises
     ------
+    InvalidParameters
+        If there is no such unit or axis.
     UnsupportedFormat
         If the format, or a feature that the file needs, cannot be read, or an archive or a folder does not have exactly
         one mesh.
@@ -70,6 +80,7 @@ def read_mesh(
         If a path cannot be read.
     """
     limits = limits or ReadLimits()
+    unit, up = unit and unit_named(unit), up and axis_named(up)
     companions: Companions = NoCompanions()
     if neighbours and isinstance(source, str | os.PathLike):
         source = model_in_folder(Path(source))
@@ -83,4 +94,5 @@ def read_mesh(
     form = detect_format(data, declared)
     reader = partial(read_gltf, companions=companions) if form in ("glb", "gltf") else _READERS[form]
     with np.errstate(all="ignore"):  # Mesh refuses numbers that overflow, as not finite
-        return reader(data, limits, appearance)
+        mesh = reader(data, limits, appearance)
+    return with_coordinates(replace(mesh, coordinates=FORMATS[form].coordinates), unit, up)

@@ -4,7 +4,8 @@ Format, version 1. A ZIP archive whose members are stored without compression, i
 that equal results have equal bytes:
 
     header.json           {"format": "cleave-result", "version": 1, "automatic_segments": int,
-                           "limit_reached": bool or null}
+                           "limit_reached": bool or null, "unit": str or null, "up": "y", "z" or null,
+                           "usual_up": "y" or "z"}
     vertices.npy          (V, 3) float64    faces.npy        (F, 3) int32
     source_polygon.npy    (F,) int32, absent if every polygon of the input is one face
     split_node.npy        (S,) int32        cut_value.npy    (S,) float64
@@ -21,8 +22,8 @@ Then those that the appearance of the mesh has (A rows: one for each vertex, the
 
 The arrays are little-endian, in C order, in NumPy's ``.npy`` format 1.0, and mean what the attributes of the same names
 of Mesh, Hierarchy and Appearance mean. A program may ignore unknown members. Nothing in the file is ever unpickled.
-Files of earlier versions of Cleave have no ``limit_reached``, which is then not known, and no ``step``: every split is
-a step.
+Files of earlier versions of Cleave have no ``limit_reached``, ``unit`` and ``up``, which are then not known, and no
+``step``: every split is a step.
 """
 
 import json
@@ -30,14 +31,15 @@ import math
 import os
 import re
 import zipfile
-from dataclasses import dataclass
+from dataclasses import asdict, dataclass, fields
 from types import NoneType
-from typing import Any, BinaryIO
+from typing import Any, BinaryIO, get_args
 
 import numpy as np
 from numpy.typing import NDArray
 
 from segcore.appearance import Appearance
+from segcore.coordinates import Axis, Coordinates, Unit
 from segcore.errors import InvalidMesh, InvalidParameters
 from segcore.hierarchy import Hierarchy
 from segcore.io.archive import member, write_array
@@ -93,6 +95,7 @@ def write_result(target: BinaryIO, mesh: Mesh, hierarchy: Hierarchy) -> None:
         "version": _VERSION,
         "automatic_segments": hierarchy.automatic_segments,
         "limit_reached": hierarchy.limit_reached,
+        **asdict(mesh.coordinates),
     }
     with zipfile.ZipFile(target, "w", zipfile.ZIP_STORED) as archive:
         archive.writestr(member(_HEADER), json.dumps(header))
@@ -162,7 +165,13 @@ def _unpack(archive: zipfile.ZipFile) -> Segmentation:
         for arrays in (_MESH_ARRAYS, _TREE_ARRAYS)
     )
     looks = _read_appearance(archive, present)
-    mesh = Mesh(mesh_arrays["vertices"], mesh_arrays["faces"], mesh_arrays.get("source_polygon"), looks)
+    mesh = Mesh(
+        mesh_arrays["vertices"],
+        mesh_arrays["faces"],
+        mesh_arrays.get("source_polygon"),
+        looks,
+        coordinates=_coordinates(header),
+    )
     hierarchy = Hierarchy(
         **tree_arrays, automatic_segments=header["automatic_segments"], limit_reached=header.get("limit_reached")
     )
@@ -180,6 +189,14 @@ def _read_appearance(archive: zipfile.ZipFile, present: set[str]) -> Appearance 
     if not isinstance(names, list) or not all(isinstance(name, str) for name in names):
         raise InvalidMesh("The names of groups in the .cleave file are damaged: make the file again.")
     return Appearance(**arrays, group_names=tuple(names))
+
+
+def _coordinates(header: dict[str, Any]) -> Coordinates:
+    values = {field.name: header.get(field.name, field.default) for field in fields(Coordinates)}
+    is_known = values["unit"] in (None, *get_args(Unit)) and values["up"] in (None, *get_args(Axis))
+    if not is_known or values["usual_up"] not in get_args(Axis):
+        raise InvalidMesh("The unit or the axis in the header of the .cleave file is not a known one: make it again.")
+    return Coordinates(**values)
 
 
 def _read_header(archive: zipfile.ZipFile) -> dict[str, Any]:

@@ -14,7 +14,7 @@ from segcore.io.ply.writer import write_ply
 from segcore.io.result import write_result
 from segcore.io.threemf.writer import write_3mf
 
-WriteOption: TypeAlias = Literal["names", "all_levels", "features", "capped", "part_format"]
+WriteOption: TypeAlias = Literal["names", "all_levels", "features", "capped", "part_format", "unit", "up"]
 
 # What each option of a writer does, in the order of the command line.
 WRITE_OPTIONS: dict[WriteOption, str] = {
@@ -23,8 +23,14 @@ WRITE_OPTIONS: dict[WriteOption, str] = {
     "features": "the hierarchy as EXT_structural_metadata, with EXT_mesh_features",
     "capped": "close every part, for printing",
     "part_format": "the files in it",
+    "unit": "the unit of the coordinates, such as mm, if that of the mesh is known",
+    "up": "the axis that points up, y or z, if that of the mesh is known",
 }
 _MODEL: frozenset[WriteOption] = frozenset({"names"})
+_FREE: frozenset[WriteOption] = _MODEL | {
+    "unit",
+    "up",
+}  # of formats whose coordinates have no unit and no axis of their own
 
 
 @dataclass(frozen=True, slots=True)
@@ -48,15 +54,15 @@ WRITERS: dict[str, Writer] = {
     "glb": Writer(
         "GLB, a coloured node per segment", ".glb", "model/gltf-binary", write_glb, _MODEL | {"all_levels", "features"}
     ),
-    "ply": Writer("PLY, a colour and a label per face", ".ply", "model/ply", write_ply, _MODEL),
-    "obj": Writer("OBJ, a group per segment", ".obj", "model/obj", write_obj, _MODEL),
+    "ply": Writer("PLY, a colour and a label per face", ".ply", "model/ply", write_ply, _FREE),
+    "obj": Writer("OBJ, a group per segment", ".obj", "model/obj", write_obj, _FREE),
     "3mf": Writer("3MF, an object per segment", ".3mf", "model/3mf", write_3mf, _MODEL | {"capped"}),
     "zip": Writer(
         "ZIP archive, an STL file per segment",
         ".zip",
         "application/zip",
         write_parts,
-        _MODEL | {"part_format", "capped"},
+        _FREE | {"part_format", "capped"},
     ),
     "seg": Writer(
         "label of every face, one per line",

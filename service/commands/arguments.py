@@ -7,6 +7,8 @@ from pathlib import Path
 from typing import get_args
 
 from cleave.settings import Settings
+from segcore.coordinates import Axis, Unit, unit_named
+from segcore.errors import InvalidParameters
 from segcore.parameters import Structure
 
 
@@ -43,6 +45,21 @@ def add_structure(parser: argparse.ArgumentParser) -> None:
         help="what of the file the first levels follow: its connected components, its nodes and groups, or its "
         "materials (none)",
     )
+
+
+def add_coordinates(parser: argparse.ArgumentParser) -> None:
+    """Add ``--unit`` and ``--up``, the meaning of the coordinates of a mesh file."""
+    parser.add_argument(
+        "--unit", type=_unit, metavar="UNIT", help="unit of the coordinates, such as mm, if the file does not name it"
+    )
+    parser.add_argument("--up", choices=get_args(Axis), help="axis that points up, if the file does not name it")
+
+
+def _unit(text: str) -> Unit:
+    try:
+        return unit_named(text)
+    except InvalidParameters as error:
+        raise argparse.ArgumentTypeError(str(error)) from error
 
 
 def add_data_dir(parser: argparse.ArgumentParser) -> None:

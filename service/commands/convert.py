@@ -3,9 +3,10 @@
 import argparse
 from pathlib import Path
 
+from segcore.io import with_coordinates
 from segcore.io.result import read_result
 from segcore.levels import Fineness
-from service.commands.arguments import add_level
+from service.commands.arguments import add_coordinates, add_level
 from service.commands.console import say
 from service.commands.outputs import add_outputs, check_outputs, output_options, write_model
 from service.commands.summary import level_summary
@@ -14,6 +15,7 @@ from service.commands.summary import level_summary
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     parser.description = "Write the segmentation of a .cleave file in other formats, with any number of segments."
     parser.add_argument("result", type=Path, metavar="MESH.cleave", help="a file that cleave segment --result wrote")
+    add_coordinates(parser)
     add_level(parser, "the automatic one")
     add_outputs(parser, required=True)
 
@@ -31,9 +33,10 @@ def run(choices: argparse.Namespace) -> None:
     fineness, outputs = Fineness(choices.segments, choices.granularity), choices.output
     check_outputs(outputs)
     result = read_result(choices.result)
+    mesh = with_coordinates(result.mesh, choices.unit, choices.up)
     segments = fineness.segments_of(result.hierarchy)
     for path in outputs:
-        write_model(path, result.mesh, result.hierarchy, segments, output_options(choices))
+        write_model(path, mesh, result.hierarchy, segments, output_options(choices))
     say(level_summary(result.hierarchy, segments, fineness))
     for path in outputs:
         say(f"wrote {path}")

@@ -7,12 +7,14 @@ from pathlib import Path
 
 import segcore
 from segcore.report import MeshReport, mesh_report
+from service.commands.arguments import add_coordinates
 from service.commands.console import say
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     parser.description = "Report what a mesh file contains: components, borders, and defects that segmentation repairs."
     parser.add_argument("mesh", type=Path, metavar="MESH", help="the mesh file, or a folder or ZIP archive with one")
+    add_coordinates(parser)
     parser.add_argument("--json", action="store_true", help="print the report as JSON")
 
 
@@ -26,7 +28,9 @@ def run(choices: argparse.Namespace) -> None:
     OSError
         If the file cannot be read.
     """
-    report = mesh_report(segcore.read_mesh(choices.mesh, appearance=True, neighbours=True))
+    report = mesh_report(
+        segcore.read_mesh(choices.mesh, appearance=True, neighbours=True, unit=choices.unit, up=choices.up)
+    )
     if choices.json:
         say(json.dumps(asdict(report), indent=2, allow_nan=False))
     else:
@@ -39,7 +43,8 @@ def _lines(name: str, report: MeshReport) -> list[str]:
     lines = [
         f"{name}: {report.faces} faces, {report.vertices} vertices"
         + (f", {report.polygons} polygons" if report.polygons != report.faces else ""),
-        f"size {size}, area {report.area:g}" + ("" if report.volume is None else f", volume {report.volume:g}"),
+        f"size {size}{_meaning(report)}, area {report.area:g}"
+        + ("" if report.volume is None else f", volume {report.volume:g}"),
         f"{_count(report.components, 'component')}, {'closed' if report.is_closed else 'not closed'}",
     ]
     if report.stitched_edges:
@@ -51,6 +56,12 @@ def _lines(name: str, report: MeshReport) -> list[str]:
     if report.groups:
         lines.append(f"{_count(len(report.groups), 'group')}: {', '.join(name or '(none)' for name in report.groups)}")
     return [*lines, *report.notes]
+
+
+def _meaning(report: MeshReport) -> str:
+    """The unit and the axis that points up, as far as they are known, to follow the size."""
+    known = [report.unit, f"{report.up} up" if report.up else None]
+    return "".join(f" {word}" for word in known if word)
 
 
 def _defects(report: MeshReport) -> list[tuple[int, str, str]]:

@@ -29,6 +29,10 @@ def add_outputs(parser: argparse.ArgumentParser, required: bool = False) -> None
     parser.add_argument(
         "--features", action="store_true", help="GLB: the hierarchy as EXT_structural_metadata, with EXT_mesh_features"
     )
+    parser.add_argument(
+        "--output-unit", metavar="UNIT", help="OBJ, PLY and ZIP: convert the coordinates to this unit, such as mm"
+    )
+    parser.add_argument("--output-up", metavar="AXIS", help="OBJ, PLY and ZIP: turn the mesh so that y or z points up")
     parser.add_argument("--capped", action="store_true", help="3MF and ZIP: close every part, for printing")
     parser.add_argument("--parts", choices=("stl", "obj"), default="stl", help="ZIP: format of its files (%(default)s)")
 
@@ -39,6 +43,8 @@ def output_options(choices: argparse.Namespace) -> dict[str, object]:
         "all_levels": choices.all_levels,
         "features": choices.features,
         "capped": choices.capped,
+        "unit": choices.output_unit,
+        "up": choices.output_up,
         "part_format": choices.parts,
     }
 

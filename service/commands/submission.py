@@ -6,6 +6,7 @@ import threading
 from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
+from typing import Any
 
 from cleave.client import Client
 from cleave.client.documents import Job
@@ -23,6 +24,8 @@ class Submission:
     path: Path
     name: str  # of its results, without an extension
     parameters: dict[str, object]
+    unit: str | None  # of the coordinates; None: as the file has it
+    up: str | None
     segments: int | None
     granularity: float | None
     results: Sequence[str]  # keys of RESULTS
@@ -42,6 +45,7 @@ class Submission:
         with self.path.open("rb") as file:
             digest.update(hashlib.file_digest(file, "sha256").digest())
         digest.update(self.path.suffix.lower().encode())
+        digest.update("".join(f"&{said}" for said in (self.unit, self.up) if said).encode())
         return f"cleave-submit-{digest.hexdigest()}"
 
 
@@ -78,15 +82,14 @@ def _finished_job(client: Client, submission: Submission, board: ProgressBoard, 
 
 
 def _submitted_job(client: Client, submission: Submission) -> Job:
+    options: dict[str, Any] = {"parameters": submission.parameters, "unit": submission.unit, "up": submission.up}
     key = None if submission.again else submission.idempotency_key()
     try:
-        return client.submit(
-            submission.path, parameters=submission.parameters, idempotency_key=key, recompute=submission.again
-        )
+        return client.submit(submission.path, idempotency_key=key, recompute=submission.again, **options)
     except RequestRefused as refusal:
         if refusal.code != "idempotency_key_spent":
             raise
-        return client.submit(submission.path, parameters=submission.parameters)  # the first job was deleted
+        return client.submit(submission.path, **options)  # the first job was deleted
 
 
 def _level_name(job: Job, submission: Submission) -> str:

@@ -9,7 +9,7 @@ from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
 
 from cleave.client import Client
-from service.commands.arguments import add_level, add_parameters, add_structure
+from service.commands.arguments import add_coordinates, add_level, add_parameters, add_structure
 from service.commands.console import ProgressBoard, say
 from service.commands.server_results import DEFAULT_RESULTS, RESULTS, result_names
 from service.commands.submission import Submission, submit_file
@@ -32,6 +32,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     parser.epilog = "exit status: 0 all done, 1 some files failed, 2 nothing was tried, 130 interrupted"
     parser.add_argument("files", type=Path, nargs="+", metavar="FILE", help="mesh files")
     parser.add_argument("--server", default=_DEFAULT_SERVER, metavar="URL", help="of the service (%(default)s)")
+    add_coordinates(parser)
     add_level(parser, "chosen by each mesh")
     add_structure(parser)
     add_parameters(parser, "max_segments=100")
@@ -99,6 +100,8 @@ def _submissions(choices: argparse.Namespace) -> list[Submission]:
             path,
             name,
             parameters=parameters,
+            unit=choices.unit,
+            up=choices.up,
             segments=choices.segments,
             granularity=choices.granularity,
             results=choices.results,

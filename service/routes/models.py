@@ -2,11 +2,12 @@
 
 from collections.abc import Awaitable, Callable
 from inspect import Parameter, Signature
-from typing import Annotated, Any, Literal
+from typing import Annotated, Any, Literal, get_args
 
 from fastapi import APIRouter, Depends, Query
 from starlette.responses import Response
 
+from segcore.coordinates import Axis, Unit
 from segcore.io import PartFormat, WriteOption, Writer
 from service.answer.model_formats import MODELS, model_file, operation_name
 from service.answer.models import PNG, model_rendition, preview_rendition
@@ -40,6 +41,28 @@ OPTIONS: dict[WriteOption, tuple[Any, object]] = {
     "part_format": (
         Annotated[PartFormat, Query(description="The format of the files of the parts.")],
         "stl",
+    ),
+    "unit": (
+        Annotated[
+            str | None,
+            Query(
+                max_length=40,
+                description="Convert the coordinates to this unit, for example mm; that of the mesh must be known.",
+                json_schema_extra={"enum": list(get_args(Unit))},
+            ),
+        ],
+        None,
+    ),
+    "up": (
+        Annotated[
+            str | None,
+            Query(
+                max_length=40,
+                description="Turn the mesh so that this axis points up, y or z; that of the mesh must be known.",
+                json_schema_extra={"enum": list(get_args(Axis))},
+            ),
+        ],
+        None,
     ),
     "capped": (Annotated[bool, Query(description="Close every part at its cuts, for printing.")], False),
 }

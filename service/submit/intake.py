@@ -4,6 +4,7 @@ import logging
 from dataclasses import asdict, dataclass
 
 from cleave.logs import about, current_traceparent
+from segcore.coordinates import Axis, Unit
 from segcore.parameters import SegmentationParameters
 from service.context import Context
 from service.guard.callers import Caller
@@ -24,6 +25,8 @@ class JobRequest:
 
     parameters: SegmentationParameters
     mesh_format: str | None = None
+    unit: Unit | None = None  # of the coordinates; None: as the file has it
+    up: Axis | None = None  # the axis that points up, in the same way
     file_name: str | None = None
     webhook_url: str | None = None
     idempotency_key: str | None = None
@@ -81,6 +84,8 @@ def _new_job(context: Context, caller: Caller, mesh: ReceivedMesh, wanted: JobRe
         sha256=upload.sha256,
         size_bytes=upload.size_bytes,
         mesh_format=wanted.mesh_format or mesh_format(name),
+        unit=wanted.unit,
+        up=wanted.up,
         parameters=asdict(wanted.parameters),
         created_at=now(),
         file_name=file_label(name),

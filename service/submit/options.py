@@ -1,10 +1,11 @@
 """The query parameters and headers of submissions."""
 
 from dataclasses import dataclass
-from typing import Annotated
+from typing import Annotated, get_args
 
 from fastapi import Depends, Header, Query
 
+from segcore.coordinates import Axis, Unit, axis_named, unit_named
 from segcore.errors import InvalidParameters
 from segcore.io import FORMATS
 from segcore.levels import Fineness
@@ -23,6 +24,25 @@ Webhook = Annotated[
         examples=["https://example.com/hook"],
     ),
 ]
+UnitOfMesh = Annotated[
+    str | None,
+    Query(
+        max_length=40,
+        description="The unit of the coordinates, if the mesh does not name it: for example mm. Results that name a "
+        "unit are converted.",
+        json_schema_extra={"enum": list(get_args(Unit))},
+        examples=["millimeter"],
+    ),
+]
+UpOfMesh = Annotated[
+    str | None,
+    Query(
+        max_length=40,
+        description="The axis that points up, y or z, if the mesh does not name it.",
+        json_schema_extra={"enum": list(get_args(Axis))},
+        examples=["z"],
+    ),
+]
 
 
 @dataclass(frozen=True, slots=True)
@@ -38,6 +58,8 @@ class JobOptions:
             examples=["stl"],
         ),
     ] = None
+    unit: UnitOfMesh = None
+    up: UpOfMesh = None
     parameters: ParametersInQuery = None
     segments: Annotated[
         int | None, Query(ge=1, description="The number of segments of the labels in the response.")
@@ -74,7 +96,7 @@ class JobOptions:
         Raises
         ------
         InvalidParameters
-            If the parameters are not valid, or the level does not exist with them.
+            If the parameters, the unit or the axis are not valid, or the level does not exist with them.
         """
         parameters = requested_parameters(form.parameters, self.parameters)
         if self.segments is not None and self.segments > parameters.segment_limit:
@@ -82,6 +104,8 @@ class JobOptions:
         return JobRequest(
             parameters=parameters,
             mesh_format=mesh_format,
+            unit=None if self.unit is None else unit_named(self.unit),
+            up=None if self.up is None else axis_named(self.up),
             file_name=self.file_name,
             webhook_url=self.webhook,
             idempotency_key=self.idempotency_key,
@@ -93,6 +117,8 @@ class JobOptions:
 class BatchOptions:
     """The options of a batch, the same for all of its jobs."""
 
+    unit: UnitOfMesh = None
+    up: UpOfMesh = None
     parameters: ParametersInQuery = None
     webhook: Webhook = None
 
@@ -102,9 +128,14 @@ class BatchOptions:
         Raises
         ------
         InvalidParameters
-            If the parameters are not valid.
+            If the parameters, the unit or the axis are not valid.
         """
-        return JobRequest(parameters=requested_parameters(form.parameters, self.parameters), webhook_url=self.webhook)
+        return JobRequest(
+            parameters=requested_parameters(form.parameters, self.parameters),
+            unit=None if self.unit is None else unit_named(self.unit),
+            up=None if self.up is None else axis_named(self.up),
+            webhook_url=self.webhook,
+        )
 
 
 JobOptionsOf = Annotated[JobOptions, Depends()]

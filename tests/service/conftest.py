@@ -38,8 +38,8 @@ def client_without_queue(settings: Settings, tmp_path: Path) -> Iterator[httpx.C
 def finished_job(client: httpx.Client, settings: Settings, store: JobStore) -> Callable[..., str]:
     """Return a function that submits a mesh, runs its job and returns the path of the job."""
 
-    def submit_and_perform(mesh: bytes | None = None) -> str:
-        answer = client.post("/v1/jobs", files={"mesh": ("mesh.off", mesh or sphere(12))}, headers=AGAIN)
+    def submit_and_perform(mesh: bytes | None = None, **query: str) -> str:
+        answer = client.post("/v1/jobs", files={"mesh": ("mesh.off", mesh or sphere(12))}, params=query, headers=AGAIN)
         assert answer.status_code == 202, answer.text
         perform(store, settings, answer.json()["id"], lambda *_: None)
         return answer.headers["Location"]

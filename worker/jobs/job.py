@@ -19,6 +19,8 @@ class Job:
     sha256: str  # of the mesh file, in hexadecimal
     size_bytes: int  # of the mesh file
     mesh_format: str | None  # a hint from the client or its file name; None: detected from the bytes alone
+    unit: str | None = None  # of the coordinates, as the client says; None: as the file has it
+    up: str | None = None  # the axis that points up, in the same way
     parameters: dict[str, Any]  # every field of SegmentationParameters
     created_at: datetime  # UTC
     file_name: str | None = None  # the client's name of the file, for display; never used as a path

@@ -52,7 +52,10 @@ def write_glb(
     ``input_faces[first_face + t]``.
 
     Coordinates that float32 would round visibly are stored relative to the centre; then the root node has the offset
-    (and the unit, for meshes far smaller or larger than anything that float32 can square).
+    (and the unit, for meshes far smaller or larger than anything that float32 can square). If the unit of the mesh or
+    the axis that points up is known and is not that of glTF, metres and y, the transform of the root node converts the
+    mesh; the positions do not change. ``extras`` of the scene has ``unit``, ``up`` and ``shown_up``, as the report of
+    the mesh has them.
 
     Parameters
     ----------
@@ -73,6 +76,8 @@ def write_glb(
     slices = group(drawing.of_face, len(drawing.nodes))
     corners = mesh.faces if look.corners is None else look.corners
     document = scene_document(hierarchy, drawing, placement, slices, segment_names(names, len(drawing.nodes)))
+    known = mesh.coordinates
+    document["scenes"][0]["extras"] |= {"unit": known.unit, "up": known.up, "shown_up": known.shown_up}
     glb = GlbFile(document, [placement.positions, corners[slices.faces].astype("<u4"), slices.faces.astype("<u4")])
     add_attributes(glb, look)
     name_groups(glb, look, slices)

@@ -122,6 +122,8 @@ def _nodes(
             nodes.append({"name": names[k], "mesh": k, "extras": extras})
     if any(placement.translation):
         nodes[0]["translation"] = placement.translation
+    if placement.rotation is not None:
+        nodes[0]["rotation"] = placement.rotation
     if placement.scale != 1.0:
         nodes[0]["scale"] = [placement.scale] * 3
     return nodes

@@ -8,6 +8,7 @@ import numpy as np
 from segcore.appearance import Appearance
 from segcore.arrays import IntArray
 from segcore.hierarchy import Hierarchy
+from segcore.io.converting import requested
 from segcore.io.names import SegmentNames, comment, group_names
 from segcore.io.slices import segment_slices
 from segcore.io.text.rows import format_rows
@@ -28,6 +29,8 @@ def write_obj(
     segments: int | None = None,
     *,
     names: SegmentNames | None = None,
+    unit: str | None = None,
+    up: str | None = None,
 ) -> None:
     """Write an OBJ file: all vertices in input order, then a group ``segment_k`` for each segment.
 
@@ -38,12 +41,15 @@ def write_obj(
     Parameters
     ----------
     names : names of segments by label, in place of ``segment_k``; see :func:`segcore.io.names.group_names`.
+    unit, up : convert the coordinates to this unit, such as ``mm``, and to this axis up, ``y`` or ``z``; by default
+        they are those of the mesh.
 
     Raises
     ------
     InvalidParameters
-        If ``segments`` is not in 1..max_segments.
+        If ``segments`` is not in 1..max_segments, or the unit or the axis of the mesh is not known.
     """
+    mesh = requested(mesh, unit, up)
     slices = segment_slices(hierarchy, segments)
     appearance = mesh.appearance or Appearance()
     target.write(b"# written by Cleave: group k, counted from 0, holds the faces with label k, in input order\n")

@@ -8,6 +8,7 @@ from segcore.arrays import FloatArray
 from segcore.errors import InvalidParameters
 from segcore.hierarchy import Hierarchy
 from segcore.io.archive import FAST, member
+from segcore.io.converting import requested
 from segcore.io.names import SegmentNames, file_stems, group_names
 from segcore.io.parts.pieces import Part, closed_parts, segment_parts
 from segcore.io.stl.writer import check_coordinates, encode_stl, offset_of
@@ -29,6 +30,8 @@ def write_parts(
     part_format: PartFormat = "stl",
     capped: bool = False,
     names: SegmentNames | None = None,
+    unit: str | None = None,
+    up: str | None = None,
 ) -> None:
     """Write a ZIP archive with a file for each segment: ``segment_0.stl``, ``segment_1.stl``, ...
 
@@ -42,12 +45,16 @@ def write_parts(
     part_format : binary STL (float32 coordinates) or OBJ (exact ones).
     capped : close each part with caps, for printing; see :func:`segcore.io.parts.pieces.closed_parts`.
     names : names of segments by label, for files such as ``segment_3_wheel.stl``.
+    unit, up : convert the coordinates to this unit, such as ``mm``, and to this axis up, ``y`` or ``z``; by default
+        they are those of the mesh.
 
     Raises
     ------
     InvalidParameters
-        If ``segments`` is not in 1..max_segments, or there is no such format, or it cannot hold the coordinates.
+        If ``segments`` is not in 1..max_segments, or there is no such format, it cannot hold the coordinates, or the
+        unit or the axis of the mesh is not known.
     """
+    mesh = requested(mesh, unit, up)
     if part_format not in get_args(PartFormat):
         raise InvalidParameters(f"Parts are written as {' or '.join(get_args(PartFormat))}, not {part_format!r}.")
     if part_format == "stl":

@@ -9,6 +9,7 @@ from numpy.typing import NDArray
 from segcore.appearance import Appearance
 from segcore.arrays import IntArray
 from segcore.hierarchy import Hierarchy
+from segcore.io.converting import requested
 from segcore.io.names import SegmentNames, segment_names
 from segcore.io.palette import color_bytes
 from segcore.mesh import Mesh
@@ -46,6 +47,8 @@ def write_ply(
     segments: int | None = None,
     *,
     names: SegmentNames | None = None,
+    unit: str | None = None,
+    up: str | None = None,
 ) -> None:
     """Write a binary little-endian PLY file: all vertices and all faces in input order.
 
@@ -56,12 +59,15 @@ def write_ply(
     Parameters
     ----------
     names : names of segments by label, for comments such as ``comment label 3 is wheel``.
+    unit, up : convert the coordinates to this unit, such as ``mm``, and to this axis up, ``y`` or ``z``; by default
+        they are those of the mesh.
 
     Raises
     ------
     InvalidParameters
-        If ``segments`` is not in 1..max_segments.
+        If ``segments`` is not in 1..max_segments, or the unit or the axis of the mesh is not known.
     """
+    mesh = requested(mesh, unit, up)
     labels = hierarchy.labels(segments)
     vertices = _vertex_columns(mesh)
     comments = [

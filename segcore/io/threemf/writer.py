@@ -7,6 +7,7 @@ from typing import BinaryIO
 from segcore.appearance import Appearance
 from segcore.hierarchy import Hierarchy
 from segcore.io.archive import FAST, member
+from segcore.io.converting import converted
 from segcore.io.names import SegmentNames, one_line, segment_names
 from segcore.io.palette import color_bytes
 from segcore.io.parts.pieces import Part, closed_parts, segment_parts
@@ -45,8 +46,9 @@ def write_3mf(
     """Write a 3MF file: an assembly of the objects ``segment k``, each with its colour, in place.
 
     An object has the faces of its segment in input order. Faces that repeat a vertex are left out, because the format
-    does not allow them. The description of an object lists the groups of the input that its faces are in. The unit is
-    always the millimetre, because most input formats have no unit.
+    does not allow them. The description of an object lists the groups of the input that its faces are in. The file is
+    in millimetres with z up: a mesh with another unit or another axis up is converted, and numbers whose unit or axis
+    is not known are written as they are.
 
     Parameters
     ----------
@@ -60,6 +62,7 @@ def write_3mf(
         If ``segments`` is not in 1..max_segments.
     """
     count = len(hierarchy.segment_nodes(segments))
+    mesh = converted(mesh, "millimeter", "z")
     parts = (closed_parts if capped else segment_parts)(mesh, hierarchy, segments)
     called = [_quoted(name) for name in segment_names(names, count)]
     described = _descriptions(mesh.appearance or Appearance(), segment_slices(hierarchy, segments))

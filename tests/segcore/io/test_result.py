@@ -84,6 +84,7 @@ def test_the_bytes_are_those_of_the_documented_form() -> None:
         assert {member.compress_type for member in archive.infolist()} == {zipfile.ZIP_STORED}
         header = json.loads(archive.read("header.json"))
         expected = {"format": "cleave-result", "version": 1, "automatic_segments": 2, "limit_reached": None}
+        expected |= {"unit": None, "up": None, "usual_up": "y"}
         assert header == expected
         for name in ("vertices", "faces"):
             array = np.load(io.BytesIO(archive.read(f"{name}.npy")), allow_pickle=False)

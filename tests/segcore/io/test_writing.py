@@ -7,7 +7,7 @@ from helpers.files.hierarchies import segmentations, two_strips
 from helpers.files.written import written
 from segcore.errors import InvalidParameters, UnsupportedFormat
 from segcore.hierarchy import Hierarchy
-from segcore.io import WRITE_OPTIONS, WRITERS, writer_for
+from segcore.io import WRITE_OPTIONS, WRITERS, with_coordinates, writer_for
 from segcore.mesh import Mesh
 
 Segmented = tuple[Mesh, Hierarchy, int]
@@ -39,10 +39,13 @@ def test_a_writer_is_found_by_the_name_of_the_file() -> None:
 @pytest.mark.parametrize("kind", WRITERS)
 def test_a_writer_takes_the_options_that_it_lists_and_no_others(kind: str) -> None:
     values = {"names": {0: "wheel"}, "all_levels": True, "features": True, "capped": True, "part_format": "obj"}
+    values |= {"unit": "mm", "up": "z"}
     assert set(values) == set(WRITE_OPTIONS)
+    mesh, hierarchy = two_strips()
+    segmented = with_coordinates(mesh, "inch", "y"), hierarchy
     for option, value in values.items():
         if option in WRITERS[kind].options:
-            assert written(kind, *two_strips(), **{option: value})
+            assert written(kind, *segmented, **{option: value})
         else:
             with pytest.raises(TypeError):
-                written(kind, *two_strips(), **{option: value})
+                written(kind, *segmented, **{option: value})

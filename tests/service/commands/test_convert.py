@@ -4,6 +4,7 @@ from pathlib import Path
 
 import pytest
 
+import segcore
 from service.commands.main import main
 
 
@@ -37,3 +38,12 @@ def test_an_expected_error_is_one_line_and_status_2(
     assert errors.startswith("cleave: ")
     assert sentence in errors
     assert not (ball / "a.ply").exists()
+
+
+def test_a_unit_and_an_axis_can_be_said_and_wanted(ball: Path, tmp_path: Path) -> None:
+    said = ["--unit", "in", "--up", "y"]
+    outputs = ["-o", str(tmp_path / "ball.3mf"), "-o", str(tmp_path / "ball.obj"), "--output-unit", "cm"]
+    assert main(["convert", str(ball / "ball.cleave"), *said, *outputs]) == 0
+    inches = segcore.read_mesh(ball / "ball.off").bounds[1]
+    assert segcore.read_mesh(tmp_path / "ball.3mf").bounds[1] == pytest.approx(25.4 * inches[[0, 2, 1]], rel=1e-6)
+    assert segcore.read_mesh(tmp_path / "ball.obj").bounds[1] == pytest.approx(2.54 * inches, rel=1e-6)

@@ -1,6 +1,7 @@
 """`cleave inspect`: the report of a mesh file as text and as JSON."""
 
 import json
+import re
 from pathlib import Path
 
 import pytest
@@ -70,3 +71,11 @@ def test_the_text_says_what_was_stitched(tmp_path: Path, capsys: pytest.CaptureF
         "2 border edges stitched, across gaps of up to 0.001",
         "8 border edges, with a face on one side only",
     ]
+
+
+def test_the_size_has_its_unit_and_the_axis_that_points_up(ball: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    assert main(["inspect", str(ball / "ball.off"), "--unit", "mm", "--up", "z"]) == 0
+    assert re.search(r"\nsize [\d.]+ x [\d.]+ x [\d.]+ millimeter z up, area ", capsys.readouterr().out)
+    with pytest.raises(SystemExit, match="2"):
+        main(["inspect", str(ball / "ball.off"), "--unit", "milimeter"])
+    assert "as in 'millimeter'" in capsys.readouterr().err

@@ -9,6 +9,7 @@ from collections.abc import Callable
 import httpx
 import matplotlib.image
 import pytest
+import trimesh
 
 from helpers.api import FACES, problem
 from service.answer.model_formats import MODELS
@@ -81,3 +82,26 @@ def test_the_preview_shows_the_segments(client: httpx.Client, finished_job: Call
 
 def test_every_option_of_a_writer_is_a_query_parameter() -> None:
     assert {option for writer in MODELS.values() for option in writer.options} == {"names", *OPTIONS}
+
+
+def test_a_mesh_in_inches_is_in_millimetres_as_3mf_and_in_centimetres_on_request(
+    client: httpx.Client, finished_job: Callable[..., str]
+) -> None:
+    path = finished_job(unit="in", up="y")
+    report = client.get(path).json()["mesh"]["report"]
+    assert (report["unit"], report["up"], report["shown_up"]) == ("inch", "y", "y")
+    extents = [high - low for low, high in zip(report["lower"], report["upper"], strict=True)]
+    whole = trimesh.load_scene(io.BytesIO(client.get(f"{path}/model.3mf").content), file_type="3mf")
+    assert whole.extents.tolist() == pytest.approx([25.4 * extents[axis] for axis in (0, 2, 1)], rel=1e-5)
+    part = client.get(f"{path}/model.ply", params={"unit": "centimeter"}).content
+    shape = trimesh.load_mesh(io.BytesIO(part), file_type="ply", process=False)
+    assert shape.extents.tolist() == pytest.approx([2.54 * extent for extent in extents], rel=1e-5)
+    problem(client.get(f"{path}/model.ply", params={"unit": "mile"}), 422, "invalid_parameters")
+
+
+def test_a_mesh_whose_unit_nobody_said_cannot_be_converted(
+    client: httpx.Client, finished_job: Callable[..., str]
+) -> None:
+    path = finished_job()
+    assert "not known" in str(problem(client.get(f"{path}/model.obj?unit=mm"), 422, "invalid_parameters")["detail"])
+    assert "not known" in str(problem(client.get(f"{path}/parts.zip?up=z"), 422, "invalid_parameters")["detail"])

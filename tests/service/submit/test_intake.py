@@ -89,3 +89,19 @@ def test_a_job_stays_accepted_if_the_queue_fails_during_its_submission(
     path = submit(client)
     assert list(store.pending.all()) == [path.rpartition("/")[2]]
     assert queue.entries[SMALL].get_job_ids() == []
+
+
+def test_a_result_is_reused_only_with_the_same_unit_and_axis(
+    client: httpx.Client, finished_job: Callable[..., str]
+) -> None:
+    path = finished_job(unit="mm", up="z")
+    files = {"mesh": ("mesh.off", sphere(12))}
+    again = client.post("/v1/jobs", files=files, params={"unit": "millimetres", "up": "z"})
+    other = client.post("/v1/jobs", files=files, params={"unit": "inch", "up": "z"})
+    assert again.headers["Location"] == path
+    assert other.headers["Location"] != path
+
+
+def test_a_unit_that_does_not_exist_is_refused_with_the_nearest_one(client: httpx.Client) -> None:
+    answer = client.post("/v1/jobs", files={"mesh": ("mesh.off", sphere(12))}, params={"unit": "milimeter"})
+    assert "as in 'millimeter'" in str(problem(answer, 422, "invalid_parameters")["detail"])

@@ -29,7 +29,7 @@ class ComputedIndex:
 
 def fingerprint(job: Job) -> str:
     """Return a hash that is equal for jobs whose results are equal to the byte."""
-    given = [job.sha256, job.mesh_format, job.version, sorted(job.parameters.items())]
+    given = [job.sha256, job.mesh_format, job.unit, job.up, job.version, sorted(job.parameters.items())]
     return hashlib.sha256(json.dumps(given).encode()).hexdigest()
 
 
