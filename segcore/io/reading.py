@@ -3,7 +3,7 @@
 import io
 import os
 from collections.abc import Callable
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from functools import partial
 from pathlib import Path
 from typing import BinaryIO
@@ -31,6 +31,19 @@ _READERS: dict[str, Callable[[bytes, ReadLimits, bool], Mesh]] = {
     "obj": read_obj,
     "3mf": read_3mf,
 }
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class OpenedModel:
+    """A mesh file, unpacked but not parsed."""
+
+    format: str  # a key of FORMATS
+    data: bytes
+    companions: Companions  # the files that belong to it
+
+    @property
+    def is_gltf(self) -> bool:
+        return self.format in ("glb", "gltf")
 
 
 def read_mesh(
@@ -81,6 +94,18 @@ def read_mesh(
     """
     limits = limits or ReadLimits()
     unit, up = unit and unit_named(unit), up and axis_named(up)
+    model = open_model(source, format, limits, neighbours=neighbours)
+    return with_coordinates(mesh_of_model(model, limits, appearance=appearance), unit, up)
+
+
+def open_model(
+    source: str | os.PathLike[str] | BinaryIO,
+    format: str | None,  # noqa: A002
+    limits: ReadLimits,
+    *,
+    neighbours: bool,
+) -> OpenedModel:
+    """Return the bytes of a mesh file and its format; arguments and errors as of :func:`read_mesh`."""
     companions: Companions = NoCompanions()
     if neighbours and isinstance(source, str | os.PathLike):
         source = model_in_folder(Path(source))
@@ -91,8 +116,12 @@ def read_mesh(
         model = model_in_archive(data, limits)
         declared, companions = declared_format(model.name, None), model.companions
         data = read_source(io.BytesIO(model.data), limits)
-    form = detect_format(data, declared)
-    reader = partial(read_gltf, companions=companions) if form in ("glb", "gltf") else _READERS[form]
+    return OpenedModel(detect_format(data, declared), data, companions)
+
+
+def mesh_of_model(model: OpenedModel, limits: ReadLimits, *, appearance: bool) -> Mesh:
+    """Return the mesh of an opened file; errors as of :func:`read_mesh`."""
+    reader = partial(read_gltf, companions=model.companions) if model.is_gltf else _READERS[model.format]
     with np.errstate(all="ignore"):  # Mesh refuses numbers that overflow, as not finite
-        mesh = reader(data, limits, appearance)
-    return with_coordinates(replace(mesh, coordinates=FORMATS[form].coordinates), unit, up)
+        mesh = reader(model.data, limits, appearance)
+    return replace(mesh, coordinates=FORMATS[model.format].coordinates)

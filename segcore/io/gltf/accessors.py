@@ -41,7 +41,7 @@ class Accessors:
         return integer(self._document.item("accessors", index), "count", f"accessors[{index}]")
 
     def read(self, index: int, kind: str) -> NDArray[Any]:
-        """Return the (count, width) numbers of an accessor as they are stored, normalized ones as float64 in -1..1.
+        """Return the (count, width) numbers of an accessor, normalized ones as float64 in -1..1.
 
         Parameters
         ----------
@@ -52,9 +52,24 @@ class Accessors:
         InvalidMesh
             If the accessor has another kind or reaches beyond its data; the message names it.
         """
-        entry, where = self._document.item("accessors", index), f"accessors[{index}]"
+        entry = self._document.item("accessors", index)
         if entry.get("type") != kind:
-            raise InvalidMesh(f"{where} of the glTF file must be of type {kind}.")
+            raise InvalidMesh(f"accessors[{index}] of the glTF file must be of type {kind}.")
+        values = self.stored(index)
+        return _normalized(values) if entry.get("normalized") is True and values.dtype.kind in "iu" else values
+
+    def stored(self, index: int) -> NDArray[Any]:
+        """Return the (count, width) numbers of an accessor as they are stored, with sparse ones in their places.
+
+        Raises
+        ------
+        InvalidMesh
+            If the accessor is of an unknown kind or reaches beyond its data; the message names it.
+        """
+        entry, where = self._document.item("accessors", index), f"accessors[{index}]"
+        kind = entry.get("type")
+        if kind not in _WIDTHS:
+            raise InvalidMesh(f"{where} of the glTF file must be of one of the types {', '.join(_WIDTHS)}.")
         dtype, count = _component(entry, where), self.count(index)
         if index in self._supplied:
             values = self._supplied[index]
@@ -68,7 +83,7 @@ class Accessors:
             raise InvalidMesh(f"{where} of the glTF file has {count} elements without data: it is damaged.")
         if "sparse" in entry:
             values = self._with_sparse(values, member(entry, "sparse", where), f"{where}.sparse")
-        return _normalized(values) if entry.get("normalized") is True and values.dtype.kind in "iu" else values
+        return values
 
     def _view(self, item: Item, where: str, dtype: np.dtype[Any], count: int, width: int) -> NDArray[Any]:
         """(count, width) elements of the buffer view of ``item``, without a copy."""

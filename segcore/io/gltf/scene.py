@@ -44,6 +44,7 @@ class Primitive:
     """Triangles of a mesh."""
 
     where: str  # the member of the document, for messages
+    index: int  # among the primitives of the mesh
     mode: int
     positions: int  # accessor
     indices: int | None  # accessor
