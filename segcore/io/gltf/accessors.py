@@ -40,6 +40,10 @@ class Accessors:
         """Return the number of elements of an accessor."""
         return integer(self._document.item("accessors", index), "count", f"accessors[{index}]")
 
+    def dtype(self, index: int) -> np.dtype[Any]:
+        """Return the type of the numbers of an accessor."""
+        return _component(self._document.item("accessors", index), f"accessors[{index}]")
+
     def read(self, index: int, kind: str) -> NDArray[Any]:
         """Return the (count, width) numbers of an accessor, normalized ones as float64 in -1..1.
 

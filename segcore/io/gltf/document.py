@@ -204,10 +204,20 @@ def _check_extensions(required: object) -> None:
     if not isinstance(required, list) or not all(isinstance(name, str) for name in required):
         raise InvalidMesh("extensionsRequired of the glTF file must be a list of names.")
     for name in required:
-        if not name.startswith(_HARMLESS + _UNDERSTOOD):
+        if not _is_known(name):
             raise UnsupportedFormat(
                 f"The glTF file requires the extension {name[:60]!r}: save it without that extension."
             )
+
+
+def has_unknown_extensions(root: Item) -> bool:
+    """Return whether a document uses an extension of which it is not known what it refers to."""
+    used = root.get("extensionsUsed", [])
+    return not isinstance(used, list) or not all(isinstance(name, str) and _is_known(name) for name in used)
+
+
+def _is_known(extension: str) -> bool:
+    return extension.startswith(_HARMLESS + _UNDERSTOOD)
 
 
 def _data_uri(uri: str, where: str) -> bytes:

@@ -16,7 +16,7 @@ from segcore.nary import nary_children
 
 _UNSIGNED_INT, _FLOAT = 5125, 5126
 _ARRAY_BUFFER, _ELEMENT_ARRAY_BUFFER = 34962, 34963
-_VARIANTS = "KHR_materials_variants"
+VARIANTS = "KHR_materials_variants"
 _FACE_BYTES = 12  # three uint32
 _FACTS = ("level", "label", "area", "faces", "cut_value", "step")
 
@@ -43,11 +43,14 @@ def all_levels_drawing(hierarchy: Hierarchy, segments: int | None) -> Drawing:
     """Return the drawing of the leaves with the colours of a level, and those of all levels as variants."""
     count = len(hierarchy.segment_nodes(segments))
     leaves = hierarchy.segment_nodes(hierarchy.max_segments)
-    of_leaves = replace(
-        hierarchy, face_leaf=leaves
-    )  # one face for each leaf, so that labels of faces are labels of leaves
-    variants = np.stack([of_leaves.labels(k + 1) for k in range(hierarchy.max_segments)])
+    variants = level_materials(hierarchy, leaves)
     return Drawing(count, leaves, hierarchy.labels(hierarchy.max_segments), variants[count - 1], variants)
+
+
+def level_materials(hierarchy: Hierarchy, nodes: IntArray) -> IntArray:
+    """(D, D) the label of each of the nodes of a level with D segments at every level up to it."""
+    of_nodes = replace(hierarchy, face_leaf=nodes)  # a face for each node, so that labels of faces are labels of nodes
+    return np.stack([of_nodes.labels(k + 1) for k in range(len(nodes))])
 
 
 def scene_document(
@@ -63,14 +66,13 @@ def scene_document(
     sizes = [placement.positions.nbytes, _FACE_BYTES * faces, 4 * faces]
     offsets = [0, sizes[0], sizes[0] + sizes[1]]
     parts = range(len(drawing.nodes))
-    colors = linear_rgb(segment_colors(len(drawing.nodes)))
     document = {
         "asset": {"version": "2.0", "generator": "Cleave"},
         "scene": 0,
         "scenes": [{"nodes": [0], "extras": _scene_extras(hierarchy, drawing)}],
         "nodes": _nodes(hierarchy, drawing, placement, slices, names),
         "meshes": [_mesh(drawing, k, names[k]) for k in parts],
-        "materials": [_material(name, color) for name, color in zip(names, colors, strict=True)],
+        "materials": segment_materials(names),
         "accessors": [_position_accessor(placement.positions), *(_index_accessor(slices, k) for k in parts)],
         "bufferViews": [
             {"buffer": 0, "byteOffset": offsets[0], "byteLength": sizes[0], "target": _ARRAY_BUFFER},
@@ -83,6 +85,12 @@ def scene_document(
 
 
 def _scene_extras(hierarchy: Hierarchy, drawing: Drawing) -> dict[str, Any]:
+    faces = {"bufferView": 2, "componentType": _UNSIGNED_INT, "count": len(drawing.of_face)}
+    return scene_facts(hierarchy, drawing) | {"input_faces": faces}
+
+
+def scene_facts(hierarchy: Hierarchy, drawing: Drawing) -> dict[str, Any]:
+    """Return the facts on the hierarchy that the extras of a scene have."""
     splits = len(drawing.nodes) - 1
     return {
         "segments": drawing.segments,
@@ -92,13 +100,17 @@ def _scene_extras(hierarchy: Hierarchy, drawing: Drawing) -> dict[str, Any]:
         "split_node": hierarchy.split_node[:splits].tolist(),
         "step": hierarchy.step[:splits].tolist(),
         "cut_value": [finite_or_none(value) for value in hierarchy.cut_value[:splits].tolist()],
-        "input_faces": {"bufferView": 2, "componentType": _UNSIGNED_INT, "count": len(drawing.of_face)},
     }
 
 
 def _variants(count: int) -> dict[str, Any]:
-    names = [{"name": f"{k} segment{'s' if k > 1 else ''}"} for k in range(1, count + 1)]
-    return {"extensionsUsed": [_VARIANTS], "extensions": {_VARIANTS: {"variants": names}}}
+    names = [{"name": name} for name in variant_names(count)]
+    return {"extensionsUsed": [VARIANTS], "extensions": {VARIANTS: {"variants": names}}}
+
+
+def variant_names(count: int) -> list[str]:
+    """Return the names of the variants of the levels with 1..count segments."""
+    return [f"{k} segment{'s' if k > 1 else ''}" for k in range(1, count + 1)]
 
 
 def _nodes(
@@ -137,16 +149,22 @@ def _is_shown(entry: dict[str, Any], part_of: dict[int, int], children: list[lis
 def _mesh(drawing: Drawing, k: int, name: str) -> dict[str, Any]:
     primitive = {"attributes": {"POSITION": 0}, "indices": k + 1, "material": int(drawing.material[k])}
     if drawing.variants is not None:
-        primitive["extensions"] = {_VARIANTS: {"mappings": _mappings(drawing.variants[:, k])}}
+        primitive["extensions"] = {VARIANTS: {"mappings": mappings(drawing.variants[:, k])}}
     return {"name": name, "primitives": [primitive]}
 
 
-def _mappings(materials: IntArray) -> list[dict[str, Any]]:
-    """The materials of a part, each with the variants that use it; entry k of ``materials`` is that of variant k."""
+def mappings(materials: IntArray) -> list[dict[str, Any]]:
+    """Return the materials of a part with the variants that use them; entry k of ``materials`` is that of variant k."""
     return [
         {"material": material, "variants": np.flatnonzero(materials == material).tolist()}
         for material in np.unique(materials).tolist()
     ]
+
+
+def segment_materials(names: list[str]) -> list[dict[str, Any]]:
+    """Return the materials of the labels 0, 1, ... in their colours."""
+    colors = linear_rgb(segment_colors(len(names)))
+    return [_material(name, color) for name, color in zip(names, colors, strict=True)]
 
 
 def _material(name: str, color: FloatArray) -> dict[str, Any]:

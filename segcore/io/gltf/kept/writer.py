@@ -1,0 +1,79 @@
+"""Writes a glTF document with its primitives divided by part and everything else as it was."""
+
+from dataclasses import dataclass, replace
+from typing import BinaryIO
+
+from segcore.arrays import IntArray
+from segcore.hierarchy import Hierarchy
+from segcore.io.gltf.accessors import Accessors
+from segcore.io.gltf.document import Document, integer
+from segcore.io.gltf.kept.asset import KeptAsset
+from segcore.io.gltf.kept.division import divide
+from segcore.io.gltf.kept.marks import Marks, add_variants, with_extras
+from segcore.io.gltf.triangles import scene_parts
+from segcore.io.gltf.writer_scene import Drawing, all_levels_drawing, level_drawing, level_materials, scene_facts
+from segcore.io.limits import ReadLimits
+from segcore.io.names import SegmentNames, segment_names
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class KeptDocument:
+    """A document, and the face of the mesh that was segmented for each triangle of its scene."""
+
+    document: Document
+    face: IntArray | None = None  # (F,); None if triangle i is face i
+    notes: tuple[str, ...] = ()  # on what could not be kept
+
+
+def write_kept_document(
+    target: BinaryIO,
+    kept: KeptDocument,
+    hierarchy: Hierarchy,
+    segments: int | None,
+    limits: ReadLimits,
+    *,
+    names: SegmentNames | None,
+    all_levels: bool,
+) -> tuple[str, ...]:
+    """Write a document as GLB; see :func:`segcore.io.keeping.write_kept`. Return notes on what could not be kept.
+
+    Raises
+    ------
+    InvalidParameters
+        If ``segments`` is not in 1..max_segments.
+    InvalidMesh, UnsupportedFormat, LimitExceeded
+    """
+    drawing = (all_levels_drawing if all_levels else level_drawing)(hierarchy, segments)
+    drawing = replace(drawing, variants=level_materials(hierarchy, drawing.nodes))
+    asset = KeptAsset.of(kept.document)
+    marks = add_variants(asset, drawing, segment_names(names, len(drawing.nodes)))
+    divide_document(asset, kept, drawing.of_face, marks, limits)
+    _describe(asset, kept.document, hierarchy, drawing)
+    asset.write(target)
+    return (*kept.notes, *asset.notes)
+
+
+def divide_document(
+    asset: KeptAsset, kept: KeptDocument, part_of_face: IntArray, marks: Marks, limits: ReadLimits
+) -> Accessors:
+    """Divide the primitives of a copy of a document; return the accessors of the document.
+
+    Parameters
+    ----------
+    part_of_face : (F,) the part of each face of the mesh that was segmented.
+    """
+    accessors = Accessors(kept.document, limits)
+    found = scene_parts(kept.document, accessors, limits)
+    parts = part_of_face if kept.face is None else part_of_face[kept.face]
+    divide(asset, kept.document, accessors, found, parts, marks)
+    return accessors
+
+
+def _describe(asset: KeptAsset, document: Document, hierarchy: Hierarchy, drawing: Drawing) -> None:
+    """Add the facts on the hierarchy to the extras of the default scene, or of the file if it has no scene."""
+    facts = scene_facts(hierarchy, drawing)
+    if not document.count("scenes"):
+        asset.root = with_extras(asset.root, facts)
+        return
+    scene = integer(document.root, "scene", "the top level", 0)
+    asset.root["scenes"][scene] = with_extras(asset.root["scenes"][scene], facts)
