@@ -26,6 +26,7 @@ class FileStructure:
 
     group: IntArray | None = None  # (F,)
     material: IntArray | None = None  # (F,)
+    material_names: tuple[str, ...] = ()  # by number, of OBJ files
 
     def __post_init__(self) -> None:
         for numbers in (self.group, self.material):

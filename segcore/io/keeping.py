@@ -1,6 +1,7 @@
-"""Outputs that keep everything of the file that a mesh was read from: write_kept, and a file for each part."""
+"""write_kept: a segmented mesh with everything that the file has that it was read from."""
 
 import os
+import zipfile
 from dataclasses import dataclass
 from typing import BinaryIO
 
@@ -8,9 +9,138 @@ import numpy as np
 
 from segcore.errors import InvalidMesh
 from segcore.hierarchy import Hierarchy
+from segcore.io.archive import FAST, member
 from segcore.io.gltf.document import read_document
+from segcore.io.gltf.kept.from_mesh import Materials, corner_tables, document_of_mesh
+from segcore.io.gltf.kept.from_obj import document_of_obj
+from segcore.io.gltf.kept.single_parts import single_parts
 from segcore.io.gltf.kept.writer import KeptDocument, write_kept_document
 from segcore.io.limits import ReadLimits
-from segcore.io.names import SegmentNames
-from segcore.io.reading import OpenedModel, mesh_of_model, open_model
+from segcore.io.names import SegmentNames, file_stems, segment_names
+from segcore.io.reading import mesh_of_model, open_model
 from segcore.mesh import Mesh
+
+_NEAR = 1e-4  # of the size of the mesh: vertices of one file that two versions read agree far better
+
+
+@dataclass(frozen=True, slots=True)
+class Original:
+    """The file that a mesh was read from; the fields are the arguments of :func:`segcore.io.read_mesh`."""
+
+    source: str | os.PathLike[str] | BinaryIO
+    format: str | None = None
+    limits: ReadLimits | None = None
+    neighbours: bool = False
+
+
+def write_kept(
+    target: BinaryIO,
+    original: Original,
+    hierarchy: Hierarchy,
+    segments: int | None = None,
+    *,
+    mesh: Mesh | None = None,
+    names: SegmentNames | None = None,
+    all_levels: bool = False,
+) -> tuple[str, ...]:
+    """Write the file that a mesh was read from as GLB, with its faces divided by part and everything else kept.
+
+    Of glTF these stay as they are: nodes, scenes, materials, textures (the bytes of pictures, which are all inside the
+    file), attributes of vertices, skins, animations, morph targets, cameras, lights, extras and unknown extensions.
+    Only indices are new. A primitive whose faces are of several parts becomes a list of triangles for each part, in
+    their order; one whose faces are of one part is not changed. A mesh that nodes use with different parts is repeated,
+    with the same attributes; copies (EXT_mesh_gpu_instancing) with different parts become children of their node. A
+    divided primitive is not compressed with Draco.
+
+    An OBJ file becomes glTF with a node for each group and with the materials and pictures of its set; a file of
+    another format with its normals, texture coordinates and colours.
+
+    ``extras`` of a primitive has ``part`` (the label) and ``name``; that of the scene has the facts on the hierarchy
+    that :func:`segcore.io.write_glb` writes. If they replace something, ``original`` in them has it.
+
+    KHR_materials_variants has the variant ``original look`` and one for each level up to this one, ``k segments``,
+    after those of the input. The materials of the primitives are those of the input, so the file looks as it did.
+
+    Parameters
+    ----------
+    target : a binary file; needs ``write`` only.
+    segments : the number of segments K, by default the automatic one.
+    mesh : what was segmented; if it is given, the file must have the same faces and vertices.
+    names : names of segments by label, in place of ``segment k``.
+    all_levels : divide by the leaves of the hierarchy, with a variant for every level.
+
+    Returns
+    -------
+    Sentences on what could not be kept, such as a picture that is not among the files.
+
+    Raises
+    ------
+    InvalidParameters
+        If ``segments`` is not in 1..max_segments.
+    InvalidMesh
+        If the file is damaged, or not the one that was segmented.
+    UnsupportedFormat, LimitExceeded, OSError
+        As in :func:`segcore.io.read_mesh`; LimitExceeded also if the output would be larger than 4 GiB.
+    """
+    limits = original.limits or ReadLimits()
+    kept = _kept_document(original, limits, hierarchy, mesh)
+    return write_kept_document(target, kept, hierarchy, segments, limits, names=names, all_levels=all_levels)
+
+
+def write_kept_parts(
+    target: BinaryIO,
+    original: Original,
+    hierarchy: Hierarchy,
+    segments: int | None = None,
+    *,
+    mesh: Mesh | None = None,
+    names: SegmentNames | None = None,
+) -> tuple[str, ...]:
+    """Write a ZIP archive with a GLB file for each segment: ``segment_0.glb``, ``segment_1.glb``, ...
+
+    A file has the faces of its segment in their places, and what they need of the input: the vertices that they use
+    with all attributes and morph targets, materials, pictures with unchanged bytes, the nodes above, skins with their
+    joints, and the animations of these nodes. Cameras, lights, material variants, and extensions other than those of
+    materials and textures are left out. Only one segment at a time is held in memory.
+
+    Parameters, result and errors are those of :func:`write_kept`.
+    """
+    limits = original.limits or ReadLimits()
+    kept = _kept_document(original, limits, hierarchy, mesh)
+    labels, count = hierarchy.labels(segments), len(hierarchy.segment_nodes(segments))
+    stems = file_stems(names, count)
+    with zipfile.ZipFile(target, "w", compresslevel=FAST) as archive:
+        for part, asset in single_parts(kept, labels, segment_names(names, count), limits):
+            with archive.open(member(f"{stems[part]}.glb", compressed=True), "w", force_zip64=True) as file:
+                asset.write(file)
+    return kept.notes
+
+
+def _kept_document(
+    original: Original, limits: ReadLimits, hierarchy: Hierarchy, segmented: Mesh | None
+) -> KeptDocument:
+    model = open_model(original.source, original.format, limits, neighbours=original.neighbours)
+    mesh = mesh_of_model(model, limits, appearance=not model.is_gltf)
+    if len(mesh.faces) != len(hierarchy.face_leaf):
+        raise _other_file(f"the file has {len(mesh.faces)} faces, and {len(hierarchy.face_leaf)} were segmented")
+    if segmented is not None and not _are_equal(mesh, segmented):
+        raise _other_file("its faces are others than those that were segmented")
+    if model.is_gltf:
+        return KeptDocument(read_document(model.data, model.companions))
+    if model.format == "obj":
+        return document_of_obj(model.data, limits, model.companions)
+    return document_of_mesh(mesh, corner_tables(mesh), Materials())
+
+
+def _are_equal(mesh: Mesh, other: Mesh) -> bool:
+    if len(mesh.vertices) != len(other.vertices) or not np.array_equal(mesh.faces, other.faces):
+        return False
+    low, high = other.bounds
+    distance = np.abs(mesh.vertices - other.vertices).max(axis=1, where=other.is_used[:, None], initial=0.0)
+    return bool(distance.max(initial=0.0) <= _NEAR * (high - low).max())
+
+
+def _other_file(reason: str) -> InvalidMesh:
+    return InvalidMesh(
+        f"This is not the file that was segmented, or it was read by an earlier version: {reason}. Segment it again."
+    )

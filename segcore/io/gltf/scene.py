@@ -69,7 +69,7 @@ def read_scene(document: Document) -> Scene:
         If a node is reached twice: the nodes do not form a forest.
     """
     scene = Scene([], {})
-    for node, transform in placed_nodes(document, _roots(document)):
+    for node, transform in placed_nodes(document, scene_roots(document)):
         scene.transforms[node] = transform
         entry, where = document.item("nodes", node), f"nodes[{node}]"
         if "mesh" not in entry:
@@ -114,7 +114,8 @@ def _name(entry: Item) -> str:
     return name if isinstance(name, str) else ""
 
 
-def _roots(document: Document) -> list[int]:
+def scene_roots(document: Document) -> list[int]:
+    """Return the top nodes of the default scene."""
     if document.count("scenes"):
         scene = integer(document.root, "scene", "the top level", 0)
         return indices(document.item("scenes", scene), "nodes", f"scenes[{scene}]")

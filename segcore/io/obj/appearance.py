@@ -6,13 +6,14 @@ from numpy.typing import NDArray
 from segcore.appearance import Appearance, appearance_or_none, color_bytes, texture_coordinates, unit_normals
 from segcore.arrays import BoolArray, FloatArray, IntArray, LongArray
 from segcore.errors import InvalidMesh
-from segcore.io.obj.corner_rows import CornerRows, rows_of_corners
+from segcore.io.obj.corner_rows import CornerRows, CornerTable, rows_of_corners
 from segcore.io.obj.kernels import parse_corner_picks
 from segcore.io.polygons import Polygons, triangle_corners
 from segcore.io.text.words import Words
 
 _UV, _NORMAL = b"vt", b"vn"
 _WIDTHS = {_UV: 2, _NORMAL: 3}  # numbers on a line
+_NAMES = {_UV: "uvs", _NORMAL: "normals"}
 _PLACES = {_UV: 0, _NORMAL: 1}  # column of picks: the number after the first or second slash of a corner 7/8/9
 
 
@@ -51,19 +52,37 @@ def _table(words: Words, keyword: bytes, width: int) -> FloatArray | None:
         return None
 
 
+def corner_attributes(
+    words: Words, is_face: BoolArray, vertices: FloatArray, polygons: Polygons
+) -> dict[str, CornerTable]:
+    """Return the texture coordinates (``uvs``) and ``normals`` of the corners of the triangulated faces, by name."""
+    tables = {key: table for key, width in _WIDTHS.items() if (table := _table(words, key, width)) is not None}
+    picks = _corner_picks(words, is_face, polygons, tables)
+    corners = triangle_corners(vertices, polygons)[0]
+    known = {key: np.where((rows >= 0) & (rows < len(tables[key])), rows, -1) for key, rows in picks.items()}
+    return {_NAMES[key]: CornerTable(tables[key], rows[corners]) for key, rows in known.items()}
+
+
 def _picks(
     words: Words, is_face: BoolArray, polygons: Polygons, tables: dict[bytes, FloatArray]
 ) -> dict[bytes, LongArray]:
     """The row of each corner in each table; a table is left out if a corner has no row in it."""
+    picks = _corner_picks(words, is_face, polygons, tables)
+    return {key: rows for key, rows in picks.items() if ((rows >= 0) & (rows < len(tables[key]))).all()}
+
+
+def _corner_picks(
+    words: Words, is_face: BoolArray, polygons: Polygons, tables: dict[bytes, FloatArray]
+) -> dict[bytes, LongArray]:
+    """The row of each corner in each table; negative or beyond the table if it has none."""
     if not tables:
         return {}
     lines = np.flatnonzero(is_face)
     indices = np.empty((len(polygons.corners), 2), dtype=np.int64)
     parse_corner_picks(words.lines, lines, indices)
-    picks = {
+    return {
         keyword: _resolved(words, indices[:, _PLACES[keyword]], lines, polygons.sizes, keyword) for keyword in tables
     }
-    return {key: rows for key, rows in picks.items() if ((rows >= 0) & (rows < len(tables[key]))).all()}
 
 
 def _resolved(words: Words, indices: LongArray, lines: LongArray, sizes: LongArray, keyword: bytes) -> LongArray:

@@ -1,8 +1,10 @@
 """Rows of an appearance that corners with equal attributes share."""
 
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
+from numpy.typing import NDArray
 
 from segcore.arrays import BoolArray, IntArray, LongArray
 
@@ -14,6 +16,14 @@ class CornerRows:
     of_corner: IntArray  # (C,) the row of each corner
     extra_vertex: IntArray  # (A - V,) the vertex of each further row
     corner: LongArray  # (A,) a corner with the attributes of the row; -1 if no corner has the vertex
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class CornerTable:
+    """Values that the corners of faces refer to."""
+
+    values: NDArray[Any]  # (N, *)
+    rows: LongArray | IntArray  # (F, 3) the row of each corner, -1 if it has none
 
 
 def rows_of_corners(vertices: LongArray | IntArray, picks: list[LongArray], vertex_count: int) -> CornerRows:

@@ -1,13 +1,15 @@
 """The OBJ reader (Wavefront)."""
 
 import re
+from dataclasses import dataclass
 
 import numpy as np
 
 from segcore.arrays import BoolArray, FloatArray, LongArray
 from segcore.errors import InvalidMesh
 from segcore.io.limits import ReadLimits
-from segcore.io.obj.appearance import obj_appearance
+from segcore.io.obj.appearance import corner_attributes, obj_appearance
+from segcore.io.obj.corner_rows import CornerTable
 from segcore.io.obj.kernels import FaceLines, parse_face_lines, parse_vertex_lines
 from segcore.io.obj.structure import obj_structure
 from segcore.io.polygons import Polygons, mesh_of_polygons
@@ -35,12 +37,44 @@ def read_obj(data: bytes, limits: ReadLimits, with_appearance: bool = False) -> 
     ------
     InvalidMesh, LimitExceeded
     """
+    return _mesh(_parsed(data, limits), limits, with_appearance)
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class ObjModel:
+    """A mesh with the attributes of its corners, also those that only some of them have."""
+
+    mesh: Mesh
+    corners: dict[str, CornerTable]  # ``uvs`` (N, 2), counted from the lower left of the image, and ``normals`` (N, 3)
+
+
+def read_obj_model(data: bytes, limits: ReadLimits) -> ObjModel:
+    """Read an OBJ file with the attributes of all corners; errors as of :func:`read_obj`."""
+    parsed = _parsed(data, limits)
+    corners = corner_attributes(parsed.words, parsed.is_face, parsed.vertices, parsed.polygons)
+    return ObjModel(_mesh(parsed, limits, with_appearance=True), corners)
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class _Parsed:
+    words: Words
+    is_vertex: BoolArray  # (L,) of lines
+    is_face: BoolArray  # (L,)
+    vertices: FloatArray
+    polygons: Polygons
+
+
+def _parsed(data: bytes, limits: ReadLimits) -> _Parsed:
     words = find_words(_joined_lines(without_comments(plain_text(data))))
     is_vertex, is_face = words.lines_with(b"v"), words.lines_with(b"f")
     limits.check_vertices(int(is_vertex.sum()))
     limits.check_faces(int(is_face.sum()))
-    vertices = _vertices(words, is_vertex)
-    polygons = _polygons(words, is_vertex, is_face)
+    return _Parsed(words, is_vertex, is_face, _vertices(words, is_vertex), _polygons(words, is_vertex, is_face))
+
+
+def _mesh(parsed: _Parsed, limits: ReadLimits, with_appearance: bool) -> Mesh:
+    words, vertices, polygons = parsed.words, parsed.vertices, parsed.polygons
+    is_vertex, is_face = parsed.is_vertex, parsed.is_face
     appearance = obj_appearance(words, is_vertex, is_face, vertices, polygons) if with_appearance else None
     structure = obj_structure(words, is_vertex, is_face, polygons.sizes)
     return mesh_of_polygons(vertices, polygons, limits, appearance, structure)

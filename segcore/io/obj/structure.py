@@ -1,5 +1,6 @@
 """The groups, objects and materials of the faces of an OBJ file."""
 
+from dataclasses import replace
 from typing import NamedTuple
 
 import numpy as np
@@ -32,9 +33,11 @@ def obj_structure(words: Words, is_vertex: BoolArray, is_face: BoolArray, sizes:
     groups = _runs(np.union1d(objects, in_objects), polygons, triangles)
     painted = _runs(materials, polygons, triangles)
     names = [None if line == _NO_LINE else words.rest_of_line(line) for line in painted.mark]
-    return file_structure(
+    structure = file_structure(
         numbered_runs(_groups(words, groups.mark, objects), groups.faces), numbered_runs(names, painted.faces)
     )
+    used = [name for name, faces in zip(names, painted.faces, strict=True) if name is not None and faces]
+    return None if structure is None else replace(structure, material_names=tuple(dict.fromkeys(used)))
 
 
 def _lines(words: Words, lines: LongArray, keyword: bytes) -> LongArray:

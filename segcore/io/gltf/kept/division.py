@@ -23,8 +23,15 @@ _LARGEST_SHORT = 2**16 - 2  # an index of 16 bits; the next one restarts strips
 
 
 def divide(
-    asset: KeptAsset, document: Document, accessors: Accessors, found: SceneParts, part_of_face: IntArray, marks: Marks
-) -> None:
+    asset: KeptAsset,
+    document: Document,
+    accessors: Accessors,
+    found: SceneParts,
+    part_of_face: IntArray,
+    marks: Marks,
+    *,
+    is_plain: bool = False,
+) -> dict[int, list[int | None]]:
     """Divide the primitives of the scene.
 
     A mesh that nodes use with different parts gets an entry for each division; copies (EXT_mesh_gpu_instancing) with
@@ -34,9 +41,14 @@ def divide(
     Parameters
     ----------
     part_of_face : (F,) the part of each face, in the order of the reader.
+    is_plain : also make primitives whose faces are of one part lists of triangles with indices, without Draco.
+
+    Returns
+    -------
+    The part of each primitive of the meshes of the scene; None for primitives without faces.
     """
     primitives = {(part.instance.mesh, part.primitive.index): part.primitive for part in found.parts}
-    division = _Division(asset, document, accessors, marks, primitives)
+    division = _Division(asset, document, accessors, marks, primitives, is_plain)
     uses = mesh_uses(found.parts, part_of_face)
     nodes = range(document.count("nodes"))
     division.untouched |= {entry.get("mesh") for n in nodes if n not in uses and (entry := document.item("nodes", n))}
@@ -47,6 +59,7 @@ def divide(
         else:
             separate_copies(asset, accessors, entry, copies, division.mesh)
     division.finish()
+    return division.parts
 
 
 @dataclass(slots=True, eq=False)
@@ -56,6 +69,8 @@ class _Division:
     accessors: Accessors
     marks: Marks
     primitives: dict[tuple[int, int], Primitive]  # those with faces, by mesh and number
+    is_plain: bool
+    parts: dict[int, list[int | None]] = field(default_factory=dict)  # of the primitives of each mesh
     untouched: set[object] = field(default_factory=set)  # meshes whose entries must stay
     made: dict[tuple[int, bytes], int] = field(default_factory=dict)
     indices: dict[tuple[int, int, bytes], list[tuple[int, int]]] = field(default_factory=dict)
@@ -67,18 +82,15 @@ class _Division:
         if key in self.made:
             return self.made[key]
         original = self.document.item("meshes", use.mesh)
-        entry = {
-            **original,
-            "primitives": [
-                piece for i, primitive in enumerate(original["primitives"]) for piece in self._pieces(use, i, primitive)
-            ],
-        }
+        pieces = [piece for i in range(len(original["primitives"])) for piece in self._pieces(use, i)]
+        entry = {**original, "primitives": [primitive for _, primitive in pieces]}
         if use.mesh in self.untouched:
             self.made[key] = self.asset.add("meshes", entry)
         else:
             self.asset.root["meshes"][use.mesh] = entry
             self.untouched.add(use.mesh)
             self.made[key] = use.mesh
+        self.parts[self.made[key]] = [part for part, _ in pieces]
         return self.made[key]
 
     def finish(self) -> None:
@@ -88,18 +100,19 @@ class _Division:
             self.asset.drop_extension(DRACO)
         reuse_slots(self.asset, self.document)
 
-    def _pieces(self, use: Use, index: int, primitive: Item) -> list[Item]:
-        """The primitives that one is divided into: itself if its faces are all of one part."""
+    def _pieces(self, use: Use, index: int) -> list[tuple[int | None, Item]]:
+        """The primitives that one is divided into, and their parts: itself if its faces are all of one part."""
+        primitive: Item = self.document.item("meshes", use.mesh)["primitives"][index]
         if index not in use.parts:
-            return [primitive]
+            return [(None, primitive)]
         parts = use.parts[index]
-        if (parts == parts[0]).all():
-            return [self.marks.marked(primitive, int(parts[0]))]
+        if not self.is_plain and (parts == parts[0]).all():
+            return [(int(parts[0]), self.marks.marked(primitive, int(parts[0])))]
         entry = {name: value for name, value in primitive.items() if name != "mode"}
         if DRACO in entry.get("extensions", {}):
             entry = self._without_draco(entry)
         return [
-            self.marks.marked({**entry, "indices": accessor}, part)
+            (part, self.marks.marked({**entry, "indices": accessor}, part))
             for part, accessor in self._indices_of(use, index, parts)
         ]
 

@@ -54,9 +54,15 @@ def write_kept_document(
 
 
 def divide_document(
-    asset: KeptAsset, kept: KeptDocument, part_of_face: IntArray, marks: Marks, limits: ReadLimits
-) -> Accessors:
-    """Divide the primitives of a copy of a document; return the accessors of the document.
+    asset: KeptAsset,
+    kept: KeptDocument,
+    part_of_face: IntArray,
+    marks: Marks,
+    limits: ReadLimits,
+    *,
+    is_plain: bool = False,
+) -> dict[int, list[int | None]]:
+    """Divide the primitives of a copy of a document; see :func:`segcore.io.gltf.kept.division.divide`.
 
     Parameters
     ----------
@@ -65,8 +71,7 @@ def divide_document(
     accessors = Accessors(kept.document, limits)
     found = scene_parts(kept.document, accessors, limits)
     parts = part_of_face if kept.face is None else part_of_face[kept.face]
-    divide(asset, kept.document, accessors, found, parts, marks)
-    return accessors
+    return divide(asset, kept.document, accessors, found, parts, marks, is_plain=is_plain)
 
 
 def _describe(asset: KeptAsset, document: Document, hierarchy: Hierarchy, drawing: Drawing) -> None:
