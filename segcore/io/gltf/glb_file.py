@@ -3,7 +3,7 @@
 import json
 import struct
 from dataclasses import dataclass
-from typing import Any, BinaryIO
+from typing import IO, Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -33,7 +33,7 @@ class GlbFile:
         self.document["bufferViews"].append(view)
         return len(self.document["bufferViews"]) - 1
 
-    def write(self, target: BinaryIO) -> None:
+    def write(self, target: IO[bytes]) -> None:
         """Write the file.
 
         Raises

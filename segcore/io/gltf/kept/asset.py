@@ -2,7 +2,7 @@
 
 import copy
 from dataclasses import dataclass, field
-from typing import Any, BinaryIO
+from typing import IO, Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -92,7 +92,7 @@ class KeptAsset:
             if self.root.get(key) == []:
                 del self.root[key]
 
-    def write(self, target: BinaryIO) -> None:
+    def write(self, target: IO[bytes]) -> None:
         """Write the asset as GLB, with the bytes of its buffers that a view refers to.
 
         Raises
