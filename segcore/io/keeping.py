@@ -2,7 +2,7 @@
 
 import os
 import zipfile
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import BinaryIO
 
 import numpy as np
@@ -13,7 +13,8 @@ from segcore.io.archive import FAST, member
 from segcore.io.gltf.document import read_document
 from segcore.io.gltf.kept.from_mesh import Materials, corner_tables, document_of_mesh
 from segcore.io.gltf.kept.from_obj import document_of_obj
-from segcore.io.gltf.kept.single_parts import single_parts
+from segcore.io.gltf.kept.shape import check_members
+from segcore.io.gltf.kept.single_parts import SingleParts
 from segcore.io.gltf.kept.writer import KeptDocument, write_kept_document
 from segcore.io.limits import ReadLimits
 from segcore.io.names import SegmentNames, file_stems, segment_names
@@ -89,7 +90,7 @@ def write_kept(
 
 def write_kept_parts(
     target: BinaryIO,
-    original: Original,
+    original: Original | Mesh,
     hierarchy: Hierarchy,
     segments: int | None = None,
     *,
@@ -103,32 +104,41 @@ def write_kept_parts(
     joints, and the animations of these nodes. Cameras, lights, material variants, and extensions other than those of
     materials and textures are left out. Only one segment at a time is held in memory.
 
-    Parameters, result and errors are those of :func:`write_kept`.
+    Parameters, result and errors are those of :func:`write_kept`; ``original`` may also be a mesh without a file, of
+    which the normals, texture coordinates and colours are kept.
     """
-    limits = original.limits or ReadLimits()
-    kept = _kept_document(original, limits, hierarchy, mesh)
+    if isinstance(original, Mesh):
+        limits, kept = ReadLimits(), document_of_mesh(original, corner_tables(original), Materials())
+    else:
+        limits = original.limits or ReadLimits()
+        kept = _kept_document(original, limits, hierarchy, mesh)
     labels, count = hierarchy.labels(segments), len(hierarchy.segment_nodes(segments))
     stems = file_stems(names, count)
+    parts = SingleParts.of(kept, labels, segment_names(names, count), limits)
     with zipfile.ZipFile(target, "w", compresslevel=FAST) as archive:
-        for part, asset in single_parts(kept, labels, segment_names(names, count), limits):
-            with archive.open(member(f"{stems[part]}.glb", compressed=True), "w", force_zip64=True) as file:
-                asset.write(file)
-    return kept.notes
+        for part, stem in enumerate(stems):
+            with archive.open(member(f"{stem}.glb", compressed=True), "w", force_zip64=True) as file:
+                parts.part(part).write(file)
+    return parts.notes
 
 
 def _kept_document(
     original: Original, limits: ReadLimits, hierarchy: Hierarchy, segmented: Mesh | None
 ) -> KeptDocument:
     model = open_model(original.source, original.format, limits, neighbours=original.neighbours)
-    mesh = mesh_of_model(model, limits, appearance=not model.is_gltf)
+    mesh = mesh_of_model(model, limits, appearance=model.format not in ("obj", "glb", "gltf"))
+    if segmented is not None:
+        mesh = replace(mesh, coordinates=segmented.coordinates)
     if len(mesh.faces) != len(hierarchy.face_leaf):
         raise _other_file(f"the file has {len(mesh.faces)} faces, and {len(hierarchy.face_leaf)} were segmented")
     if segmented is not None and not _are_equal(mesh, segmented):
         raise _other_file("its faces are others than those that were segmented")
     if model.is_gltf:
-        return KeptDocument(read_document(model.data, model.companions))
+        document = read_document(model.data, model.companions)
+        check_members(document)
+        return KeptDocument(document)
     if model.format == "obj":
-        return document_of_obj(model.data, limits, model.companions)
+        return document_of_obj(model.data, limits, model.companions, mesh.coordinates)
     return document_of_mesh(mesh, corner_tables(mesh), Materials())
 
 

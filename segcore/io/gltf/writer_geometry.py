@@ -29,6 +29,14 @@ class Placement:
     rotation: list[float] | None  # a quaternion in the order x, y, z, w; None for no rotation
     scale: float
 
+    @property
+    def members(self) -> dict[str, list[float]]:
+        """The members of a glTF node with this transform, without those that are not needed."""
+        members = {"translation": self.translation} if any(self.translation) else {}
+        if self.rotation is not None:
+            members["rotation"] = self.rotation
+        return members | ({"scale": [self.scale] * 3} if self.scale != 1.0 else {})
+
 
 def place(mesh: Mesh) -> Placement:
     """Return the positions, moved to the centre and scaled only if they would be rounded visibly otherwise.

@@ -132,12 +132,7 @@ def _nodes(
         else:
             extras |= {"first_face": int(slices.start[k])} | ({"segment": k} if drawing.variants is None else {})
             nodes.append({"name": names[k], "mesh": k, "extras": extras})
-    if any(placement.translation):
-        nodes[0]["translation"] = placement.translation
-    if placement.rotation is not None:
-        nodes[0]["rotation"] = placement.rotation
-    if placement.scale != 1.0:
-        nodes[0]["scale"] = [placement.scale] * 3
+    nodes[0] |= placement.members
     return nodes
 
 

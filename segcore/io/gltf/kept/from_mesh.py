@@ -2,7 +2,7 @@
 
 import math
 from collections.abc import Mapping
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from typing import Any
 
 import numpy as np
@@ -13,7 +13,7 @@ from segcore.arrays import BoolArray, IntArray, LongArray
 from segcore.io.gltf.document import Document, Item
 from segcore.io.gltf.kept.asset import ARRAY_BUFFER, COMPONENT_CODES, ELEMENT_ARRAY_BUFFER
 from segcore.io.gltf.kept.writer import KeptDocument
-from segcore.io.gltf.writer_geometry import place
+from segcore.io.gltf.writer_geometry import Placement, place
 from segcore.io.obj.corner_rows import CornerTable, rows_of_corners
 from segcore.io.palette import linear_rgb
 from segcore.mesh import Mesh
@@ -60,7 +60,7 @@ def document_of_mesh(mesh: Mesh, tables: Mapping[str, CornerTable], materials: M
     picks = {name: np.where(has[name][:, None], table.rows, -1).astype(np.int64) for name, table in tables.items()}
     rows = rows_of_corners(mesh.faces.reshape(-1), [pick.reshape(-1) for pick in picks.values()], len(mesh.vertices))
     builder = _Builder(materials)
-    placement = place(Mesh(mesh.vertices, mesh.faces))
+    placement = place(replace(mesh, appearance=None))
     positions = np.concatenate([placement.positions, placement.positions[rows.extra_vertex]])
     bounds = {"min": positions.min(axis=0).tolist(), "max": positions.max(axis=0).tolist()}
     attributes = {"POSITION": builder.accessor(positions, "VEC3", **bounds)}
@@ -79,7 +79,7 @@ def document_of_mesh(mesh: Mesh, tables: Mapping[str, CornerTable], materials: M
             "material": material if material >= 0 else builder.plain_material(),
         }
         builder.add_primitive(names[group] if group >= 0 else "", group, primitive)
-    root = builder.document(placement.translation, placement.scale)
+    root = builder.document(placement)
     data = b"".join(builder.pieces)
     return KeptDocument(Document(root, memoryview(data), len(data)), runs.face, materials.notes)
 
@@ -169,16 +169,13 @@ class _Builder:
             self.meshes.append({"primitives": []} | ({"name": name} if name else {}))
         self.meshes[self.groups[group]]["primitives"].append(primitive)
 
-    def document(self, translation: list[float], scale: float) -> Item:
+    def document(self, placement: Placement) -> Item:
         images = [
             {"name": name, "mimeType": media_type, "bufferView": self.view(data)}
             for name, media_type, data in self.materials.pictures
         ]
         top: Item = {"children": list(range(len(self.nodes)))}
-        if any(translation):
-            top["translation"] = translation
-        if scale != 1.0:
-            top["scale"] = [scale] * 3
+        top |= placement.members
         lists = {
             "materials": self.materials.entries,
             "textures": self.materials.textures,

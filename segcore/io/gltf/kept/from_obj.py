@@ -1,11 +1,12 @@
 """A glTF document of an OBJ file with the materials and pictures of its set."""
 
 import posixpath
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 
 from segcore.arrays import IntArray
+from segcore.coordinates import Coordinates
 from segcore.io.file_sets import Companions
 from segcore.io.gltf.document import Item
 from segcore.io.gltf.kept.entries import add_once
@@ -26,7 +27,7 @@ _FULL_GLOSS = 1000.0  # the largest Ns
 _KEPT_MAPS = ("map_kd", "map_ke", "norm")
 
 
-def document_of_obj(data: bytes, limits: ReadLimits, companions: Companions) -> KeptDocument:
+def document_of_obj(data: bytes, limits: ReadLimits, companions: Companions, coordinates: Coordinates) -> KeptDocument:
     """Return the document of an OBJ file: groups and objects as nodes, materials with the pictures of its set.
 
     The colour factor is Kd with the opacity d, the emissive one Ke, the metallic one Pm, and the roughness Pr, else
@@ -38,14 +39,15 @@ def document_of_obj(data: bytes, limits: ReadLimits, companions: Companions) -> 
     InvalidMesh, LimitExceeded
     """
     model = read_obj_model(data, limits)
-    tables = {name: table for name, table in corner_tables(model.mesh).items() if name == "colors"}
+    mesh = replace(model.mesh, coordinates=coordinates)
+    tables = {name: table for name, table in corner_tables(mesh).items() if name == "colors"}
     if "colors" in tables:  # of vertices
         tables["colors"] = CornerTable(tables["colors"].values, model.mesh.faces)
     for name, table in model.corners.items():
         values = table.values * [1, -1] + [0, 1] if name == "uvs" else table.values
         tables[name] = CornerTable(values, table.rows)
     found = read_obj_materials(data, companions)
-    return document_of_mesh(model.mesh, tables, _Converter(companions).materials(model.mesh.structure, found))
+    return document_of_mesh(mesh, tables, _Converter(companions).materials(mesh.structure, found))
 
 
 @dataclass(slots=True, eq=False)

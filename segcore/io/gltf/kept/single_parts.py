@@ -1,6 +1,5 @@
 """Each part of a glTF document as a document of its own."""
 
-from collections.abc import Iterator
 from dataclasses import dataclass, field
 
 from segcore.arrays import IntArray
@@ -17,33 +16,28 @@ _OF_NODES_LEFT_OUT = ("mesh", "skin", "weights", "camera", "children", "extensio
 _QUANTIZATION = "KHR_mesh_quantization"  # the only extension that is used without an object of its name
 
 
-def single_parts(
-    kept: KeptDocument, part_of_face: IntArray, names: list[str], limits: ReadLimits
-) -> Iterator[tuple[int, KeptAsset]]:
-    """Yield each part with its nodes and those above them, its vertices, materials, pictures, skins and animations.
+@dataclass(slots=True, eq=False)
+class SingleParts:
+    """The parts of a document, each with its nodes and those above them, and all that its faces need.
 
     Cameras, lights, variants, and extensions other than those of materials and textures are left out.
-
-    Parameters
-    ----------
-    part_of_face : (F,) the part of each face of the mesh that was segmented.
     """
-    divided = KeptAsset.of(kept.document)
-    meshes = divide_document(divided, kept, part_of_face, Marks(names), limits, is_plain=True)
-    buffers = {index: data for index, data in enumerate(divided.buffers) if data is not None}
-    source = Document(divided.root, None, kept.document.size, kept.document.companions, buffers)
-    extraction = _Extraction(source, Accessors(source, limits), meshes)
-    for part in range(len(names)):
-        yield part, extraction.part(part)
 
-
-@dataclass(slots=True, eq=False)
-class _Extraction:
     source: Document
     accessors: Accessors
     meshes: dict[int, list[int | None]]  # the parts of the primitives of divided meshes
+    notes: tuple[str, ...]  # on what could not be kept
     _nodes: dict[int, list[int]] = field(default_factory=dict)  # of the scene, by part
     _parent: dict[int, int] = field(default_factory=dict)
+
+    @classmethod
+    def of(cls, kept: KeptDocument, part_of_face: IntArray, names: list[str], limits: ReadLimits) -> "SingleParts":
+        """Divide a document; ``part_of_face`` (F,) is the part of each face of the mesh that was segmented."""
+        divided = KeptAsset.of(kept.document)
+        meshes = divide_document(divided, kept, part_of_face, Marks(names), limits, is_plain=True)
+        buffers = {index: data for index, data in enumerate(divided.buffers) if data is not None}
+        source = Document(divided.root, None, kept.document.size, kept.document.companions, buffers)
+        return cls(source, Accessors(source, limits), meshes, (*kept.notes, *divided.notes))
 
     def __post_init__(self) -> None:
         for node in range(self.source.count("nodes")):
@@ -55,6 +49,7 @@ class _Extraction:
                 self._nodes.setdefault(part, []).append(node)
 
     def part(self, part: int) -> KeptAsset:
+        """Return a part as an asset."""
         shown = self._nodes.get(part, [])
         numbers = {node: i for i, node in enumerate(sorted(self._with_joints_and_parents(shown)))}
         asset = new_asset(self.source)
