@@ -43,11 +43,16 @@ _CODES: dict[str, tuple[int, str]] = {
     "job_canceled": (409, "The job was canceled and has no result: submit the mesh again."),
     "idempotency_key_spent": (409, "The job of this Idempotency-Key was deleted: use another key."),
     "job_deleted": (410, "This job was deleted with its files: submit the mesh again."),
+    "input_lost": (410, "The store no longer has the file that was sent: submit it again."),
     "length_required": (411, "The request has no body: send the mesh, with its Content-Length or in chunks."),
     "too_large": (413, "The mesh, the batch or a field is larger than this installation accepts."),
     "unsupported_media_type": (415, "The format of the body is not supported: see GET /v1/formats."),
     "range_not_satisfiable": (416, "The range lies outside the result."),
     "invalid_mesh": (422, "The mesh file is empty: send one with faces."),
+    "input_changed": (
+        422,
+        "The file is read in another way than when it was segmented: submit it again.",
+    ),
     "invalid_parameters": (422, "A parameter is out of range: see GET /v1/methods."),
     "invalid_request": (422, "A value in the path, the query or a header is not valid; detail names it."),
     "idempotency_key_reused": (

@@ -8,13 +8,14 @@ functions by name), plain meshes (``write_mesh``), labels and the hierarchy as J
 
 from segcore.io.converting import with_coordinates
 from segcore.io.formats import FORMATS, Format, declared_format
-from segcore.io.gltf.writer import write_glb
+from segcore.io.gltf.writer import Layout, write_glb
+from segcore.io.keeping import Original, PartFormat, write_kept, write_kept_parts
 from segcore.io.labels import hierarchy_document, labels_document, runs_document, write_json, write_npy, write_seg
 from segcore.io.limits import ReadLimits
 from segcore.io.mesh_writer import write_mesh
 from segcore.io.names import SegmentNames
 from segcore.io.obj.writer import write_obj
-from segcore.io.parts.writer import PartFormat, write_parts
+from segcore.io.parts.writer import write_parts
 from segcore.io.picture import draw, write_png
 from segcore.io.ply.writer import write_ply
 from segcore.io.reading import read_mesh
@@ -27,6 +28,8 @@ __all__ = [
     "WRITERS",
     "WRITE_OPTIONS",
     "Format",
+    "Layout",
+    "Original",
     "PartFormat",
     "ReadLimits",
     "SegmentNames",
@@ -44,6 +47,8 @@ __all__ = [
     "write_3mf",
     "write_glb",
     "write_json",
+    "write_kept",
+    "write_kept_parts",
     "write_mesh",
     "write_npy",
     "write_obj",

@@ -3,11 +3,11 @@
 import os
 import zipfile
 from dataclasses import dataclass, replace
-from typing import BinaryIO
+from typing import Any, BinaryIO, Literal
 
 import numpy as np
 
-from segcore.errors import InvalidMesh
+from segcore.errors import InvalidMesh, InvalidParameters
 from segcore.hierarchy import Hierarchy
 from segcore.io.archive import FAST, member
 from segcore.io.gltf.document import read_document
@@ -16,10 +16,14 @@ from segcore.io.gltf.kept.from_obj import document_of_obj
 from segcore.io.gltf.kept.shape import check_members
 from segcore.io.gltf.kept.single_parts import SingleParts
 from segcore.io.gltf.kept.writer import KeptDocument, write_kept_document
+from segcore.io.gltf.writer import write_glb
 from segcore.io.limits import ReadLimits
 from segcore.io.names import SegmentNames, file_stems, segment_names
+from segcore.io.parts.writer import write_parts
 from segcore.io.reading import mesh_of_model, open_model
 from segcore.mesh import Mesh
+
+PartFormat = Literal["stl", "obj", "glb"]
 
 _NEAR = 1e-4  # of the size of the mesh: vertices of one file that two versions read agree far better
 
@@ -120,6 +124,71 @@ def write_kept_parts(
             with archive.open(member(f"{stem}.glb", compressed=True), "w", force_zip64=True) as file:
                 parts.part(part).write(file)
     return parts.notes
+
+
+def write_parts_as(
+    target: BinaryIO,
+    mesh: Mesh,
+    hierarchy: Hierarchy,
+    segments: int | None = None,
+    *,
+    part_format: PartFormat = "stl",
+    keep: Original | None = None,
+    names: SegmentNames | None = None,
+    **options: Any,
+) -> tuple[str, ...]:
+    """Write a ZIP archive with a file for each segment, by :func:`write_parts`, or :func:`write_kept_parts` as GLB.
+
+    Parameters
+    ----------
+    keep : the file that the mesh was read from, for parts as GLB; None if only the mesh is there.
+    options : those of :func:`write_parts`.
+
+    Raises
+    ------
+    InvalidParameters
+        If an option is given that the format of the parts does not have.
+    CleaveError, OSError
+        As in these functions.
+    """
+    if part_format != "glb":
+        if keep is not None:
+            raise InvalidParameters(f"Parts as {part_format} do not keep everything of the input: choose glb.")
+        write_parts(target, mesh, hierarchy, segments, part_format=part_format, names=names, **options)
+        return ()
+    given = [name for name, value in options.items() if value]
+    if given:
+        raise InvalidParameters(f"Parts as glb are as in the input: {', '.join(given)} cannot be chosen.")
+    return write_kept_parts(target, keep or mesh, hierarchy, segments, mesh=mesh, names=names)
+
+
+def write_glb_as(
+    target: BinaryIO,
+    mesh: Mesh,
+    hierarchy: Hierarchy,
+    segments: int | None = None,
+    *,
+    keep: Original | None = None,
+    all_levels: bool = False,
+    names: SegmentNames | None = None,
+    **options: Any,
+) -> tuple[str, ...]:
+    """Write a mesh as GLB, by :func:`write_glb`, or :func:`write_kept` if the file that it was read from is given.
+
+    Raises
+    ------
+    InvalidParameters
+        If an option is given that a file that keeps everything of its input does not have.
+    CleaveError, OSError
+        As in these functions.
+    """
+    if keep is None:
+        write_glb(target, mesh, hierarchy, segments, all_levels=all_levels, names=names, **options)
+        return ()
+    given = [name for name, value in options.items() if value not in (False, "tree")]
+    if given:
+        raise InvalidParameters(f"A file that keeps everything of its input has no option {' and '.join(given)}.")
+    return write_kept(target, keep, hierarchy, segments, mesh=mesh, names=names, all_levels=all_levels)
 
 
 def _kept_document(

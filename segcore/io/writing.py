@@ -6,21 +6,24 @@ from pathlib import PurePath
 from typing import Literal, TypeAlias
 
 from segcore.errors import UnsupportedFormat
-from segcore.io.gltf.writer import write_glb
+from segcore.io.keeping import write_glb_as, write_parts_as
 from segcore.io.labels import write_json, write_npy, write_seg
 from segcore.io.obj.writer import write_obj
-from segcore.io.parts.writer import write_parts
 from segcore.io.ply.writer import write_ply
 from segcore.io.result import write_result
 from segcore.io.threemf.writer import write_3mf
 
-WriteOption: TypeAlias = Literal["names", "all_levels", "features", "capped", "part_format", "unit", "up"]
+WriteOption: TypeAlias = Literal[
+    "names", "all_levels", "features", "layout", "keep", "capped", "part_format", "unit", "up"
+]
 
 # What each option of a writer does, in the order of the command line.
 WRITE_OPTIONS: dict[WriteOption, str] = {
     "names": "the name of each segment, by its label",
     "all_levels": "every number of segments in one file",
     "features": "the hierarchy as EXT_structural_metadata, with EXT_mesh_features",
+    "layout": "nodes as nested as the hierarchy (tree), or all parts below the root (flat)",
+    "keep": "the input with everything that it has, divided by part",
     "capped": "close every part, for printing",
     "part_format": "the files in it",
     "unit": "the unit of the coordinates, such as mm, if that of the mesh is known",
@@ -46,13 +49,17 @@ class Writer:
     title: str
     extension: str  # with the dot
     media_type: str
-    write: Callable[..., None]
+    write: Callable[..., tuple[str, ...] | None]  # notes on what could not be kept of the input
     options: frozenset[WriteOption] = frozenset()  # keyword arguments of ``write``; formats of models take ``names``
 
 
 WRITERS: dict[str, Writer] = {
     "glb": Writer(
-        "GLB, a coloured node per segment", ".glb", "model/gltf-binary", write_glb, _MODEL | {"all_levels", "features"}
+        "GLB, a coloured node per segment",
+        ".glb",
+        "model/gltf-binary",
+        write_glb_as,
+        _MODEL | {"all_levels", "features", "layout", "keep"},
     ),
     "ply": Writer("PLY, a colour and a label per face", ".ply", "model/ply", write_ply, _FREE),
     "obj": Writer("OBJ, a group per segment", ".obj", "model/obj", write_obj, _FREE),
@@ -61,8 +68,8 @@ WRITERS: dict[str, Writer] = {
         "ZIP archive, an STL file per segment",
         ".zip",
         "application/zip",
-        write_parts,
-        _FREE | {"part_format", "capped"},
+        write_parts_as,
+        _FREE | {"part_format", "capped", "keep"},
     ),
     "seg": Writer(
         "label of every face, one per line",

@@ -6,15 +6,17 @@ from typing import Any, BinaryIO
 from segcore.io import draw, write_png
 from service.answer.level import ChosenCut
 from service.answer.model_formats import MODELS
+from service.answer.originals import stored_original
 from service.answer.part_names import names_digest
 from service.answer.renditions import Rendition, to_bytes
+from service.context import Context
 from service.result_cache import ResultCache
 
 PNG = "image/png"
 
 
 def model_rendition(
-    cache: ResultCache, cut: ChosenCut, name: str, names: dict[int, str], options: Mapping[str, Any]
+    context: Context, cut: ChosenCut, name: str, names: dict[int, str], options: Mapping[str, Any]
 ) -> Rendition:
     """Return the segmented mesh in a format.
 
@@ -22,17 +24,22 @@ def model_rendition(
     ----------
     name : a key of MODELS.
     names : names of segments by label.
-    options : further keyword arguments of the writer.
+    options : further keyword arguments of the writer. If the value of ``keep`` is not None, the writer gets the stored
+        file of the job in its place.
     """
     writer = MODELS[name]
     mesh, hierarchy = cut.result.mesh, cut.result.hierarchy
     query = cut.name + "".join(f"&{option}={value}" for option, value in options.items()) + names_digest(names)
 
     def write(target: BinaryIO) -> None:
-        writer.write(target, mesh, hierarchy, cut.segments, names=names, **options)
+        if options.get("keep") is None:
+            writer.write(target, mesh, hierarchy, cut.segments, names=names, **options)
+            return
+        with stored_original(context, cut.job_id) as original:
+            writer.write(target, mesh, hierarchy, cut.segments, names=names, **{**options, "keep": original})
 
     file_name = f"{cut.job_id}{writer.extension}"
-    return _cached(cache, cut.job_id, f"{name}?{query}", writer.media_type, write, file_name)
+    return _cached(context.results, cut.job_id, f"{name}?{query}", writer.media_type, write, file_name)
 
 
 def preview_rendition(cache: ResultCache, cut: ChosenCut, size: int) -> Rendition:

@@ -18,6 +18,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     add_coordinates(parser)
     add_level(parser, "the automatic one")
     add_outputs(parser, required=True)
+    parser.add_argument("--source", type=Path, metavar="MESH", help="the file that was segmented, for --keep all")
 
 
 def run(choices: argparse.Namespace) -> None:
@@ -35,8 +36,10 @@ def run(choices: argparse.Namespace) -> None:
     result = read_result(choices.result)
     mesh = with_coordinates(result.mesh, choices.unit, choices.up)
     segments = fineness.segments_of(result.hierarchy)
+    options = output_options(choices, choices.source)
     for path in outputs:
-        write_model(path, mesh, result.hierarchy, segments, output_options(choices))
+        for note in write_model(path, mesh, result.hierarchy, segments, options):
+            say(note)
     say(level_summary(result.hierarchy, segments, fineness))
     for path in outputs:
         say(f"wrote {path}")

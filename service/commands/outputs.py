@@ -2,11 +2,14 @@
 
 import argparse
 from collections.abc import Callable, Sequence
+from dataclasses import dataclass
 from pathlib import Path
-from typing import BinaryIO
+from typing import BinaryIO, get_args
 
+from segcore.errors import InvalidParameters
 from segcore.hierarchy import Hierarchy
-from segcore.io.writing import WRITERS, writer_for
+from segcore.io import Layout, Original, PartFormat
+from segcore.io.writing import WRITERS, Writer, writer_for
 from segcore.mesh import Mesh
 from worker.jobs.objects.durable import replace_file
 
@@ -30,23 +33,65 @@ def add_outputs(parser: argparse.ArgumentParser, required: bool = False) -> None
         "--features", action="store_true", help="GLB: the hierarchy as EXT_structural_metadata, with EXT_mesh_features"
     )
     parser.add_argument(
+        "--layout",
+        choices=get_args(Layout),
+        default="tree",
+        help="GLB: nodes nested as the hierarchy, or all parts below the root (%(default)s)",
+    )
+    parser.add_argument(
+        "--keep", choices=("all",), help="GLB: the input with everything that it has, divided by part (no)"
+    )
+    parser.add_argument(
         "--output-unit", metavar="UNIT", help="OBJ, PLY and ZIP: convert the coordinates to this unit, such as mm"
     )
     parser.add_argument("--output-up", metavar="AXIS", help="OBJ, PLY and ZIP: turn the mesh so that y or z points up")
     parser.add_argument("--capped", action="store_true", help="3MF and ZIP: close every part, for printing")
-    parser.add_argument("--parts", choices=("stl", "obj"), default="stl", help="ZIP: format of its files (%(default)s)")
+    parser.add_argument(
+        "--parts", choices=get_args(PartFormat), default="stl", help="ZIP: format of its files (%(default)s)"
+    )
 
 
-def output_options(choices: argparse.Namespace) -> dict[str, object]:
-    """Return the options that were given, by their names in ``Writer.options``."""
-    return {
+@dataclass(frozen=True, slots=True)
+class OutputOptions:
+    """The options of the formats that were given on the command line."""
+
+    values: dict[str, object]  # by their names in ``Writer.options``
+    original: Original | None  # the file that the mesh was read from, if it is known
+    keeps_all: bool
+
+    def of(self, writer: Writer) -> dict[str, object]:
+        """Return those that a format has."""
+        chosen: dict[str, object] = {name: value for name, value in self.values.items() if name in writer.options}
+        if "keep" in writer.options and chosen.get("part_format", "glb") == "glb":
+            wants = self.keeps_all or "part_format" in chosen
+            chosen["keep"] = self.original if wants else None
+        return chosen
+
+
+def output_options(choices: argparse.Namespace, source: Path | None) -> OutputOptions:
+    """Return the options that were given.
+
+    Parameters
+    ----------
+    source : the file that the mesh was read from; None if it is not known.
+
+    Raises
+    ------
+    InvalidParameters
+        If that file is to be kept and is not known.
+    """
+    if choices.keep and source is None:
+        raise InvalidParameters("To keep everything of the input, name its file with --source.")
+    values = {
         "all_levels": choices.all_levels,
         "features": choices.features,
+        "layout": choices.layout,
         "capped": choices.capped,
         "unit": choices.output_unit,
         "up": choices.output_up,
         "part_format": choices.parts,
     }
+    return OutputOptions(values, Original(source, neighbours=True) if source else None, choices.keep == "all")
 
 
 def check_outputs(paths: Sequence[Path]) -> None:
@@ -62,16 +107,24 @@ def check_outputs(paths: Sequence[Path]) -> None:
             raise NotADirectoryError(20, "There is no such folder", str(path.parent))
 
 
-def write_model(path: Path, mesh: Mesh, hierarchy: Hierarchy, segments: int | None, options: dict[str, object]) -> None:
+def write_model(
+    path: Path, mesh: Mesh, hierarchy: Hierarchy, segments: int | None, options: OutputOptions
+) -> tuple[str, ...]:
     """Write a segmented mesh in the format of the extension, with those of the options that the format has.
+
+    Returns
+    -------
+    Notes on what could not be kept of the input.
 
     Raises
     ------
     UnsupportedFormat, InvalidParameters, OSError
     """
     writer = writer_for(path.name)
-    chosen = {name: value for name, value in options.items() if name in writer.options}
-    write_file(path, lambda target: writer.write(target, mesh, hierarchy, segments, **chosen))
+    chosen = options.of(writer)
+    notes: list[str] = []
+    write_file(path, lambda target: notes.extend(writer.write(target, mesh, hierarchy, segments, **chosen) or ()))
+    return tuple(notes)
 
 
 def write_file(path: Path, write: Callable[[BinaryIO], object]) -> None:

@@ -56,9 +56,9 @@ def run(choices: argparse.Namespace) -> None:
         surface = segcore.build_surface(mesh)
         hierarchy = segcore.segment(mesh, parameters, bar, surface)
         segments = fineness.segments_of(hierarchy)
-        _write(choices, mesh, hierarchy, segments)
+        notes = _write(choices, mesh, hierarchy, segments)
     say(f"{choices.mesh.name}: {len(mesh.faces)} faces, {len(mesh.vertices)} vertices")
-    for note in mesh.notes:
+    for note in (*mesh.notes, *notes):
         say(note)
     say(level_summary(hierarchy, segments, fineness))
     for line in _structure_lines(structure_counts(mesh, surface), parameters):
@@ -88,9 +88,10 @@ def _structure_lines(counts: StructureCounts, parameters: segcore.SegmentationPa
     return ([f"structure of the file: {counts.in_words()}"] if counts.has_parts else []) + ([note] if note else [])
 
 
-def _write(choices: argparse.Namespace, mesh: segcore.Mesh, hierarchy: segcore.Hierarchy, segments: int) -> None:
-    for path in choices.output:
-        write_model(path, mesh, hierarchy, segments, output_options(choices))
+def _write(choices: argparse.Namespace, mesh: segcore.Mesh, hierarchy: segcore.Hierarchy, segments: int) -> list[str]:
+    """Write all outputs; return notes on what could not be kept of the input."""
+    options = output_options(choices, choices.mesh)
+    notes = [note for path in choices.output for note in write_model(path, mesh, hierarchy, segments, options)]
     document = hierarchy_document(hierarchy)
     writers: list[tuple[Path | None, Callable[[BinaryIO], object]]] = [
         (choices.labels, lambda target: write_seg(target, hierarchy.labels(segments))),
@@ -100,3 +101,4 @@ def _write(choices: argparse.Namespace, mesh: segcore.Mesh, hierarchy: segcore.H
     for named, write in writers:
         if named is not None:
             write_file(named, write)
+    return notes

@@ -8,9 +8,10 @@ from fastapi import APIRouter, Depends, Query
 from starlette.responses import Response
 
 from segcore.coordinates import Axis, Unit
-from segcore.io import PartFormat, WriteOption, Writer
+from segcore.io import Layout, PartFormat, WriteOption, Writer
 from service.answer.model_formats import MODELS, model_file, operation_name
 from service.answer.models import PNG, model_rendition, preview_rendition
+from service.answer.originals import ORIGINAL_PROBLEMS
 from service.answer.part_names import PartNames
 from service.answer.renditions import LEVEL_PROBLEMS, answer_rendition, rendition_responses
 from service.answer.result_request import ResultRequestOf
@@ -37,6 +38,20 @@ OPTIONS: dict[WriteOption, tuple[Any, object]] = {
             Query(description="The hierarchy as EXT_structural_metadata, referenced by EXT_mesh_features."),
         ],
         False,
+    ),
+    "layout": (
+        Annotated[Layout, Query(description="Nodes nested as the hierarchy, or all parts below the root.")],
+        "tree",
+    ),
+    "keep": (
+        Annotated[
+            Literal["all"] | None,
+            Query(
+                description="The file that was sent with everything that it has, divided by part: nodes, materials, "
+                "textures, attributes, skins, animations. Of parts, only as glb, which always keep it."
+            ),
+        ],
+        None,
     ),
     "part_format": (
         Annotated[PartFormat, Query(description="The format of the files of the parts.")],
@@ -74,6 +89,8 @@ def _options_of(writer: Writer) -> Callable[..., Awaitable[dict[str, Any]]]:
     async def read(**options: Any) -> dict[str, Any]:
         if "all_levels" in options:
             options["all_levels"] = options["all_levels"] == "all"
+        if options.get("part_format") == "glb":
+            options["keep"] = "all"
         return options
 
     parameters = [
@@ -89,16 +106,17 @@ def _add_route(name: str, writer: Writer) -> None:
     def get_model(
         options: Annotated[dict[str, Any], Depends(_options_of(writer))], wanted: ResultRequestOf, names: PartNames
     ) -> Response:
-        rendition = model_rendition(wanted.context.results, wanted.cut(), name, names, options)
+        rendition = model_rendition(wanted.context, wanted.cut(), name, names, options)
         return answer_rendition(wanted.request, rendition)
 
+    kept = ORIGINAL_PROBLEMS if "keep" in writer.options else ()
     router.add_api_route(
         f"/{model_file(name)}",
         get_model,
         name=f"get_{operation_name(name)}",
         description=f"The segmented mesh as {writer.title}.",
         response_class=Response,
-        responses=rendition_responses({writer.media_type: _BINARY}, f"{writer.title}.", *LEVEL_PROBLEMS),
+        responses=rendition_responses({writer.media_type: _BINARY}, f"{writer.title}.", *LEVEL_PROBLEMS, *kept),
     )
 
 

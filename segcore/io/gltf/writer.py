@@ -1,8 +1,9 @@
 """The GLB writer: a mesh as named, nested, coloured parts that ordinary viewers show."""
 
-from typing import BinaryIO
+from typing import BinaryIO, Literal, TypeAlias, get_args
 
 from segcore.appearance import Appearance
+from segcore.errors import InvalidParameters
 from segcore.hierarchy import Hierarchy
 from segcore.io.gltf.glb_file import GlbFile
 from segcore.io.gltf.writer_appearance import add_attributes, name_groups
@@ -13,6 +14,8 @@ from segcore.io.names import SegmentNames, segment_names
 from segcore.io.slices import group
 from segcore.mesh import Mesh
 
+Layout: TypeAlias = Literal["tree", "flat"]
+
 
 def write_glb(
     target: BinaryIO,
@@ -22,6 +25,7 @@ def write_glb(
     *,
     all_levels: bool = False,
     features: bool = False,
+    layout: Layout = "tree",
     names: SegmentNames | None = None,
 ) -> None:
     """Write a mesh as binary glTF 2.0, with a material for each segment and the hierarchy as nested nodes.
@@ -33,6 +37,8 @@ def write_glb(
     input face, degenerate ones too, as slices of one index buffer. ``extras`` of a node: ``node`` (its number in the
     hierarchy), ``level``, ``label``, ``area`` (squared units of the mesh), ``faces``, ``cut_value`` and ``step`` (null
     if nothing cuts it), and if it has faces, ``first_face`` and, of a single level, ``segment``.
+
+    With the layout ``flat`` the parts are all children of the root, in the order of their labels.
 
     With ``all_levels`` the nodes are those of the whole hierarchy, and the leaves have the geometry. Their materials
     are those of this level, and KHR_materials_variants has the ones of every other: variant k - 1 is called
@@ -66,16 +72,20 @@ def write_glb(
     Raises
     ------
     InvalidParameters
-        If ``segments`` is not in 1..max_segments.
+        If ``segments`` is not in 1..max_segments, or there is no such layout.
     LimitExceeded
         If the file would be larger than the 4 GiB of the format.
     """
+    if layout not in get_args(Layout):
+        raise InvalidParameters(f"The layout is {' or '.join(get_args(Layout))}, not {layout!r}.")
     drawing = all_levels_drawing(hierarchy, segments) if all_levels else level_drawing(hierarchy, segments)
     look = mesh.appearance or Appearance()
     placement = place(mesh)
     slices = group(drawing.of_face, len(drawing.nodes))
     corners = mesh.faces if look.corners is None else look.corners
-    document = scene_document(hierarchy, drawing, placement, slices, segment_names(names, len(drawing.nodes)))
+    document = scene_document(
+        hierarchy, drawing, placement, slices, segment_names(names, len(drawing.nodes)), is_flat=layout == "flat"
+    )
     known = mesh.coordinates
     document["scenes"][0]["extras"] |= {"unit": known.unit, "up": known.up, "shown_up": known.shown_up}
     glb = GlbFile(document, [placement.positions, corners[slices.faces].astype("<u4"), slices.faces.astype("<u4")])

@@ -54,13 +54,20 @@ def level_materials(hierarchy: Hierarchy, nodes: IntArray) -> IntArray:
 
 
 def scene_document(
-    hierarchy: Hierarchy, drawing: Drawing, placement: Placement, slices: Slices, names: list[str]
+    hierarchy: Hierarchy,
+    drawing: Drawing,
+    placement: Placement,
+    slices: Slices,
+    names: list[str],
+    *,
+    is_flat: bool = False,
 ) -> dict[str, Any]:
     """Return the glTF document for a buffer of positions, uint32 corners in slices, and uint32 input faces.
 
     Parameters
     ----------
     names : (D,) names of the parts that have geometry.
+    is_flat : all parts are children of the root, in the order of their labels.
     """
     faces = len(slices.faces)
     sizes = [placement.positions.nbytes, _FACE_BYTES * faces, 4 * faces]
@@ -70,7 +77,7 @@ def scene_document(
         "asset": {"version": "2.0", "generator": "Cleave"},
         "scene": 0,
         "scenes": [{"nodes": [0], "extras": _scene_extras(hierarchy, drawing)}],
-        "nodes": _nodes(hierarchy, drawing, placement, slices, names),
+        "nodes": _nodes(hierarchy, drawing, placement, slices, names, is_flat),
         "meshes": [_mesh(drawing, k, names[k]) for k in parts],
         "materials": segment_materials(names),
         "accessors": [_position_accessor(placement.positions), *(_index_accessor(slices, k) for k in parts)],
@@ -114,12 +121,19 @@ def variant_names(count: int) -> list[str]:
 
 
 def _nodes(
-    hierarchy: Hierarchy, drawing: Drawing, placement: Placement, slices: Slices, names: list[str]
+    hierarchy: Hierarchy,
+    drawing: Drawing,
+    placement: Placement,
+    slices: Slices,
+    names: list[str],
+    is_flat: bool,
 ) -> list[dict[str, Any]]:
     """The nodes of the tree of steps, down to those that have geometry, in the order of their numbers."""
     part_of = {node: k for k, node in enumerate(drawing.nodes.tolist())}
     splits = len(part_of) - 1
     children = nary_children(hierarchy.split_node[:splits], hierarchy.step[:splits])
+    if is_flat and splits:
+        children = [drawing.nodes.tolist(), *([] for _ in children[1:])]
     entries = [entry for entry in node_documents(hierarchy)[: 2 * splits + 1] if _is_shown(entry, part_of, children)]
     place = {entry["id"]: i for i, entry in enumerate(entries)}
     nodes: list[dict[str, Any]] = []

@@ -15,7 +15,7 @@ from segcore.io.stl.writer import check_coordinates, encode_stl, offset_of
 from segcore.io.text.rows import format_rows
 from segcore.mesh import Mesh
 
-PartFormat = Literal["stl", "obj"]
+PlainFormat = Literal["stl", "obj"]
 
 _OFFSET = "%r %r %r\nThe parts are moved to the origin. Add these numbers to x, y and z for the place in the input.\n"
 _STL_NOTE = b"binary STL, one segment, written by Cleave"
@@ -27,7 +27,7 @@ def write_parts(
     hierarchy: Hierarchy,
     segments: int | None = None,
     *,
-    part_format: PartFormat = "stl",
+    part_format: PlainFormat = "stl",
     capped: bool = False,
     names: SegmentNames | None = None,
     unit: str | None = None,
@@ -55,8 +55,8 @@ def write_parts(
         unit or the axis of the mesh is not known.
     """
     mesh = requested(mesh, unit, up)
-    if part_format not in get_args(PartFormat):
-        raise InvalidParameters(f"Parts are written as {' or '.join(get_args(PartFormat))}, not {part_format!r}.")
+    if part_format not in get_args(PlainFormat):
+        raise InvalidParameters(f"Parts are written as {' or '.join(get_args(PlainFormat))}, not {part_format!r}.")
     if part_format == "stl":
         check_coordinates(mesh)
     offset = offset_of(mesh) if part_format == "stl" else None
