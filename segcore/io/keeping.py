@@ -3,7 +3,7 @@
 import os
 import zipfile
 from dataclasses import dataclass, replace
-from typing import Any, BinaryIO, Literal
+from typing import Any, BinaryIO, Literal, get_args
 
 import numpy as np
 
@@ -151,6 +151,8 @@ def write_parts_as(
     CleaveError, OSError
         As in these functions.
     """
+    if part_format not in get_args(PartFormat):
+        raise InvalidParameters(f"Parts are written as {' or '.join(get_args(PartFormat))}, not {part_format!r}.")
     if part_format != "glb":
         if keep is not None:
             raise InvalidParameters(f"Parts as {part_format} do not keep everything of the input: choose glb.")

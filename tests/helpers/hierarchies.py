@@ -23,6 +23,13 @@ def hierarchy_of(split_node: list[int], face_leaf: IntArray, automatic: int) -> 
     return Hierarchy(splits, np.zeros(len(splits)), np.zeros(nodes), zeros, face_leaf.astype(np.int32), automatic)
 
 
+def hierarchy_of_labels(labels: IntArray) -> Hierarchy:
+    """A hierarchy whose automatic level has these labels 0..K - 1: it cuts off label 1, then label 2, and so on."""
+    count = int(labels.max()) + 1
+    splits = [0, *range(1, 2 * count - 3, 2)] if count > 1 else []
+    return hierarchy_of(splits, np.where(labels > 0, 2 * labels, max(2 * count - 3, 0)), count)
+
+
 @dataclass(frozen=True, slots=True)
 class HeightSegmenter(CleaveSegmenter):
     """Cuts a mesh into three layers of equal height: the top off the rest, then the middle off the bottom.

@@ -37,6 +37,9 @@ def meshopt_asset(
         compressed_view(asset, ENCODED[positions], len(POSITIONS), 12, extension, mode="ATTRIBUTES", **more),
         compressed_view(asset, ENCODED[corners], FACES.size, 4, extension, mode=mode),
     ]
+    asset.fallbacks = [
+        {"byteLength": 12 * len(POSITIONS) + 4 * FACES.size, "extensions": {extension: {"fallback": True}}}
+    ]
     for view, kind, component, count in (
         (views[0], "VEC3", 5126, len(POSITIONS)),
         (views[1], "SCALAR", 5125, FACES.size),

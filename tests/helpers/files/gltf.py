@@ -28,6 +28,7 @@ class Asset:
         }
     )
     binary: bytes = b""
+    fallbacks: list[dict[str, Any]] = field(default_factory=list)  # buffers without data
 
     def add(self, name: str, entry: dict[str, Any]) -> int:
         self.document[name].append(entry)
@@ -65,7 +66,7 @@ class Asset:
         return index
 
     def glb(self) -> bytes:
-        text = json.dumps({**self.document, "buffers": [{"byteLength": len(self.binary)}]}).encode()
+        text = json.dumps({**self.document, "buffers": [{"byteLength": len(self.binary)}, *self.fallbacks]}).encode()
         text += b" " * (-len(text) % 4)
         binary = self.binary + b"\0" * (-len(self.binary) % 4)
         chunks = struct.pack("<I4s", len(text), b"JSON") + text + struct.pack("<I4s", len(binary), b"BIN\0") + binary

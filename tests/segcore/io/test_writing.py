@@ -38,7 +38,15 @@ def test_a_writer_is_found_by_the_name_of_the_file() -> None:
 
 @pytest.mark.parametrize("kind", WRITERS)
 def test_a_writer_takes_the_options_that_it_lists_and_no_others(kind: str) -> None:
-    values = {"names": {0: "wheel"}, "all_levels": True, "features": True, "capped": True, "part_format": "obj"}
+    values = {
+        "names": {0: "wheel"},
+        "all_levels": True,
+        "features": True,
+        "capped": True,
+        "part_format": "obj",
+        "layout": "flat",
+        "keep": None,
+    }
     values |= {"unit": "mm", "up": "z"}
     assert set(values) == set(WRITE_OPTIONS)
     mesh, hierarchy = two_strips()

@@ -12,6 +12,7 @@ import pygltflib
 import pytest
 import trimesh
 from hypothesis import given, settings
+from hypothesis import strategies as st
 
 from helpers.files.appearances import looks
 from helpers.files.hierarchies import segmentations, two_strips
@@ -251,6 +252,25 @@ def test_a_wrong_number_of_segments_is_refused_before_anything_is_written() -> N
     with pytest.raises(InvalidParameters, match="1 to 3"):
         write_glb(target, mesh, hierarchy, 4)
     assert target.getvalue() == b""
+
+
+@given(segmentations(), st.booleans())
+def test_the_flat_layout_has_all_parts_below_the_root_in_the_order_of_their_labels(
+    segmented: Segmented, all_levels: bool
+) -> None:
+    mesh, hierarchy, segments = segmented
+    flat = document(glb(mesh, hierarchy, segments, layout="flat", all_levels=all_levels))
+    tree = document(glb(mesh, hierarchy, segments, all_levels=all_levels))
+    nodes = flat["nodes"]
+    if "mesh" in nodes[0]:
+        assert nodes == tree["nodes"]
+        return
+    assert [nodes[child]["mesh"] for child in nodes[0]["children"]] == list(range(len(flat["meshes"])))
+    assert len(nodes) == len(flat["meshes"]) + 1
+    parts = [[node for node in one["nodes"] if "mesh" in node] for one in (flat, tree)]
+    assert parts[0] == parts[1]
+    with pytest.raises(InvalidParameters, match="tree or flat"):
+        glb(mesh, hierarchy, segments, layout="round")
 
 
 @pytest.fixture(scope="module")
