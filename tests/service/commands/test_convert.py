@@ -17,6 +17,8 @@ from service.commands.main import main
         (["convert", "ball.cleave", "-o", "a.dae"], "'a.dae' must end in one of .glb"),
         (["convert", "ball.cleave", "-o", "no/a.ply"], "no: There is no such folder."),
         (["convert", "ball.cleave"], "-o/--output"),
+        (["convert", "ball.cleave", "-o", "a.glb", "--keep", "all"], "name its file with --source"),
+        (["convert", "ball.cleave", "-o", "a.glb", "--keep", "all", "--source", "square.off"], "not the file that was"),
         (["inspect", "none.off"], "none.off: No such file or directory."),
         (["inspect", "ball.cleave"], "cleave convert"),
     ],
@@ -29,6 +31,7 @@ def test_an_expected_error_is_one_line_and_status_2(
     sentence: str,
 ) -> None:
     monkeypatch.chdir(ball)
+    (ball / "square.off").write_bytes(b"OFF 4 1 0\n0 0 0\n1 0 0\n1 1 0\n0 1 0\n4 0 1 2 3\n")
     try:
         status = main(arguments)
     except SystemExit as exit_of_the_parser:

@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 import trimesh
 
+from segcore.io import read_mesh
 from segcore.io.result import read_result
 from segcore.io.writing import WRITERS
 from segcore.levels import Fineness
@@ -53,3 +54,27 @@ def test_several_outputs_at_once_and_the_options_of_formats(
     assert np.load(labels).tolist() == hierarchy.labels(4).tolist()
     expected = [level_summary(hierarchy, 4, Fineness(segments=4))]
     assert capsys.readouterr().out.splitlines() == expected + [f"wrote {path}" for path in (glb, archive, labels)]
+
+
+def test_everything_of_the_input_is_kept_on_request(ball: Path, tmp_path: Path) -> None:
+    kept, plain, archive, converted = (tmp_path / name for name in ("kept.glb", "plain.glb", "parts.zip", "again.glb"))
+    mesh, result = ball / "ball.off", ball / "ball.cleave"
+    arguments = ["segment", str(mesh), "--segments", "4", "--parts", "glb", "-o", str(archive)]
+    assert main([*arguments, "-o", str(kept), "--keep", "all"]) == 0
+    assert main([*arguments, "-o", str(plain)]) == 0
+    assert b"original look" in kept.read_bytes()
+    assert b"original look" not in plain.read_bytes()
+    with zipfile.ZipFile(archive) as parts:
+        assert parts.namelist() == [f"segment_{k}.glb" for k in range(4)]
+        faces = [len(read_mesh(io.BytesIO(parts.read(name))).faces) for name in parts.namelist()]
+    assert sum(faces) == len(read_mesh(mesh).faces)
+    source = ["--source", str(mesh), "--keep", "all"]
+    assert main(["convert", str(result), "--segments", "4", "-o", str(converted), *source]) == 0
+    assert converted.read_bytes() == kept.read_bytes()
+
+
+def test_what_cannot_be_kept_is_said(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    (tmp_path / "a.mtl").write_text("newmtl red\nmap_Kd red.png\n")
+    (tmp_path / "a.obj").write_text("mtllib a.mtl\nv 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\nusemtl red\nf 1 2 3\nf 1 3 4\n")
+    assert main(["segment", str(tmp_path / "a.obj"), "-o", str(tmp_path / "a.glb"), "--keep", "all"]) == 0
+    assert "The picture 'red.png' is not in the set or cannot be read: it is left out." in capsys.readouterr().out
