@@ -32,7 +32,7 @@ function parts(root) {
   root.updateMatrixWorld(true);
   root.traverse((object) => {
     if (!object.isMesh) return;
-    const name = object.userData.name ?? object.name;
+    const name = object.geometry.userData.name ?? object.userData.name ?? object.name;
     for (const matrix of places(object)) {
       const place = (i) => object.getVertexPosition(i, new Vector3()).applyMatrix4(matrix);
       found.push({ name, ...soup(object.geometry, place) });
