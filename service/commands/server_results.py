@@ -31,6 +31,7 @@ RESULTS = {
     **{name: ServerResult(name, "labels", {"format": name}) for name in ("seg", "npy")},
     "json": ServerResult("json", "hierarchy", has_level=False),
     **_models(),
+    "kept": ServerResult("kept.glb", "model.glb", {"keep": "all"}),
     "png": ServerResult("png", "preview.png"),
 }
 DEFAULT_RESULTS = ("seg", "json", "glb")

@@ -105,3 +105,9 @@ def test_the_structure_of_a_file_is_followed_and_limits_are_reported(
     assert submit(url, [path], tmp_path, *options) == 0
     assert len(set((tmp_path / "two.seg").read_text().split())) == 2
     assert "two.obj: 2 segments; The hierarchy ends with the 2 groups of the file" in capsys.readouterr().err
+
+
+def test_the_whole_input_divided_by_part_is_a_result(url: str, meshes: list[Path], tmp_path: Path) -> None:
+    assert submit(url, meshes[:1], tmp_path, "--results", "kept,glb") == 0
+    assert b"original look" in (tmp_path / "ball10.kept.glb").read_bytes()
+    assert b"original look" not in (tmp_path / "ball10.glb").read_bytes()
