@@ -2,8 +2,9 @@
 
 Everything that the service, the worker and the command line use is exported here: the formats that can be read
 (``FORMATS``, ``read_mesh``, ``ReadLimits``), the formats of segmentations (``WRITERS``, ``writer_for`` and their
-functions by name), plain meshes (``write_mesh``), labels and the hierarchy as JSON values, ``.cleave`` files
-(``write_result``, ``read_result``) and pictures (``draw``, ``write_png``).
+functions by name), the input with everything that it has, divided by part (``write_kept``, ``write_kept_parts``), plain
+meshes (``write_mesh``), labels and the hierarchy as JSON values, ``.cleave`` files (``write_result``, ``read_result``)
+and pictures (``draw``, ``write_png``).
 """
 
 from segcore.io.converting import with_coordinates

@@ -2,6 +2,8 @@
 
 import os
 import zipfile
+from collections.abc import Iterator
+from contextlib import contextmanager
 from dataclasses import dataclass, replace
 from typing import Any, BinaryIO, Literal, get_args
 
@@ -23,6 +25,7 @@ from segcore.io.parts.writer import write_parts
 from segcore.io.reading import mesh_of_model, open_model
 from segcore.mesh import Mesh
 
+_GLB_DEFAULTS: dict[str, object] = {"features": False, "layout": "tree"}  # of write_glb
 PartFormat = Literal["stl", "obj", "glb"]
 
 _NEAR = 1e-4  # of the size of the mesh: vertices of one file that two versions read agree far better
@@ -89,7 +92,8 @@ def write_kept(
     """
     limits = original.limits or ReadLimits()
     kept = _kept_document(original, limits, hierarchy, mesh)
-    return write_kept_document(target, kept, hierarchy, segments, limits, names=names, all_levels=all_levels)
+    with _flat_enough():
+        return write_kept_document(target, kept, hierarchy, segments, limits, names=names, all_levels=all_levels)
 
 
 def write_kept_parts(
@@ -118,8 +122,8 @@ def write_kept_parts(
         kept = _kept_document(original, limits, hierarchy, mesh)
     labels, count = hierarchy.labels(segments), len(hierarchy.segment_nodes(segments))
     stems = file_stems(names, count)
-    parts = SingleParts.of(kept, labels, segment_names(names, count), limits)
-    with zipfile.ZipFile(target, "w", compresslevel=FAST) as archive:
+    with _flat_enough(), zipfile.ZipFile(target, "w", compresslevel=FAST) as archive:
+        parts = SingleParts.of(kept, labels, segment_names(names, count), limits)
         for part, stem in enumerate(stems):
             with archive.open(member(f"{stem}.glb", compressed=True), "w", force_zip64=True) as file:
                 parts.part(part).write(file)
@@ -187,7 +191,7 @@ def write_glb_as(
     if keep is None:
         write_glb(target, mesh, hierarchy, segments, all_levels=all_levels, names=names, **options)
         return ()
-    given = [name for name, value in options.items() if value not in (False, "tree")]
+    given = [name for name, value in options.items() if value != _GLB_DEFAULTS.get(name)]
     if given:
         raise InvalidParameters(f"A file that keeps everything of its input has no option {' and '.join(given)}.")
     return write_kept(target, keep, hierarchy, segments, mesh=mesh, names=names, all_levels=all_levels)
@@ -211,6 +215,15 @@ def _kept_document(
     if model.format == "obj":
         return document_of_obj(model.data, limits, model.companions, mesh.coordinates)
     return document_of_mesh(mesh, corner_tables(mesh), Materials())
+
+
+@contextmanager
+def _flat_enough() -> Iterator[None]:
+    """Raise InvalidMesh if the members of a document are nested too deeply to be followed."""
+    try:
+        yield
+    except RecursionError as error:
+        raise InvalidMesh("The JSON of the glTF file is nested too deeply: export the file again.") from error
 
 
 def _are_equal(mesh: Mesh, other: Mesh) -> bool:

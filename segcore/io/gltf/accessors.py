@@ -72,7 +72,7 @@ class Accessors:
         """
         entry, where = self._document.item("accessors", index), f"accessors[{index}]"
         kind = entry.get("type")
-        if kind not in _WIDTHS:
+        if not isinstance(kind, str) or kind not in _WIDTHS:
             raise InvalidMesh(f"{where} of the glTF file must be of one of the types {', '.join(_WIDTHS)}.")
         dtype, count = _component(entry, where), self.count(index)
         if index in self._supplied:

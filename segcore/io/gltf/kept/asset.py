@@ -1,12 +1,13 @@
 """KeptAsset: a glTF document that is being changed, with all of its buffers and pictures, to be written as GLB."""
 
-import copy
+import json
 from dataclasses import dataclass, field
 from typing import IO, Any
 
 import numpy as np
 from numpy.typing import NDArray
 
+from segcore.errors import InvalidMesh
 from segcore.io.gltf.compression.meshopt import MESHOPT
 from segcore.io.gltf.document import Document, Item
 from segcore.io.gltf.glb_file import GlbFile
@@ -34,9 +35,9 @@ class KeptAsset:
         Raises
         ------
         InvalidMesh, UnsupportedFormat
-            If a buffer is damaged or missing.
+            If a buffer is damaged or missing, or the JSON has numbers that are not finite.
         """
-        root = copy.deepcopy(document.root)
+        root = _copied(document.root)
         buffers = [_data(document, index) for index in range(document.count("buffers"))]
         asset = cls(root, buffers)
         for index in range(document.count("images")):
@@ -62,7 +63,7 @@ class KeptAsset:
 
     def add_indices(self, corners: NDArray[np.unsignedinteger[Any]]) -> int:
         """Append an accessor of indices and return its number."""
-        view = self.add_view(np.ascontiguousarray(corners).data.cast("B"), target=ELEMENT_ARRAY_BUFFER)
+        view = self.add_view(_bytes(corners), target=ELEMENT_ARRAY_BUFFER)
         code = COMPONENT_CODES[corners.dtype.str[1:]]
         return self.add(
             "accessors", {"bufferView": view, "componentType": code, "type": "SCALAR", "count": corners.size}
@@ -73,11 +74,11 @@ class KeptAsset:
         rows = np.ascontiguousarray(values)
         size = rows.shape[1] * rows.dtype.itemsize
         if not is_attribute:
-            return self.add_view(rows.data.cast("B"))
+            return self.add_view(_bytes(rows))
         padded = np.zeros((len(rows), -(-size // _WORD) * _WORD), np.uint8)
         padded[:, :size] = rows.view(np.uint8).reshape(len(rows), size)
         more = {"byteStride": padded.shape[1]} if padded.shape[1] != size else {}
-        return self.add_view(padded.data.cast("B"), target=ARRAY_BUFFER, **more)
+        return self.add_view(_bytes(padded), target=ARRAY_BUFFER, **more)
 
     def use_extension(self, name: str) -> None:
         used = self.entries("extensionsUsed")
@@ -93,7 +94,7 @@ class KeptAsset:
                 del self.root[key]
 
     def write(self, target: IO[bytes]) -> None:
-        """Write the asset as GLB, with the bytes of its buffers that a view refers to.
+        """Write the asset as GLB, once, with the bytes of its buffers that a view refers to.
 
         Raises
         ------
@@ -156,6 +157,20 @@ class KeptAsset:
         old = self.entries("buffers")
         self.root["buffers"] = [old[index] for index in used]
         return {index: number + has_data for number, index in enumerate(used)}
+
+
+def _bytes(values: NDArray[Any]) -> memoryview:
+    return np.ascontiguousarray(values).reshape(-1).view(np.uint8).data
+
+
+def _copied(root: Item) -> Item:
+    try:
+        copy: Item = json.loads(json.dumps(root, allow_nan=False))
+    except ValueError as error:
+        raise InvalidMesh(
+            "The JSON of the glTF file has a number that is not finite: export the file again."
+        ) from error
+    return copy
 
 
 def _data(document: Document, index: int) -> memoryview | None:

@@ -5,6 +5,7 @@ from collections.abc import Callable
 
 import numpy as np
 
+from segcore.errors import InvalidMesh
 from segcore.io.gltf.accessors import Accessors
 from segcore.io.gltf.document import Item
 from segcore.io.gltf.kept.asset import KeptAsset
@@ -52,7 +53,10 @@ def _chosen(asset: KeptAsset, accessors: Accessors, source: int, rows: np.ndarra
         for name, value in asset.root["accessors"][source].items()
         if name not in ("bufferView", "byteOffset", "sparse", "min", "max")
     }
-    values = accessors.stored(source)[rows].astype(accessors.dtype(source), copy=False)
+    values = accessors.stored(source)
+    if len(values) <= rows.max():
+        raise InvalidMesh(f"accessors[{source}] of the glTF file has fewer values than its mesh has copies.")
+    values = values[rows].astype(accessors.dtype(source), copy=False)
     return asset.add(
         "accessors", {**entry, "count": len(rows), "bufferView": asset.add_rows(values, is_attribute=True)}
     )

@@ -90,7 +90,7 @@ class PartData:
         entry |= {"count": len(values)}
         values = values.astype(self.accessors.dtype(index), copy=False)
         entry["bufferView"] = self.asset.add_rows(values, is_attribute=is_attribute)
-        if any(key in old for key in _BOUNDS):
+        if len(values) and any(key in old for key in _BOUNDS):
             entry |= {"min": values.min(axis=0).tolist(), "max": values.max(axis=0).tolist()}
         return self.asset.add("accessors", entry)
 

@@ -82,7 +82,7 @@ def _check_animation(animation: Item, where: str) -> None:
         for key in ("input", "output"):
             integer(sampler, key, f"{where}.samplers")
     for channel in _objects(animation, "channels", where):
-        member(channel, "target", f"{where}.channels")
+        _check_numbers(member(channel, "target", f"{where}.channels"), ("node",), f"{where}.channels.target")
         if integer(channel, "sampler", f"{where}.channels") >= len(samplers):
             raise InvalidMesh(f"{where}.channels of the glTF file refers to a sampler that it does not have.")
 

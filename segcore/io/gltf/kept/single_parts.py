@@ -114,7 +114,7 @@ class _PartBuilder:
         for animation in self.source.root.get("animations", []):
             samplers: dict[int, int] = {}
             channels = []
-            for channel in filter(self._is_left, animation["channels"]):
+            for channel in filter(self._is_left, animation.get("channels", [])):
                 target = {**channel["target"], "node": self.numbers[channel["target"]["node"]]}
                 sampler = samplers.setdefault(channel["sampler"], len(samplers))
                 channels.append({**channel, "sampler": sampler, "target": target})

@@ -1,6 +1,7 @@
 """A glTF file divided by part: the same triangles in the same places, and everything else as it was."""
 
 import copy
+import functools
 import io
 import json
 from pathlib import Path
@@ -32,7 +33,7 @@ from helpers.files.samples import gltf_square
 from helpers.hierarchies import hierarchy_of_labels
 from helpers.node.programs import install, run
 from segcore.errors import CleaveError
-from segcore.io import read_mesh
+from segcore.io import Original, read_mesh, write_kept_parts
 
 UNCHANGED = ("asset", "animations", "cameras", "samplers", "skins", "textures")
 
@@ -291,7 +292,8 @@ def test_the_input_is_not_changed_and_equal_inputs_give_equal_bytes() -> None:
     assert halves(data)[0].data == halves(bytes(bytearray(data)))[0].data
 
 
-_JUNK = [None, -1, 2**60, "x", [], {}, [3], {"extensions": 1}, 1.5, True]
+_DEEP: Any = functools.reduce(lambda inner, _: {"index": [inner]}, range(400), {})
+_JUNK = [None, -1, 2**60, "x", [], {}, [3], {"extensions": 1}, 1.5, True, 0, 1, float("nan"), _DEEP]
 
 
 @given(st.data())
@@ -311,6 +313,10 @@ def test_a_damaged_document_gives_a_file_or_a_typed_error(data: st.DataObject) -
     except CleaveError:
         return
     read_mesh(io.BytesIO(opened.data))
+    try:
+        write_kept_parts(io.BytesIO(), Original(io.BytesIO(asset.glb())), hierarchy_of_labels(labels))
+    except CleaveError:
+        return
 
 
 def errors(issues: dict[str, Any]) -> set[str]:
