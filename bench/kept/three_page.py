@@ -45,13 +45,9 @@ class ThreePage:
         return found["differing"], found["drawn"]
 
     def triangles(self, name: str, seconds: float) -> FloatArray:
-        """(F, 9) the corners of all triangles after some seconds, in an order that depends on the positions alone."""
+        """(F, 3, 3) the corners of all triangles after some seconds, in the order of the scene."""
         corners = self._page.evaluate("([name, s]) => triangles(name, s)", [*self._urls(name), seconds])
-        faces = np.array(corners, dtype=np.float64).reshape(-1, 3, 3)
-        first = np.array([np.lexsort(face.T[::-1])[0] for face in faces], dtype=np.int64)
-        turned = faces[np.arange(len(faces))[:, None], (first[:, None] + np.arange(3)) % 3].reshape(-1, 9)
-        ordered: FloatArray = turned[np.lexsort(turned.T[::-1])]
-        return ordered
+        return np.array(corners, dtype=np.float64).reshape(-1, 3, 3)
 
     def picture(self, name: str, seconds: float = 0.0, variant: str = "") -> bytes:
         """Return a picture as PNG, with the materials of a variant."""

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from bench.commands.kept import render
-from bench.kept.check import Comparison, bands
+from bench.kept.check import Comparison, bands, largest_move
 from segcore import shapes
 
 SAME = Comparison("a.glb", 320, 5, 1000, 1500, 2, 0, [], 0, 5000, 0.0, 0)
@@ -29,3 +29,13 @@ def test_bands_have_equal_numbers_of_faces(faces: int) -> None:
     counts = np.bincount(bands(mesh).labels())
     assert len(counts) == min(5, faces)
     assert np.ptp(counts) <= 1
+
+
+def test_triangles_may_be_in_any_order_and_begin_with_any_corner() -> None:
+    corners = shapes.icosphere(1).corners
+    assert largest_move(corners, np.roll(corners[::-1], 1, axis=1)) == 0
+    assert largest_move(corners, corners[:, ::-1]) > 0.1
+    assert largest_move(corners, corners[1:]) == float("inf")
+    moved = corners.copy()
+    moved[3] += 0.02
+    assert largest_move(corners, moved) == pytest.approx(0.06 / np.ptp(corners.reshape(-1, 3)), rel=1e-3)
