@@ -116,6 +116,8 @@ def _picture(image: dict[str, Any], document: Any) -> bytes | None:
 
 
 def _seen(page: ThreePage, path: Path, output: bytes) -> tuple[int, int, float]:
+    from playwright.sync_api import Error
+
     page.models = {"before": path, "after": output}
     differing, drawn, move = 0, 0, 0.0
     try:
@@ -123,7 +125,7 @@ def _seen(page: ThreePage, path: Path, output: bytes) -> tuple[int, int, float]:
             pixels = page.differing_pixels("before", "after", seconds)
             differing, drawn = max(differing, pixels[0]), max(drawn, pixels[1])
             move = max(move, largest_move(page.triangles("before", seconds), page.triangles("after", seconds)))
-    except Exception as error:
+    except Error as error:
         raise BenchmarkError(f"three.js cannot read {path.name}: {str(error).splitlines()[0][:100]}") from error
     return differing, drawn, move
 
