@@ -7,6 +7,7 @@ and as the output. Translucent surfaces and faces at the same place may differ, 
 from __future__ import annotations
 
 import argparse
+import sys
 from pathlib import Path
 
 from bench.errors import BenchmarkError
@@ -33,6 +34,7 @@ def run(arguments: argparse.Namespace) -> None:
     with chromium(arguments.chromium) as browser:
         page = ThreePage(browser, arguments.three)
         for path in arguments.files:
+            print(path.name, file=sys.stderr)
             try:
                 found.append(compare(path, page, arguments.validator))
             except (CleaveError, BenchmarkError) as error:

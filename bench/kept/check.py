@@ -157,16 +157,24 @@ def largest_move(before: FloatArray, after: FloatArray) -> float:
 
 def _new_errors(validator: Path, path: Path, output: bytes) -> list[str]:
     """The codes of errors that the validator finds in the output and not in the input."""
-    before, after = (_errors(validator, data) for data in (path.read_bytes(), output))
-    return sorted(after - before)
+    before = _errors(validator, path.read_bytes(), path.resolve().parent)
+    return sorted(_errors(validator, output, None) - before)
 
 
-def _errors(validator: Path, data: bytes) -> set[str]:
-    program = (
-        f"require({json.dumps(str(validator.resolve()))}).validateBytes(new Uint8Array(require('fs').readFileSync(0)), "
-        "{maxIssues: 0}).then((report) => console.log(JSON.stringify(report.issues.messages)))"
-    )
-    done = subprocess.run(["node", "-e", program], input=data, capture_output=True, check=False)
+_PROGRAM = """
+const [validator, folder] = process.argv.slice(1);
+const fs = require("fs");
+const beside = async (uri) => new Uint8Array(fs.readFileSync(require("path").join(folder, decodeURIComponent(uri))));
+const options = { maxIssues: 0, ...(folder && { externalResourceFunction: beside }) };
+require(validator)
+  .validateBytes(new Uint8Array(fs.readFileSync(0)), options)
+  .then((report) => console.log(JSON.stringify(report.issues.messages)));
+"""
+
+
+def _errors(validator: Path, data: bytes, folder: Path | None) -> set[str]:
+    command = ["node", "-e", _PROGRAM, str(validator.resolve()), str(folder or "")]
+    done = subprocess.run(command, input=data, capture_output=True, check=False)
     if done.returncode:
         raise BenchmarkError(f"The validator in {validator} does not run: {done.stderr.decode()[-200:]}")
     return {message["code"] for message in json.loads(done.stdout) if message["severity"] == 0}

@@ -147,6 +147,8 @@ class _Division:
         for name in ("sparse", "byteOffset"):
             entry.pop(name, None)
         entry["bufferView"] = self.asset.add_rows(values, is_attribute=True)
+        if "min" in entry or "max" in entry:  # of the numbers before they were compressed
+            entry |= {"min": values.min(axis=0).tolist(), "max": values.max(axis=0).tolist()}
 
 
 def _narrow(faces: IntArray) -> NDArray[np.unsignedinteger[Any]]:

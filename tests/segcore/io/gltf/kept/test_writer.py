@@ -205,9 +205,14 @@ def test_a_large_mesh_has_indices_of_32_bits_and_a_small_one_of_16() -> None:
 
 def test_a_draco_primitive_is_decoded_only_if_it_is_divided() -> None:
     pytest.importorskip("DracoPy")
-    data = draco_asset()[0].glb()
+    asset = draco_asset()[0]
+    asset.document["accessors"][0] |= {"min": [-9.0] * 3, "max": [9.0] * 3}
+    data = asset.glb()
     mesh = read_mesh(io.BytesIO(data))
     opened, labels = halves(data)
+    decoded = opened.numbers(0)
+    entry = opened.document["accessors"][0]
+    assert (entry["min"], entry["max"]) == (decoded.min(axis=0).tolist(), decoded.max(axis=0).tolist())
     assert DRACO not in json.dumps(opened.document)
     for part, corners in opened.corners_by_part().items():
         assert in_any_order(corners) == in_any_order(mesh.corners[labels == part])
