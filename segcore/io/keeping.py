@@ -67,7 +67,8 @@ def write_kept(
     that :func:`segcore.io.write_glb` writes. If they replace something, ``original`` in them has it.
 
     KHR_materials_variants has the variant ``original look`` and one for each level up to this one, ``k segments``,
-    after those of the input. The materials of the primitives are those of the input, so the file looks as it did.
+    after those of the input; beyond 1,024 levels only for some of them. The materials of the primitives are those of
+    the input, so the file looks as it did.
 
     Parameters
     ----------

@@ -1,5 +1,6 @@
 """The JSON of a GLB file: the hierarchy as nodes, and a material for each segment."""
 
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from typing import Any
 
@@ -43,14 +44,14 @@ def all_levels_drawing(hierarchy: Hierarchy, segments: int | None) -> Drawing:
     """Return the drawing of the leaves with the colours of a level, and those of all levels as variants."""
     count = len(hierarchy.segment_nodes(segments))
     leaves = hierarchy.segment_nodes(hierarchy.max_segments)
-    variants = level_materials(hierarchy, leaves)
+    variants = level_materials(hierarchy, leaves, range(1, len(leaves) + 1))
     return Drawing(count, leaves, hierarchy.labels(hierarchy.max_segments), variants[count - 1], variants)
 
 
-def level_materials(hierarchy: Hierarchy, nodes: IntArray) -> IntArray:
-    """(D, D) the label of each of the nodes of a level with D segments at every level up to it."""
+def level_materials(hierarchy: Hierarchy, nodes: IntArray, levels: Sequence[int]) -> IntArray:
+    """(L, D) the label of each of the nodes of a level with D segments at other levels up to it."""
     of_nodes = replace(hierarchy, face_leaf=nodes)  # a face for each node, so that labels of faces are labels of nodes
-    return np.stack([of_nodes.labels(k + 1) for k in range(len(nodes))])
+    return np.stack([of_nodes.labels(level) for level in levels])
 
 
 def scene_document(
@@ -111,13 +112,13 @@ def scene_facts(hierarchy: Hierarchy, drawing: Drawing) -> dict[str, Any]:
 
 
 def _variants(count: int) -> dict[str, Any]:
-    names = [{"name": name} for name in variant_names(count)]
+    names = [{"name": name} for name in variant_names(range(1, count + 1))]
     return {"extensionsUsed": [VARIANTS], "extensions": {VARIANTS: {"variants": names}}}
 
 
-def variant_names(count: int) -> list[str]:
-    """Return the names of the variants of the levels with 1..count segments."""
-    return [f"{k} segment{'s' if k > 1 else ''}" for k in range(1, count + 1)]
+def variant_names(levels: Sequence[int]) -> list[str]:
+    """Return the names of the variants of levels, which are numbers of segments."""
+    return [f"{k} segment{'s' if k > 1 else ''}" for k in levels]
 
 
 def _nodes(

@@ -3,9 +3,10 @@
 from dataclasses import dataclass, field
 from typing import Any
 
+from segcore.arrays import IntArray
 from segcore.io.gltf.document import Item
 from segcore.io.gltf.kept.asset import KeptAsset
-from segcore.io.gltf.writer_scene import VARIANTS, Drawing, mappings, segment_materials, variant_names
+from segcore.io.gltf.writer_scene import VARIANTS, mappings, segment_materials
 
 ORIGINAL_LOOK = "original look"
 
@@ -38,29 +39,29 @@ class Marks:
         return {**entry, "extensions": extensions}
 
 
-def add_variants(asset: KeptAsset, drawing: Drawing, names: list[str]) -> Marks:
+def add_variants(asset: KeptAsset, names: list[str], materials: IntArray, variants: list[str]) -> Marks:
     """Add the materials of the parts and the variants: the original look, then one for each level.
 
     Parameters
     ----------
-    drawing : with variants.
     names : (D,) names of the parts.
+    materials : (L, D) the label whose colour each part has at each level.
+    variants : (L,) names of the levels.
     """
-    assert drawing.variants is not None
     first_material = len(asset.entries("materials"))
     asset.entries("materials").extend(segment_materials(names))
     asset.use_extension(VARIANTS)
     table = asset.root.setdefault("extensions", {}).setdefault(VARIANTS, {}).setdefault("variants", [])
     original = len(table)
     taken = [entry.get("name") for entry in table]
-    table += [{"name": _unused(name, taken)} for name in (ORIGINAL_LOOK, *variant_names(len(drawing.variants)))]
+    table += [{"name": _unused(name, taken)} for name in (ORIGINAL_LOOK, *variants)]
     of_parts = [
         [
             {
                 "material": first_material + mapping["material"],
                 "variants": [original + 1 + level for level in mapping["variants"]],
             }
-            for mapping in mappings(drawing.variants[:, part])
+            for mapping in mappings(materials[:, part])
         ]
         for part in range(len(names))
     ]

@@ -1,7 +1,9 @@
 """Writes a glTF document with its primitives divided by part and everything else as it was."""
 
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from typing import BinaryIO
+
+import numpy as np
 
 from segcore.arrays import IntArray
 from segcore.hierarchy import Hierarchy
@@ -11,9 +13,18 @@ from segcore.io.gltf.kept.asset import KeptAsset
 from segcore.io.gltf.kept.division import divide
 from segcore.io.gltf.kept.marks import Marks, add_variants, with_extras
 from segcore.io.gltf.triangles import scene_parts
-from segcore.io.gltf.writer_scene import Drawing, all_levels_drawing, level_drawing, level_materials, scene_facts
+from segcore.io.gltf.writer_scene import (
+    Drawing,
+    all_levels_drawing,
+    level_drawing,
+    level_materials,
+    scene_facts,
+    variant_names,
+)
 from segcore.io.limits import ReadLimits
 from segcore.io.names import SegmentNames, segment_names
+
+_MOST_LEVELS = 1024  # every part lists all of them; a hierarchy has as many by itself
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -44,13 +55,21 @@ def write_kept_document(
     InvalidMesh, UnsupportedFormat, LimitExceeded
     """
     drawing = (all_levels_drawing if all_levels else level_drawing)(hierarchy, segments)
-    drawing = replace(drawing, variants=level_materials(hierarchy, drawing.nodes))
+    levels = _levels(len(drawing.nodes))
     asset = KeptAsset.of(kept.document)
-    marks = add_variants(asset, drawing, segment_names(names, len(drawing.nodes)))
+    materials = level_materials(hierarchy, drawing.nodes, levels)
+    marks = add_variants(asset, segment_names(names, len(drawing.nodes)), materials, variant_names(levels))
     divide_document(asset, kept, drawing.of_face, marks, limits)
     _describe(asset, kept.document, hierarchy, drawing)
     asset.write(target)
     return (*kept.notes, *asset.notes)
+
+
+def _levels(count: int) -> list[int]:
+    """The numbers of segments that are variants: all up to ``count``, or some of them, ever farther apart."""
+    if count <= _MOST_LEVELS:
+        return list(range(1, count + 1))
+    return sorted({round(level) for level in np.geomspace(1, count, _MOST_LEVELS).tolist()})
 
 
 def divide_document(

@@ -32,8 +32,9 @@ from helpers.files.rich_gltf import (
 from helpers.files.samples import gltf_square
 from helpers.hierarchies import hierarchy_of_labels
 from helpers.node.programs import install, run
+from segcore import shapes
 from segcore.errors import CleaveError
-from segcore.io import Original, read_mesh, write_kept_parts
+from segcore.io import Original, read_mesh, write_kept_parts, write_mesh
 
 UNCHANGED = ("asset", "animations", "cameras", "samplers", "skins", "textures")
 
@@ -280,6 +281,18 @@ def test_all_levels_divide_by_the_leaves_and_one_level_by_its_segments() -> None
         assert len(opened.document["extensions"][VARIANTS]["variants"]) == 1 + variants
         extras = opened.document["scenes"][0]["extras"]
         assert (extras["segments"], extras["max_segments"], len(extras["split_node"])) == (3, 5, parts - 1)
+
+
+def test_of_very_many_levels_only_some_are_variants() -> None:
+    ball = shapes.icosphere(3)
+    target = io.BytesIO()
+    write_mesh(target, ball, "ply")
+    opened = labelled(target.getvalue(), np.arange(len(ball.faces)))
+    names = [variant["name"] for variant in opened.document["extensions"][VARIANTS]["variants"]]
+    assert 400 < len(names) <= 1025
+    assert names[:3] == ["original look", "1 segment", "2 segments"]
+    assert names[-1] == f"{len(ball.faces)} segments"
+    assert len(opened.corners_by_part()) == len(ball.faces)
 
 
 def test_extras_that_would_be_replaced_are_kept() -> None:
