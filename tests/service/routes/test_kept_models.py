@@ -18,6 +18,7 @@ from worker.jobs.store.store import JobStore
 from worker.process.perform import perform
 
 RICH = rich_asset().glb()
+OBJ = "mtllib a.mtl\nv 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\nvt 0 0\nusemtl red\nf 1/1 3/1 2/1\nf 1/1 2/1 4/1\n"
 
 
 @pytest.fixture
@@ -94,3 +95,18 @@ def test_a_mesh_of_another_format_is_kept_as_glb(client: httpx.Client, finished_
     for part, corners in opened.corners_by_part().items():
         expected = result.mesh.corners[result.hierarchy.labels(3) == part]
         np.testing.assert_allclose(in_any_order(corners), in_any_order(expected), atol=1e-6)
+
+
+def test_an_archive_of_obj_with_its_materials_keeps_its_pictures(
+    client: httpx.Client, settings: Settings, store: JobStore
+) -> None:
+    packed = io.BytesIO()
+    with zipfile.ZipFile(packed, "w") as archive:
+        archive.writestr("model/a.obj", OBJ)
+        archive.writestr("model/a.mtl", "newmtl red\nmap_Kd pictures/red.png\n")
+        archive.writestr("model/pictures/red.png", RED)
+    answer = client.post("/v1/jobs", files={"mesh": ("model.zip", packed.getvalue())}, headers=AGAIN)
+    perform(store, settings, answer.json()["id"], lambda *_: None)
+    kept_model = Opened(client.get(f"{answer.headers['Location']}/model.glb?keep=all").content)
+    assert kept_model.picture(0) == RED
+    assert kept_model.document["materials"][0]["name"] == "red"
