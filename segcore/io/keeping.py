@@ -13,7 +13,8 @@ from segcore.errors import InvalidMesh, InvalidParameters
 from segcore.hierarchy import Hierarchy
 from segcore.io.archive import FAST, member
 from segcore.io.gltf.document import read_document
-from segcore.io.gltf.kept.from_mesh import Materials, corner_tables, document_of_mesh
+from segcore.io.gltf.kept.builder import Materials
+from segcore.io.gltf.kept.from_mesh import corner_tables, document_of_mesh
 from segcore.io.gltf.kept.from_obj import document_of_obj
 from segcore.io.gltf.kept.shape import check_members
 from segcore.io.gltf.kept.single_parts import SingleParts

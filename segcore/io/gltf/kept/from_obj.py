@@ -9,8 +9,9 @@ from segcore.arrays import IntArray
 from segcore.coordinates import Coordinates
 from segcore.io.file_sets import Companions
 from segcore.io.gltf.document import Item
+from segcore.io.gltf.kept.builder import Materials
 from segcore.io.gltf.kept.entries import add_once
-from segcore.io.gltf.kept.from_mesh import Materials, corner_tables, document_of_mesh
+from segcore.io.gltf.kept.from_mesh import corner_tables, document_of_mesh
 from segcore.io.gltf.kept.pictures import picture_type
 from segcore.io.gltf.kept.writer import KeptDocument
 from segcore.io.limits import ReadLimits
