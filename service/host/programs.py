@@ -4,9 +4,11 @@ import os
 import sys
 import sysconfig
 from collections.abc import Mapping
+from functools import partial
 from pathlib import Path
 
 from cleave.settings import Settings
+from service.host.queue_files import set_aside_unreadable
 from service.host.queue_server import QueueServer
 from service.host.supervisor import Program
 from worker.jobs.size_class import SizeClass
@@ -18,7 +20,9 @@ _ONE_THREAD = dict.fromkeys(("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM
 
 
 def queue_server_program(server: QueueServer) -> Program:
-    return Program("queue server", server.command, is_support=True)
+    """Return the program of the queue server, which is started again with an empty queue if its files are damaged."""
+    on_end = partial(set_aside_unreadable, server.folder)
+    return Program("queue server", server.command, is_support=True, on_end=on_end)
 
 
 def api_program(settings: Settings, listening: int) -> Program:

@@ -2,6 +2,7 @@
 
 import hashlib
 import os
+import re
 import shutil
 import stat
 import tempfile
@@ -16,6 +17,8 @@ from cleave.settings import Settings
 from worker.jobs.queue.connection import connect
 
 _MAX_SOCKET_PATH = 100  # bytes; the limit of the kernel is 107 on Linux and 103 on macOS
+# The path is part of a URL and of the answers to CLIENT INFO, whose readers divide it at blanks.
+_PLAIN_PATH = re.compile(r"[A-Za-z0-9/._+-]+")
 _STOP_TIMEOUT_S = 10.0  # for an orphaned server; it only has to close its append-only file
 
 
@@ -30,6 +33,7 @@ class QueueServer:
     command: list[str]
     url: str
     socket: Path
+    folder: Path  # of its files
 
     def remove_socket(self) -> None:
         """Remove the socket of a server that has ended, and the folder of the socket if it is empty."""
@@ -72,7 +76,7 @@ def embedded_queue_server(data_dir: Path) -> QueueServer:
     folder.mkdir(mode=0o700, parents=True, exist_ok=True)
     socket = socket_path(folder)
     command = [str(binary), *_options(folder, socket)]
-    return QueueServer(command=command, url=f"unix://{socket}", socket=socket)
+    return QueueServer(command=command, url=f"unix://{socket}", socket=socket, folder=folder)
 
 
 def find_server_binary() -> Path:
@@ -93,7 +97,9 @@ def find_server_binary() -> Path:
 
 
 def socket_path(folder: Path) -> Path:
-    """Return a path in the folder or, if that is too long for a socket, in a private folder of the temporary folder.
+    """Return a path in the folder or, if that is too long or has blanks or other characters, in a private folder.
+
+    The private folder is in the temporary folder, or in /tmp if the path of that cannot be used either.
 
     Raises
     ------
@@ -101,15 +107,21 @@ def socket_path(folder: Path) -> Path:
         If the private folder belongs to another user or is accessible to others.
     """
     path = folder / "queue.sock"
-    if len(os.fsencode(path)) <= _MAX_SOCKET_PATH:
+    if _is_usable(path):
         return path
     name = hashlib.sha256(os.fsencode(folder)).hexdigest()[:16]
     short = Path(tempfile.gettempdir()) / f"cleave-{os.getuid()}-{name}"
+    if not _is_usable(short / path.name):
+        short = Path("/tmp") / short.name
     short.mkdir(mode=0o700, exist_ok=True)
     status = short.lstat()
     if not stat.S_ISDIR(status.st_mode) or status.st_uid != os.getuid() or status.st_mode & 0o077:
         raise NoQueueServer(f"The folder {short} must belong to this user alone: remove it or set CLEAVE_DATA_DIR.")
-    return short / "queue.sock"
+    return short / path.name
+
+
+def _is_usable(path: Path) -> bool:
+    return _PLAIN_PATH.fullmatch(str(path)) is not None and len(os.fsencode(path)) <= _MAX_SOCKET_PATH
 
 
 def stop_orphan(server: QueueServer) -> None:

@@ -1,6 +1,7 @@
 """The embedded queue server: its binary, its socket, and its persistence."""
 
 import os
+import re
 import stat
 import subprocess
 from pathlib import Path
@@ -31,6 +32,25 @@ def test_a_socket_path_is_never_too_long_for_the_kernel(tmp_path: Path) -> None:
     assert stat.S_IMODE(path.parent.stat().st_mode) == 0o700
     for created in (path, socket_path(folder / "other")):
         created.parent.rmdir()
+
+
+@pytest.mark.parametrize("name", ["a b", "a=b", "it's", "50%", "a#b", "ümlaut", "a?b", "a&b"])
+def test_a_socket_path_has_no_characters_that_urls_and_lists_of_clients_treat_specially(
+    tmp_path: Path, name: str
+) -> None:
+    path = socket_path(tmp_path / name)
+    assert path.parent != tmp_path / name
+    assert re.fullmatch(r"[A-Za-z0-9/._+-]+", str(path))
+    path.parent.rmdir()
+
+
+def test_a_temporary_folder_with_a_blank_is_not_used_for_the_socket(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr("tempfile.tempdir", str(tmp_path / "my temp"))
+    path = socket_path(tmp_path / "my data")
+    assert path.parent.parent == Path("/tmp")
+    path.parent.rmdir()
 
 
 def test_a_folder_that_others_can_write_is_not_used_for_the_socket(tmp_path: Path) -> None:
