@@ -1,6 +1,6 @@
 """The application: routes, middleware, error handlers and OpenAPI document."""
 
-from fastapi import FastAPI
+from fastapi import Depends, FastAPI
 from starlette.middleware.cors import CORSMiddleware
 
 from cleave.settings import Settings
@@ -8,6 +8,7 @@ from cleave.version import installed_version
 from service.context import Context, QueueView
 from service.guard.foreign_sites import CrossSiteCheckMiddleware, HostCheckMiddleware
 from service.guard.headers import HeadMiddleware, SecurityHeadersMiddleware
+from service.guard.unknown_parameters import refuse_unknown_parameters
 from service.keys import key_ring
 from service.openapi.document import complete
 from service.problems import handle_problems
@@ -31,10 +32,8 @@ _EXPOSED_HEADERS = (
     "RateLimit-Policy",
     "traceparent",
 )
+_PAGES = (home, docs_page, health)
 _ROUTES = (
-    home,
-    docs_page,
-    health,
     submission,
     jobs,
     results,
@@ -76,8 +75,10 @@ def create_app(settings: Settings) -> FastAPI:
         batches=store.batches,
         keys_required=settings.auth == "required" or (settings.auth == "auto" and bool(keys.all())),
     )
-    for module in _ROUTES:
+    for module in _PAGES:
         app.include_router(module.router)
+    for module in _ROUTES:
+        app.include_router(module.router, dependencies=[Depends(refuse_unknown_parameters)])
     _add_middleware(app, settings)
     app.add_middleware(RequestLogMiddleware, metrics=metrics)
     app.add_middleware(SecurityHeadersMiddleware)
