@@ -89,7 +89,7 @@ def create_app(settings: Settings) -> FastAPI:
 
 
 def _add_middleware(app: FastAPI, settings: Settings) -> None:
-    origins = [origin.strip() for origin in (settings.cors_origins or "").split(",") if origin.strip()]
+    origins = settings.allowed_origins()
     app.add_middleware(CrossSiteCheckMiddleware, allowed_origins=origins)
     if settings.auth == "auto" and not app.state.context.keys_required:
         app.add_middleware(HostCheckMiddleware)

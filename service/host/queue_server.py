@@ -15,6 +15,7 @@ from redis.exceptions import RedisError
 
 from cleave.settings import Settings
 from worker.jobs.queue.connection import connect
+from worker.jobs.queue.requirements import unmet_requirement
 
 _MAX_SOCKET_PATH = 100  # bytes; the limit of the kernel is 107 on Linux and 103 on macOS
 # The path is part of a URL and of the answers to CLIENT INFO, whose readers divide it at blanks.
@@ -53,6 +54,20 @@ class QueueServer:
 def queue_url(settings: Settings) -> str:
     """Return the URL of the queue server of the settings, by default of the one that `cleave serve` starts."""
     return settings.redis_url or url_of(socket_path(settings.data_dir / _FOLDER))
+
+
+def check_queue_server(url: str) -> None:
+    """Check that the server of a URL can be used; a server that does not answer may do so later.
+
+    Raises
+    ------
+    NoQueueServer
+        If it is a cluster, or its user lacks a right.
+    """
+    with connect(url) as connection, suppress(RedisError):
+        reason = unmet_requirement(connection)
+        if reason is not None:
+            raise NoQueueServer(reason)
 
 
 def embedded_queue_server(data_dir: Path) -> QueueServer:
