@@ -67,6 +67,11 @@ class Settings(BaseSettings):
     api_keys_file: Path | None = Field(
         default=None, description="File with one NAME:DIGEST per line; it is read again when it changes."
     )
+    root_path: Annotated[str, AfterValidator(lambda path: path.rstrip("/"))] = Field(
+        default="",
+        pattern=r"^(/[A-Za-z0-9._~-]+)*/?$",
+        description="Path below which a proxy shows the service, such as /cleave, if it sends no X-Forwarded-Prefix.",
+    )
     cors_origins: str | None = Field(
         default=None, description="Origins whose pages may use the API, separated by commas; * for all."
     )

@@ -10,6 +10,7 @@ from service.guard.foreign_sites import CrossSiteCheckMiddleware, HostCheckMiddl
 from service.guard.headers import HeadMiddleware, SecurityHeadersMiddleware
 from service.guard.unknown_parameters import refuse_unknown_parameters
 from service.keys import key_ring
+from service.mount import MountMiddleware
 from service.openapi.document import complete
 from service.problems import handle_problems
 from service.result_cache import ResultCache
@@ -83,6 +84,7 @@ def create_app(settings: Settings) -> FastAPI:
     app.add_middleware(RequestLogMiddleware, metrics=metrics)
     app.add_middleware(SecurityHeadersMiddleware)
     app.add_middleware(HeadMiddleware)
+    app.add_middleware(MountMiddleware, root_path=settings.root_path)  # around all others
     handle_problems(app)
     complete(app, keys_required=app.state.context.keys_required)
     return app

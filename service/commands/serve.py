@@ -21,6 +21,9 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     parser.description = "Run the service, its workers and, unless CLEAVE_REDIS_URL is set, its own queue server."
     parser.add_argument("--host", default="127.0.0.1", help="address to listen on (%(default)s)")
     parser.add_argument("--port", type=port, default=8000, help="port to listen on, 0 for a free one (%(default)s)")
+    parser.add_argument(
+        "--root-path", metavar="PATH", help="path below which a proxy shows the service (CLEAVE_ROOT_PATH)"
+    )
     add_workers(parser, least=0)
     add_data_dir(parser)
     add_settings_help(parser)
@@ -28,7 +31,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 
 def run(choices: argparse.Namespace) -> None:
     """Run the processes of an installation until a signal arrives."""
-    settings = load_settings(data_dir=choices.data_dir)
+    settings = load_settings(data_dir=choices.data_dir, root_path=choices.root_path)
     configure_logging(settings.log_level, settings.log_format, "supervisor")
     warn_of_unknown_variables(os.environ)
     counts = worker_counts(choices.workers)

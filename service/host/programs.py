@@ -78,6 +78,7 @@ def _environment(settings: Settings) -> dict[str, str]:
     """Return the variables for a program: the resolved settings, and the path of the packages."""
     assert settings.redis_url, "the queue server is known by now"
     environment = {"CLEAVE_DATA_DIR": str(settings.data_dir), "CLEAVE_REDIS_URL": settings.redis_url}
+    environment["CLEAVE_ROOT_PATH"] = settings.root_path
     root = Path(__file__).parents[2]
     if root != Path(sysconfig.get_path("purelib")):  # a checkout: -P keeps the working folder off the path
         environment["PYTHONPATH"] = os.pathsep.join(filter(None, [str(root), os.environ.get("PYTHONPATH")]))
