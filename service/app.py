@@ -61,7 +61,7 @@ def create_app(settings: Settings) -> FastAPI:
     store = open_store(settings)
     keys = key_ring(settings)
     queue = JobQueue(connect(settings.redis_url))
-    metrics = Metrics(store, queue)
+    metrics = Metrics(store, queue, settings.data_dir)
     app.state.context = Context(
         settings=settings,
         version=app.version,

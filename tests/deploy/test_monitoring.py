@@ -23,7 +23,7 @@ QUERIES += [rule["expr"] for rule in RULES]
 
 
 @pytest.fixture
-def labels_of(store: JobStore, queue: JobQueue, connection: Redis) -> dict[str, set[str]]:
+def labels_of(store: JobStore, queue: JobQueue, connection: Redis, tmp_path: Path) -> dict[str, set[str]]:
     """Return the labels of every metric, of an installation in which each event has happened once."""
     job, counters = accepted(store, b"mesh"), JobCounters(connection)
     queue.take(job.id, "worker", lease_s=30)
@@ -33,7 +33,7 @@ def labels_of(store: JobStore, queue: JobQueue, connection: Redis) -> dict[str, 
     counters.attempt_lost("worker_lost")
     counters.job_recovered()
     counters.store_failed("worker")
-    metrics = Metrics(store, queue)
+    metrics = Metrics(store, queue, tmp_path)
     metrics.requests.labels("GET", "/", 200).inc()
     metrics.seconds.labels("/").observe(1.0)
     metrics.jobs.labels("accepted").inc()
