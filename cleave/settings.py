@@ -1,5 +1,8 @@
 """The settings of an installation, read from the environment at the start of a process."""
 
+import difflib
+import re
+from collections.abc import Mapping
 from pathlib import Path
 from typing import Annotated, Any, Literal
 
@@ -9,6 +12,10 @@ from pydantic_settings import BaseSettings, SettingsConfigDict
 
 from cleave.logs import LogFormat
 
+_PREFIX = "CLEAVE_"
+_OTHER_VARIABLES = {"API_KEY"}  # of the command line, as a client
+# Kubernetes sets these for every service, such as CLEAVE_SERVICE_HOST and CLEAVE_PORT_8000_TCP.
+_OF_KUBERNETES = re.compile(r".*_(SERVICE_(HOST|PORT)(_.*)?|PORT(_\d+_(TCP|UDP|SCTP)(_.*)?)?)")
 LONGEST_WAIT_S = 600.0  # upper limit of CLEAVE_MAX_WAIT_S; set by hand
 
 
@@ -23,7 +30,7 @@ class Settings(BaseSettings):
     The other defaults are limits that were set by hand.
     """
 
-    model_config = SettingsConfigDict(env_prefix="CLEAVE_", env_ignore_empty=True, extra="ignore", frozen=True)
+    model_config = SettingsConfigDict(env_prefix=_PREFIX, env_ignore_empty=True, extra="ignore", frozen=True)
 
     data_dir: Annotated[Path, AfterValidator(lambda path: path.expanduser().absolute())] = Field(
         default_factory=lambda: user_data_path("cleave", appauthor=False),
@@ -59,6 +66,11 @@ class Settings(BaseSettings):
     )
     api_keys_file: Path | None = Field(
         default=None, description="File with one NAME:DIGEST per line; it is read again when it changes."
+    )
+    root_path: Annotated[str, AfterValidator(lambda path: path.rstrip("/"))] = Field(
+        default="",
+        pattern=r"^(/[A-Za-z0-9._~-]+)*/?$",
+        description="Path below which a proxy shows the service, such as /cleave, if it sends no X-Forwarded-Prefix.",
     )
     cors_origins: str | None = Field(
         default=None, description="Origins whose pages may use the API, separated by commas; * for all."
@@ -134,6 +146,23 @@ class Settings(BaseSettings):
     log_format: LogFormat = Field(
         default="auto", description="Format of the log: text, json, or auto: text on a terminal, JSON elsewhere."
     )
+
+    def allowed_origins(self) -> list[str]:
+        """The entries of ``cors_origins`` as browsers send origins: in lower case, without a slash at the end."""
+        entries = (entry.strip().rstrip("/").lower() for entry in (self.cors_origins or "").split(","))
+        return [entry for entry in entries if entry]
+
+
+def unknown_variables(environment: Mapping[str, str]) -> dict[str, str | None]:
+    """Return the variables that begin with CLEAVE_ and are no settings, each with the nearest setting, if any."""
+    known = {name.upper() for name in Settings.model_fields} | _OTHER_VARIABLES
+    unknown: dict[str, str | None] = {}
+    for variable in sorted(environment):
+        prefix, name = variable[: len(_PREFIX)].upper(), variable[len(_PREFIX) :].upper()
+        if prefix == _PREFIX and name not in known and not _OF_KUBERNETES.fullmatch(variable):
+            near = difflib.get_close_matches(name, sorted(known), 1)
+            unknown[variable] = f"{_PREFIX}{near[0]}" if near else None
+    return unknown
 
 
 def load_settings(**overrides: Any) -> Settings:

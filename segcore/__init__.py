@@ -22,6 +22,10 @@ and the modules that define them, ``segcore.io`` (readers and writers), ``segcor
 ``Surface`` and ``build_surface``.
 """
 
+import segcore.kernel_cache  # noqa: F401  # before any kernel
+
+# isort: split
+
 from segcore.clean.surface import Surface, build_surface
 from segcore.errors import CleaveError, InvalidMesh, InvalidParameters, LimitExceeded, UnsupportedFormat
 from segcore.hierarchy import Hierarchy

@@ -1,5 +1,6 @@
 """Parameters of a segmentation with their ranges, defaults and JSON Schema."""
 
+import difflib
 from collections.abc import Mapping
 from dataclasses import dataclass, field, fields, replace
 from functools import cache
@@ -161,7 +162,9 @@ class SegmentationParameters:
         unknown = sorted(set(values) - known - {"preset"})
         if unknown:
             names = ", ".join(["preset", *sorted(known)])
-            raise InvalidParameters(f"Unknown parameter {unknown[0]!r}; the parameters are {names}.")
+            near = difflib.get_close_matches(unknown[0], sorted(known), 1)
+            meant = f": the nearest one is {near[0]!r}." if near else f"; the parameters are {names}."
+            raise InvalidParameters(f"There is no parameter {unknown[0][:80]!r}{meant}")
         start = cls.preset(str(values["preset"])) if "preset" in values else cls()
         chosen = {name: value for name, value in values.items() if name != "preset"}
         return replace(start, **chosen)  # type: ignore[arg-type]

@@ -1,6 +1,6 @@
 """The application: routes, middleware, error handlers and OpenAPI document."""
 
-from fastapi import FastAPI
+from fastapi import Depends, FastAPI
 from starlette.middleware.cors import CORSMiddleware
 
 from cleave.settings import Settings
@@ -8,7 +8,9 @@ from cleave.version import installed_version
 from service.context import Context, QueueView
 from service.guard.foreign_sites import CrossSiteCheckMiddleware, HostCheckMiddleware
 from service.guard.headers import HeadMiddleware, SecurityHeadersMiddleware
+from service.guard.unknown_parameters import refuse_unknown_parameters
 from service.keys import key_ring
+from service.mount import MountMiddleware
 from service.openapi.document import complete
 from service.problems import handle_problems
 from service.result_cache import ResultCache
@@ -31,10 +33,8 @@ _EXPOSED_HEADERS = (
     "RateLimit-Policy",
     "traceparent",
 )
+_PAGES = (home, docs_page, health)
 _ROUTES = (
-    home,
-    docs_page,
-    health,
     submission,
     jobs,
     results,
@@ -61,7 +61,7 @@ def create_app(settings: Settings) -> FastAPI:
     store = open_store(settings)
     keys = key_ring(settings)
     queue = JobQueue(connect(settings.redis_url))
-    metrics = Metrics(store, queue)
+    metrics = Metrics(store, queue, settings.data_dir)
     app.state.context = Context(
         settings=settings,
         version=app.version,
@@ -76,19 +76,22 @@ def create_app(settings: Settings) -> FastAPI:
         batches=store.batches,
         keys_required=settings.auth == "required" or (settings.auth == "auto" and bool(keys.all())),
     )
-    for module in _ROUTES:
+    for module in _PAGES:
         app.include_router(module.router)
+    for module in _ROUTES:
+        app.include_router(module.router, dependencies=[Depends(refuse_unknown_parameters)])
     _add_middleware(app, settings)
     app.add_middleware(RequestLogMiddleware, metrics=metrics)
     app.add_middleware(SecurityHeadersMiddleware)
     app.add_middleware(HeadMiddleware)
+    app.add_middleware(MountMiddleware, root_path=settings.root_path)  # around all others
     handle_problems(app)
     complete(app, keys_required=app.state.context.keys_required)
     return app
 
 
 def _add_middleware(app: FastAPI, settings: Settings) -> None:
-    origins = [origin.strip() for origin in (settings.cors_origins or "").split(",") if origin.strip()]
+    origins = settings.allowed_origins()
     app.add_middleware(CrossSiteCheckMiddleware, allowed_origins=origins)
     if settings.auth == "auto" and not app.state.context.keys_required:
         app.add_middleware(HostCheckMiddleware)

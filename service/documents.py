@@ -8,6 +8,7 @@ from pydantic import BaseModel, Field
 from segcore.parameters import USUAL_SEGMENTS
 from segcore.report import MeshReport, structure_note
 from service.answer.model_formats import model_links
+from service.mount import public_path
 from service.problems import JobError
 from worker.jobs.attempts import Attempt
 from worker.jobs.job import Canceled, Failed, Job, Outcome, Succeeded
@@ -236,7 +237,7 @@ def job_document(job: Job, outcome: Outcome | None, attempts: list[Attempt], act
             file_name=job.file_name, format=job.mesh_format, size_bytes=job.size_bytes, sha256=job.sha256
         ),
         parameters=job.parameters,
-        links=_links(f"/v1/jobs/{job.id}"),
+        links=_links(public_path(f"/v1/jobs/{job.id}")),
         **_result_fields(job, outcome),
     )
 

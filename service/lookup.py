@@ -11,6 +11,7 @@ from segcore.io import Segmentation
 from service.context import Context
 from service.documents import BatchDocument, BatchedJob, BatchLinks, JobDocument, job_document
 from service.guard.callers import Caller
+from service.mount import public_path
 from service.problems import JobError, Problem
 from worker.jobs.job import Canceled, Failed, Job, Succeeded
 from worker.jobs.store.batches import Batch
@@ -118,7 +119,7 @@ def ended_jobs(context: Context, batch: Batch) -> list[tuple[Job, JobDocument]]:
 def describe_batch(context: Context, batch: Batch) -> BatchDocument:
     """Return the document of a batch."""
     documents = [document for _, document in jobs_of_batch(context, batch)]
-    path = f"/v1/batches/{batch.id}"
+    path = public_path(f"/v1/batches/{batch.id}")
     return BatchDocument(
         id=batch.id,
         status="finished" if all(one is None or one.finished_at for one in documents) else "running",
@@ -131,7 +132,7 @@ def describe_batch(context: Context, batch: Batch) -> BatchDocument:
                 status=one.status if one else "deleted",
                 progress=one.progress if one else 0.0,
                 error=one.error if one else None,
-                self=f"/v1/jobs/{job_id}",
+                self=public_path(f"/v1/jobs/{job_id}"),
             )
             for job_id, one in zip(batch.job_ids, documents, strict=True)
         ],

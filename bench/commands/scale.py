@@ -3,7 +3,8 @@
 Every mesh is segmented in its own process with loaded kernels. Memory is the growth of the peak memory of the process
 during the segmentation, without the mesh itself. The shapes are a dumbbell and, with --data, a model of the benchmark
 whose faces are split in four repeatedly. At the end a thousand small boxes, apart and in contact, are compared with
-one body of as many faces.
+one body of as many faces. With --hard, legal meshes that are hard for their size (surfaces that cross themselves, edges
+and vertices with very many faces, very many components) are compared with smooth ones of as many faces instead.
 """
 
 from __future__ import annotations
@@ -15,7 +16,7 @@ from pathlib import Path
 from bench.errors import BenchmarkError
 from bench.pool import one_thread_by_default
 from bench.scale.cost import Cost, cost_of
-from bench.scale.shapes import crowds, dumbbells, subdivisions
+from bench.scale.shapes import crowds, dumbbells, hard_and_smooth, subdivisions
 from bench.text import format_table, number
 from segcore.progress import STAGES
 
@@ -29,11 +30,19 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         "--sizes", type=int, nargs="+", default=SIZES, metavar="FACES", help="default: 20,000 to 2,000,000"
     )
     parser.add_argument("--runs", type=int, default=3, metavar="N", help="the fastest of N runs counts (default 3)")
+    parser.add_argument("--hard", action="store_true", help="measure hard meshes beside smooth ones of their size")
 
 
 def run(arguments: argparse.Namespace) -> None:
     if arguments.runs < 1 or min(arguments.sizes) < 100:
         raise BenchmarkError("--runs must be at least 1, and each of --sizes at least 100 faces.")
+    if arguments.hard:
+        with one_thread_by_default():
+            pairs = [
+                (cost_of(*hard, arguments.runs), cost_of(*smooth, arguments.runs)) for hard, smooth in hard_and_smooth()
+            ]
+        print(render_hard(pairs))
+        return
     shapes = dumbbells(arguments.sizes)
     if arguments.data is not None:
         shapes += subdivisions(arguments.data, arguments.model, max(arguments.sizes))
@@ -59,6 +68,24 @@ def render(costs: Sequence[Cost]) -> str:
             number(cost.memory_bytes / cost.faces, 0),
         ]
         for cost in costs
+    ]
+    return format_table(header, rows)
+
+
+def render_hard(pairs: Sequence[tuple[Cost, Cost]]) -> str:
+    """Return a line for every hard mesh, with the ratio of its time to that of a smooth one of its size."""
+    header = ["mesh", "faces", "total s", "smooth s", "ratio", "MB", "smooth MB"]
+    rows = [
+        [
+            hard.name,
+            str(hard.faces),
+            number(hard.total_s, 2),
+            number(smooth.total_s, 2),
+            number(hard.total_s / smooth.total_s, 2),
+            number(hard.memory_bytes / 1e6, 0),
+            number(smooth.memory_bytes / 1e6, 0),
+        ]
+        for hard, smooth in pairs
     ]
     return format_table(header, rows)
 

@@ -8,6 +8,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, TypeAlias
 
 from bench.princeton.dataset import find_models
+from bench.scale.hard_shapes import HARD_SHAPES
 
 if TYPE_CHECKING:
     from segcore.mesh import Mesh
@@ -26,6 +27,14 @@ def crowds() -> list[Named]:
         ("one body", partial(_dumbbell, 12_000)),
         ("1,000 boxes apart", partial(_boxes, 2.0)),
         ("1,000 boxes that touch", partial(_boxes, 1.0)),
+    ]
+
+
+def hard_and_smooth() -> list[tuple[Named, Named]]:
+    """Return meshes that are hard for their size, each with a smooth one of the same number of faces."""
+    return [
+        ((name, partial(make, faces)), ("dumbbell", partial(_dumbbell, faces)))
+        for name, (make, faces) in HARD_SHAPES.items()
     ]
 
 

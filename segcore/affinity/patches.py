@@ -15,6 +15,9 @@ from segcore.graphs.surface_graph import SurfaceGraph
 from segcore.mesh import face_centroids
 
 COUNT = 2000  # of patches; set by hand
+# Patches of a surface have about six neighbours. If they have more than _MOST_NEIGHBOURS on average, because edges have
+# many faces, the graph has no small separators, and only _FEW patches are made; set by hand.
+_MOST_NEIGHBOURS, _FEW = 32, 250
 _LARGEST_SHARE = 1.5  # largest patch in mean areas: patches of similar size; set by hand
 _SMALLEST_FACE = 1e-4  # least area of a face in mean areas, as in affinity/mesh_graphs.py
 _SHORTEST_STEP = 0.1  # least distance of two centres, in the square root of the mean area of a patch; set by hand
@@ -88,6 +91,8 @@ def patches_of(surface: Surface, affinity: FloatArray, length: FloatArray, rng: 
     areas = at_least(surface.areas, _SMALLEST_FACE)
     graph = SurfaceGraph(surface.edge_faces, length * affinity, areas, length)
     coarse, of_face = coarsen(graph, COUNT, rng, largest_share=_LARGEST_SHARE)
+    if 2 * len(coarse.edges) > _MOST_NEIGHBOURS * coarse.node_count:
+        coarse, of_face = coarsen(graph, _FEW, rng, largest_share=_LARGEST_SHARE)
     count = coarse.node_count
     centroids = face_centroids(surface.vertices, surface.faces)
     centre = _sums(of_face, areas, centroids, count) / coarse.volume[:, None]

@@ -13,10 +13,11 @@ from numba import njit
 from segcore.affinity.frames import tangent_frames
 from segcore.affinity.patches import Patches
 from segcore.affinity.rays import RayCaster
-from segcore.arrays import FloatArray, IntArray, at_least
+from segcore.arrays import FloatArray, IntArray, LongArray, at_least
 from segcore.clean.surface import Surface
 
 RAYS = 24  # per patch; with 8 or 12 1-Rand is 0.000 to 0.003 worse, see "What helped" in bench/RESULTS.md
+_MANY_PATCHES = 10_000  # five times as many as of a surface with few components; set by hand
 _HALF_ANGLE = np.deg2rad(60.0)  # of the cone, as in the paper of Shapira et al.
 _START = 1e-4  # distance below the surface at which rays start, in sqrt(total area); set by hand
 _SMALLEST_FACE = 1e-9  # least area of a sampled face in mean areas: keeps the steps of area positive
@@ -48,9 +49,11 @@ def patch_thickness(surface: Surface, patches: Patches) -> Thickness:
     part. Such rays only lower the confidence.
     """
     size = float(np.sqrt(patches.area.sum()))
-    rays = _rays(surface, patches, size)
+    chosen = _measurable(patches)
+    rays = _rays(surface, patches, chosen, size)
     distance = RayCaster.of(surface.vertices, surface.faces).inner_distances(rays.origins, rays.directions)
-    value, confidence = _typical(distance.reshape(-1, RAYS), rays.cosines.reshape(-1, RAYS))
+    value, confidence = np.zeros((2, len(patches.area)))
+    value[chosen], confidence[chosen] = _typical(distance.reshape(-1, RAYS), rays.cosines.reshape(-1, RAYS))
     known = value > 0
     logarithm = np.zeros(len(value))
     logarithm[known] = np.log(value[known] / size)
@@ -63,24 +66,36 @@ def smooth_logarithm(thickness: Thickness, patches: Patches, radius: float) -> F
     return patches.smoothed(thickness.logarithm, radius, mass)
 
 
+def _measurable(patches: Patches) -> LongArray:
+    """The patches that rays are cast from: all, or of very many those of four faces or more.
+
+    There are many patches only if there are many components, as each has one at least, and a component of fewer than
+    four faces encloses nothing.
+    """
+    if len(patches.area) <= _MANY_PATCHES:
+        return np.arange(len(patches.area))
+    return np.flatnonzero(np.bincount(patches.of_face, minlength=len(patches.area)) >= 4)
+
+
 @dataclass(frozen=True, slots=True, eq=False)
 class _Rays:
-    """The rays of all patches: ``RAYS`` of patch 0, then of patch 1, ..."""
+    """The rays of some patches: ``RAYS`` of the first, then of the second, ..."""
 
     origins: FloatArray  # (N, 3)
     directions: FloatArray  # (N, 3) unit vectors
     cosines: FloatArray  # (N,) of the angle to the inward normal
 
 
-def _rays(surface: Surface, patches: Patches, size: float) -> _Rays:
+def _rays(surface: Surface, patches: Patches, chosen: LongArray, size: float) -> _Rays:
     face, place = _sample_faces(patches.of_face, surface.areas, len(patches.area))
+    face, place = face.reshape(-1, RAYS)[chosen].ravel(), place.reshape(-1, RAYS)[chosen].ravel()
     corners = surface.vertices[surface.faces[face]]
     inward = -surface.normals[face]
     is_sliver = ~inward.any(axis=1)
-    inward[is_sliver] = -np.repeat(patches.normal, RAYS, axis=0)[is_sliver]
+    inward[is_sliver] = -np.repeat(patches.normal[chosen], RAYS, axis=0)[is_sliver]
     # The place inside the triangle is a low-discrepancy pair: the fraction that is left from the choice of the face,
     # and the golden ratio sequence.
-    number = np.tile(np.arange(RAYS), len(patches.area))
+    number = np.tile(np.arange(RAYS), len(chosen))
     root = np.sqrt(place)
     other = np.modf(0.5 + number * _GOLDEN_RATIO)[0]
     weights = np.stack([1.0 - root, root * (1.0 - other), root * other], axis=1)

@@ -7,6 +7,10 @@ from segcore.arrays import BoolArray, FloatArray, IntArray, LongArray
 from segcore.clean.topology import DualEdges
 
 _SMALLEST_CELL = 1e-6  # of the extent, so that the number of a cell of the whole grid fits 64 bits
+_MOST_SEGMENTS = 32  # beside one point; set by hand, at cracks and T-junctions there are less than ten
+# Samples of all segments. A mesh of 1,000,000 faces that is all border has about as many; only long thin faces by the
+# hundred thousand, which are no patches with cracks, have more.
+_MOST_SAMPLES = 2**21
 _BEYOND = 0.01  # share of a segment by which a foot may lie beyond its ends: rounding, and edges of unequal length
 
 
@@ -46,10 +50,11 @@ def _paired(faces: IntArray, pairs: IntArray, ends: IntArray) -> BoolArray:
 def near_segments(points: FloatArray, segments: FloatArray, radius: FloatArray) -> LongArray:
     """(M, 2) the pairs of a segment and a point beside it within its radius.
 
-    A point is beside a segment if its perpendicular foot lies between the ends, to a hundredth of the length.
+    A point with more than 32 segments is in a thicket and not at a crack: it is left out. A point is beside a segment
+    if its perpendicular foot lies between the ends, to a hundredth of the length.
 
     The segments are handled in classes of similar radius, each with a grid of its own, so that the cost does not depend
-    on how different they are. O(N log N) if few points lie near a segment.
+    on how different they are.
 
     Parameters
     ----------
@@ -58,10 +63,11 @@ def near_segments(points: FloatArray, segments: FloatArray, radius: FloatArray) 
     radius : (S,)
     """
     level = np.ceil(np.log2(np.maximum(radius, _SMALLEST_CELL))).astype(np.int64)
+    is_searched = _within_budget(np.linalg.norm(segments[:, 1] - segments[:, 0], axis=1) / 2.0**level)
     low = points.min(axis=0)
-    found = []
+    found = [np.zeros((0, 2), dtype=np.int64)]
     for one in np.unique(level):
-        chosen = np.flatnonzero(level == one)
+        chosen = np.flatnonzero((level == one) & is_searched)
         cell = 1.25 * 2.0**one  # every point beside a segment is then less than a cell from a sample of the segment
         index = ((points - low) / cell).astype(np.int64) + 1
         shape = index.max(axis=0) + 2
@@ -70,6 +76,14 @@ def near_segments(points: FloatArray, segments: FloatArray, radius: FloatArray) 
         pairs = _in_grid(points, segments[chosen], radius[chosen], order, key[order], low, cell, shape)
         found.append(np.stack([chosen[pairs[:, 0]], pairs[:, 1]], axis=1))
     return np.concatenate(found)
+
+
+def _within_budget(samples: FloatArray) -> BoolArray:
+    """(S,) True for the segments that are searched: all, or those with the fewest samples, if there are too many."""
+    order = np.argsort(samples, kind="stable")
+    chosen = np.empty(len(samples), dtype=bool)
+    chosen[order] = np.cumsum(samples[order]) <= _MOST_SAMPLES
+    return chosen
 
 
 @njit(cache=True)
@@ -86,6 +100,7 @@ def _in_grid(
     """(M, 2) the pairs of a segment and a point, found by samples of the segments at distances of at most a cell."""
     found = np.empty((16, 2), np.int64)
     count = 0
+    segments_at = np.zeros(len(points), np.int32)
     for s in range(len(segments)):
         begin = segments[s, 0]
         step = segments[s, 1] - begin
@@ -103,6 +118,8 @@ def _in_grid(
                     while p < len(keys) and keys[p] <= row + min(z + 1, shape[2] - 1):
                         v = order[p]
                         p += 1
+                        if segments_at[v] > _MOST_SEGMENTS:
+                            continue
                         at = 0.0
                         for axis in range(3):
                             at += (points[v, axis] - begin[axis]) * step[axis]
@@ -115,10 +132,12 @@ def _in_grid(
                         for axis in range(3):
                             distance += (points[v, axis] - begin[axis] - at * step[axis]) ** 2
                         if distance <= radius[s] * radius[s]:
+                            segments_at[v] += 1
                             if count == len(found):
                                 larger = np.empty((2 * count, 2), np.int64)
                                 larger[:count] = found
                                 found = larger
                             found[count, 0], found[count, 1] = s, v
                             count += 1
-    return found[:count].copy()
+    is_sparse = segments_at[found[:count, 1]] <= _MOST_SEGMENTS
+    return found[:count][is_sparse]

@@ -17,6 +17,7 @@ from segcore.clean.topology import DualEdges
 # Set by hand.
 LARGEST_GAP = 3e-3  # of the extent, the largest tolerance of a run; matches are found up to twice of it
 _LARGEST_SHARE = 0.4  # of the longer edge, the largest gap between two matched edges
+_MOST_ENDS = 64  # open edges at one vertex; at a vertex with more, as the tip of a fan, there is no crack
 _SMALLEST_OVERLAP = 0.1  # of the shorter edge
 _SMALLEST_COSINE = 0.7  # between the directions of two edges
 _FOLDED = 0.9  # cosine between the directions from the edges into their faces above which one lies on the other
@@ -72,7 +73,9 @@ def _neighbours(vertices: FloatArray, ends: IntArray, segments: FloatArray, radi
     near = near[(which[near[:, 0]] != near[:, 1:]).all(axis=1)]
     order = np.argsort(which.ravel(), kind="stable")
     start = np.searchsorted(which.ravel()[order], np.arange(len(used) + 1))
-    count = np.diff(start)[near[:, 1]]
+    ends_there = np.diff(start)
+    near = near[ends_there[near[:, 1]] <= _MOST_ENDS]
+    count = ends_there[near[:, 1]]
     edge = np.repeat(near[:, 0], count)
     within = np.arange(len(edge)) - np.repeat(np.cumsum(count) - count, count)
     other = order[np.repeat(start[near[:, 1]], count) + within] // 2

@@ -9,6 +9,7 @@ from segcore.arrays import BoolArray, FloatArray, IntArray, LongArray
 from segcore.graphs.surface_graph import Rows
 
 _EMPTY = -1
+_FEW = 32  # edges of one lower end up to which they are sorted by insertion; set by hand
 
 
 class DualEdges(NamedTuple):
@@ -66,12 +67,18 @@ def _first_half_edges(faces: IntArray, vertex_count: int) -> LongArray:
     return start
 
 
-@njit(cache=True)
-def dual_edges(faces: IntArray, vertex_count: int) -> DualEdges:
-    """Pairs of faces (F, 3) that share an edge, ordered by the ends of the edge. O(F) at bounded vertex degrees.
+class _HalfEdges(NamedTuple):
+    """The edges of faces, each by its lower end, in the order of the higher end and then of the faces."""
 
-    If m > 2 faces share one edge, they are chained in the order of their indices (m - 1 pairs).
-    """
+    start: LongArray  # (V + 1,) the edges with lower end v are start[v] to start[v + 1] - 1
+    far_end: IntArray  # (3 F,)
+    owner: IntArray  # (3 F,) the face
+    forward: BoolArray  # (3 F,) whether the face has the lower end first
+
+
+@njit(cache=True)
+def _half_edges(faces: IntArray, vertex_count: int) -> _HalfEdges:
+    """O(F log D) if D edges at most have one lower end."""
     half_edges = 3 * len(faces)
     start = _first_half_edges(faces, vertex_count)
     far_end = np.empty(half_edges, np.int32)
@@ -82,13 +89,32 @@ def dual_edges(faces: IntArray, vertex_count: int) -> DualEdges:
         for k in range(3):
             a, b = faces[f, k], faces[f, (k + 1) % 3]
             low, high = min(a, b), max(a, b)
-            # Insertion sort by the far end keeps the faces of one edge together and in the order of their indices.
             p = fill[low]
-            while p > start[low] and far_end[p - 1] > high:
-                far_end[p], owner[p], forward[p] = far_end[p - 1], owner[p - 1], forward[p - 1]
-                p -= 1
+            if p - start[low] < _FEW:
+                # Insertion sort keeps the faces of one edge together and in the order of their indices.
+                while p > start[low] and far_end[p - 1] > high:
+                    far_end[p], owner[p], forward[p] = far_end[p - 1], owner[p - 1], forward[p - 1]
+                    p -= 1
             far_end[p], owner[p], forward[p] = high, f, a < b
             fill[low] += 1
+    for v in range(vertex_count):
+        begin, end = start[v], start[v + 1]
+        if end - begin > _FEW:
+            order = np.argsort(far_end[begin:end], kind="mergesort")
+            far_end[begin:end] = far_end[begin:end][order]
+            owner[begin:end] = owner[begin:end][order]
+            forward[begin:end] = forward[begin:end][order]
+    return _HalfEdges(start, far_end, owner, forward)
+
+
+@njit(cache=True)
+def dual_edges(faces: IntArray, vertex_count: int) -> DualEdges:
+    """Pairs of faces (F, 3) that share an edge, ordered by the ends of the edge.
+
+    If m > 2 faces share one edge, they are chained in the order of their indices (m - 1 pairs).
+    """
+    start, far_end, owner, forward = _half_edges(faces, vertex_count)
+    half_edges = 3 * len(faces)
     pairs = np.empty((half_edges, 2), np.int32)
     ends = np.empty((half_edges, 2), np.int32)
     is_manifold = np.empty(half_edges, np.bool_)
@@ -115,26 +141,18 @@ def dual_edges(faces: IntArray, vertex_count: int) -> DualEdges:
 @njit(cache=True)
 def border_vertices(faces: IntArray, vertex_count: int) -> BoolArray:
     """(V,) True for the ends of edges of exactly one face (F, 3); edges between equal corners do not count."""
-    start = _first_half_edges(faces, vertex_count)
-    far_end = np.empty(3 * len(faces), np.int32)
-    uses = np.zeros(3 * len(faces), np.int32)
-    fill = start[:-1].copy()
-    for f in range(len(faces)):
-        for k in range(3):
-            a, b = faces[f, k], faces[f, (k + 1) % 3]
-            low, high = min(a, b), max(a, b)
-            p = start[low]
-            while p < fill[low] and far_end[p] != high:
-                p += 1
-            if p == fill[low]:
-                far_end[p] = high
-                fill[low] += 1
-            uses[p] += 1
+    edges = _half_edges(faces, vertex_count)
     border = np.zeros(vertex_count, np.bool_)
     for v in range(vertex_count):
-        for p in range(start[v], fill[v]):
-            if uses[p] == 1 and far_end[p] != v:
-                border[v] = border[far_end[p]] = True
+        p = edges.start[v]
+        while p < edges.start[v + 1]:
+            end = edges.far_end[p]
+            q = p + 1
+            while q < edges.start[v + 1] and edges.far_end[q] == end:
+                q += 1
+            if q - p == 1 and end != v:
+                border[v] = border[end] = True
+            p = q
     return border
 
 

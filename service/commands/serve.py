@@ -1,6 +1,7 @@
 """`cleave serve`: run the service, its workers and its queue server."""
 
 import argparse
+import os
 from contextlib import ExitStack
 
 from cleave.logs import configure_logging
@@ -8,10 +9,10 @@ from cleave.settings import Settings, load_settings
 from service.commands.arguments import add_data_dir, add_settings_help, add_workers, port
 from service.commands.console import say
 from service.guard.exposure import check_exposure
-from service.host.announcement import announcement
+from service.host.announcement import announcement, warn_of_unknown_variables
 from service.host.listening import listen
 from service.host.programs import api_program, queue_server_program, worker_counts, worker_programs
-from service.host.queue_server import QueueServer, embedded_queue_server, stop_orphan
+from service.host.queue_server import QueueServer, check_queue_server, embedded_queue_server, stop_orphan
 from service.host.supervisor import Supervisor, lock_data
 from worker.jobs.store.opening import open_store
 
@@ -20,6 +21,9 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     parser.description = "Run the service, its workers and, unless CLEAVE_REDIS_URL is set, its own queue server."
     parser.add_argument("--host", default="127.0.0.1", help="address to listen on (%(default)s)")
     parser.add_argument("--port", type=port, default=8000, help="port to listen on, 0 for a free one (%(default)s)")
+    parser.add_argument(
+        "--root-path", metavar="PATH", help="path below which a proxy shows the service (CLEAVE_ROOT_PATH)"
+    )
     add_workers(parser, least=0)
     add_data_dir(parser)
     add_settings_help(parser)
@@ -27,8 +31,9 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 
 def run(choices: argparse.Namespace) -> None:
     """Run the processes of an installation until a signal arrives."""
-    settings = load_settings(data_dir=choices.data_dir)
+    settings = load_settings(data_dir=choices.data_dir, root_path=choices.root_path)
     configure_logging(settings.log_level, settings.log_format, "supervisor")
+    warn_of_unknown_variables(os.environ)
     counts = worker_counts(choices.workers)
     with ExitStack() as stack:
         listening = stack.enter_context(listen(choices.host, choices.port))
@@ -47,6 +52,7 @@ def run(choices: argparse.Namespace) -> None:
 def _own_queue_server(settings: Settings, stack: ExitStack) -> QueueServer | None:
     """Return the queue server to start; None if the settings name another one. The stack removes its socket."""
     if settings.redis_url is not None:
+        check_queue_server(settings.redis_url)
         return None
     server = embedded_queue_server(settings.data_dir)
     stop_orphan(server)

@@ -1,14 +1,15 @@
 """`cleave worker`: run workers and a janitor for a service that runs elsewhere."""
 
 import argparse
+import os
 
 from cleave.logs import configure_logging
 from cleave.settings import Settings, load_settings
 from service.commands.arguments import add_data_dir, add_settings_help, add_workers
 from service.commands.console import say
-from service.host.announcement import announcement
+from service.host.announcement import announcement, warn_of_unknown_variables
 from service.host.programs import worker_counts, worker_programs
-from service.host.queue_server import NoQueueServer, queue_url
+from service.host.queue_server import NoQueueServer, check_queue_server, queue_url
 from service.host.supervisor import Supervisor
 from worker.jobs.queue.connection import QueueError, connect
 from worker.jobs.queue.workers import live_workers_here
@@ -45,8 +46,10 @@ def run(choices: argparse.Namespace) -> int | None:
     if choices.check:
         return _check(settings)
     configure_logging(settings.log_level, settings.log_format, "supervisor")
+    warn_of_unknown_variables(os.environ)
     if settings.redis_url is None:
         raise NoQueueServer("A worker needs the queue server of its service: set CLEAVE_REDIS_URL or give --redis-url.")
+    check_queue_server(settings.redis_url)
     counts = worker_counts(choices.workers, None if choices.queue == "both" else SizeClass(choices.queue))
     say(announcement(settings, counts))
     Supervisor(worker_programs(settings, counts)).run()

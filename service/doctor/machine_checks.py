@@ -8,7 +8,7 @@ from contextlib import suppress
 from importlib.metadata import version
 from pathlib import Path
 
-from cleave.settings import InvalidSettings, Settings
+from cleave.settings import InvalidSettings, Settings, unknown_variables
 from cleave.version import installed_version
 from service.doctor.findings import Finding, error, ok, warning
 from service.guard.exposure import check_exposure
@@ -18,7 +18,6 @@ from service.host.listening import BACKLOG
 # table of stages); the rest is what it needs on a small mesh (docs/operations.md, Sizing) and a reserve, set by hand.
 _BYTES_PER_FACE, _BASE_BYTES = 400, 500 * 2**20
 _PACKAGES = ("numpy", "scipy", "numba", "redis", "rq", "fastapi", "uvicorn", "trimesh")
-_CLIENT_VARIABLES = ("CLEAVE_API_KEY",)  # of commands that are clients of a service
 _CGROUP_LIMITS = ("/sys/fs/cgroup/memory.max", "/sys/fs/cgroup/memory/memory.limit_in_bytes")
 
 
@@ -117,10 +116,9 @@ def _access(settings: Settings, host: str) -> Iterator[Finding]:
 
 
 def _unknown_variables() -> Iterator[Finding]:
-    known = {f"CLEAVE_{name.upper()}" for name in Settings.model_fields}
-    for name in sorted(name for name in os.environ if name.startswith("CLEAVE_")):
-        if name not in known and name not in _CLIENT_VARIABLES:
-            yield warning("settings", f"{name} is not a setting.", "Find its correct name in `cleave serve --help`.")
+    for name, nearest in unknown_variables(os.environ).items():
+        remedy = f"The nearest one is {nearest}" if nearest else "Find its correct name"
+        yield warning("settings", f"{name} is not a setting.", f"{remedy}; `cleave serve --help` lists all.")
 
 
 def _installed() -> str:

@@ -9,6 +9,7 @@ from redis import Redis
 
 from service.doctor.findings import Finding, error, ok, warning
 from worker.jobs.queue.connection import QueueError, connect
+from worker.jobs.queue.requirements import unmet_requirement
 from worker.jobs.queue.workers import worker_counts
 from worker.jobs.size_class import SizeClass
 
@@ -21,6 +22,10 @@ def check_queue(url: str) -> list[Finding]:
     """Check the server of a URL, its settings and its workers."""
     with connect(url) as connection:
         try:
+            reason = unmet_requirement(connection)
+            if reason is not None:
+                fault, _, remedy = reason.partition(": ")
+                return [error("queue server", f"{fault}.", remedy[0].upper() + remedy[1:])]
             info: dict[str, Any] = connection.info()
             clock = connection.time()
             counts = worker_counts(connection)

@@ -1,5 +1,6 @@
 """Checks of the store and the data folder: access, clock, permissions and free space."""
 
+import os
 import secrets
 import shutil
 import stat
@@ -13,7 +14,6 @@ from service.doctor.queue_checks import check_clock
 from worker.jobs.objects.interface import ObjectStorage
 from worker.jobs.store.opening import open_store
 
-_PROBES = "probe"
 _MIN_UPLOADS = 8  # of the largest size that a disk should have room for; set by hand
 
 
@@ -23,6 +23,9 @@ def check_store(settings: Settings) -> list[Finding]:
 
 
 def _store(settings: Settings) -> Iterator[Finding]:
+    if settings.store_url is None and not settings.data_dir.exists():
+        yield _future_folder(settings.data_dir)
+        return
     try:
         store = open_store(settings)
         store.check_writable()
@@ -38,13 +41,30 @@ def _store(settings: Settings) -> Iterator[Finding]:
     yield check_clock("store's clock", ahead_s)
 
 
+def _future_folder(data_dir: Path) -> Finding:
+    """Check that a data folder can be made, without making it."""
+    existing = _nearest_existing(data_dir)
+    if existing.is_dir() and os.access(existing, os.W_OK | os.X_OK):
+        return ok("data folder", f"{data_dir} does not exist yet, and the first start can make it.")
+    return error(
+        "data folder",
+        f"{data_dir} does not exist, and {existing} cannot be written.",
+        "Make the folder for this user, or set CLEAVE_DATA_DIR.",
+    )
+
+
+def _nearest_existing(folder: Path) -> Path:
+    return next(one for one in (folder, *folder.parents) if one.exists())
+
+
 def _clock_ahead_s(objects: ObjectStorage) -> float:
     """Return how far the clock that stamps objects is ahead of this one, to about a second."""
-    key = f"{_PROBES}/{secrets.token_hex(16)}"
+    folder = f"incoming/{secrets.token_hex(16)}"  # removed with its last object
+    key = f"{folder}/probe"
     began_at = time.time()
     objects.put(key, b"?")
     try:
-        stamped = [found.modified_at for found in objects.list_below(_PROBES) if found.key == key]
+        stamped = [found.modified_at for found in objects.list_below(folder) if found.key == key]
     finally:
         objects.delete(key)
     return stamped[0] - (began_at + time.time()) / 2 if stamped else 0.0
@@ -61,7 +81,7 @@ def _data_folder(data_dir: Path) -> Iterator[Finding]:
 
 
 def _disk(settings: Settings) -> Iterator[Finding]:
-    existing = next(folder for folder in (settings.data_dir, *settings.data_dir.parents) if folder.exists())
+    existing = _nearest_existing(settings.data_dir)
     free = shutil.disk_usage(existing).free
     text = f"{free / 2**30:.1f} GiB are free in {existing}"
     if free < settings.max_upload_bytes:

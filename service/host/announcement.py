@@ -1,12 +1,22 @@
 """What `cleave serve` and `cleave worker` print at their start."""
 
+import logging
 import socket
 from collections.abc import Mapping
 from urllib.parse import urlsplit
 
-from cleave.settings import Settings
+from cleave.settings import Settings, unknown_variables
 from service.host.listening import url_of
 from worker.jobs.size_class import SizeClass
+
+log = logging.getLogger("cleave.supervisor")
+
+
+def warn_of_unknown_variables(environment: Mapping[str, str]) -> None:
+    """Log the variables of an environment that look like settings and are none."""
+    for name, nearest in unknown_variables(environment).items():
+        meant = f"; the nearest one is {nearest}" if nearest else ""
+        log.warning("the environment variable %s is no setting and has no effect%s", name, meant)
 
 
 def announcement(

@@ -4,9 +4,11 @@ import os
 import sys
 import sysconfig
 from collections.abc import Mapping
+from functools import partial
 from pathlib import Path
 
 from cleave.settings import Settings
+from service.host.queue_files import set_aside_unreadable
 from service.host.queue_server import QueueServer
 from service.host.supervisor import Program
 from worker.jobs.size_class import SizeClass
@@ -18,7 +20,9 @@ _ONE_THREAD = dict.fromkeys(("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM
 
 
 def queue_server_program(server: QueueServer) -> Program:
-    return Program("queue server", server.command, is_support=True)
+    """Return the program of the queue server, which is started again with an empty queue if its files are damaged."""
+    on_end = partial(set_aside_unreadable, server.folder)
+    return Program("queue server", server.command, is_support=True, on_end=on_end)
 
 
 def api_program(settings: Settings, listening: int) -> Program:
@@ -74,6 +78,7 @@ def _environment(settings: Settings) -> dict[str, str]:
     """Return the variables for a program: the resolved settings, and the path of the packages."""
     assert settings.redis_url, "the queue server is known by now"
     environment = {"CLEAVE_DATA_DIR": str(settings.data_dir), "CLEAVE_REDIS_URL": settings.redis_url}
+    environment["CLEAVE_ROOT_PATH"] = settings.root_path
     root = Path(__file__).parents[2]
     if root != Path(sysconfig.get_path("purelib")):  # a checkout: -P keeps the working folder off the path
         environment["PYTHONPATH"] = os.pathsep.join(filter(None, [str(root), os.environ.get("PYTHONPATH")]))

@@ -2,6 +2,7 @@
 
 import hashlib
 import os
+import re
 import shutil
 import stat
 import tempfile
@@ -14,8 +15,12 @@ from redis.exceptions import RedisError
 
 from cleave.settings import Settings
 from worker.jobs.queue.connection import connect
+from worker.jobs.queue.requirements import unmet_requirement
 
 _MAX_SOCKET_PATH = 100  # bytes; the limit of the kernel is 107 on Linux and 103 on macOS
+# The path is part of a URL and of the answers to CLIENT INFO, whose readers divide it at blanks.
+_PLAIN_PATH = re.compile(r"[A-Za-z0-9/._+-]+")
+_FOLDER = "queue"  # in the data folder
 _STOP_TIMEOUT_S = 10.0  # for an orphaned server; it only has to close its append-only file
 
 
@@ -30,6 +35,7 @@ class QueueServer:
     command: list[str]
     url: str
     socket: Path
+    folder: Path  # of its files
 
     def remove_socket(self) -> None:
         """Remove the socket of a server that has ended, and the folder of the socket if it is empty."""
@@ -46,14 +52,22 @@ class QueueServer:
 
 
 def queue_url(settings: Settings) -> str:
-    """Return the URL of the queue server of the settings, by default of the one that `cleave serve` starts.
+    """Return the URL of the queue server of the settings, by default of the one that `cleave serve` starts."""
+    return settings.redis_url or url_of(socket_path(settings.data_dir / _FOLDER))
+
+
+def check_queue_server(url: str) -> None:
+    """Check that the server of a URL can be used; a server that does not answer may do so later.
 
     Raises
     ------
     NoQueueServer
-        If the settings name no server and none can be started here.
+        If it is a cluster, or its user lacks a right.
     """
-    return settings.redis_url or embedded_queue_server(settings.data_dir).url
+    with connect(url) as connection, suppress(RedisError):
+        reason = unmet_requirement(connection)
+        if reason is not None:
+            raise NoQueueServer(reason)
 
 
 def embedded_queue_server(data_dir: Path) -> QueueServer:
@@ -65,14 +79,20 @@ def embedded_queue_server(data_dir: Path) -> QueueServer:
     Raises
     ------
     NoQueueServer
-        If there is no server binary, or no safe place for the socket.
+        If there is no server binary, or the folder for the socket is accessible to other users.
     """
     binary = find_server_binary()
-    folder = data_dir / "queue"
+    folder = data_dir / _FOLDER
     folder.mkdir(mode=0o700, parents=True, exist_ok=True)
     socket = socket_path(folder)
+    if socket.parent != folder:
+        _make_private(socket.parent)
     command = [str(binary), *_options(folder, socket)]
-    return QueueServer(command=command, url=f"unix://{socket}", socket=socket)
+    return QueueServer(command=command, url=url_of(socket), socket=socket, folder=folder)
+
+
+def url_of(socket: Path) -> str:
+    return f"unix://{socket}"
 
 
 def find_server_binary() -> Path:
@@ -93,23 +113,29 @@ def find_server_binary() -> Path:
 
 
 def socket_path(folder: Path) -> Path:
-    """Return a path in the folder or, if that is too long for a socket, in a private folder of the temporary folder.
+    """Return a path in the folder or, if that is too long or has blanks or other characters, in a private folder.
 
-    Raises
-    ------
-    NoQueueServer
-        If the private folder belongs to another user or is accessible to others.
+    The private folder is in the temporary folder, or in /tmp if the path of that cannot be used either.
     """
     path = folder / "queue.sock"
-    if len(os.fsencode(path)) <= _MAX_SOCKET_PATH:
+    if _is_usable(path):
         return path
     name = hashlib.sha256(os.fsencode(folder)).hexdigest()[:16]
     short = Path(tempfile.gettempdir()) / f"cleave-{os.getuid()}-{name}"
-    short.mkdir(mode=0o700, exist_ok=True)
-    status = short.lstat()
+    if not _is_usable(short / path.name):
+        short = Path("/tmp") / short.name
+    return short / path.name
+
+
+def _make_private(folder: Path) -> None:
+    folder.mkdir(mode=0o700, exist_ok=True)
+    status = folder.lstat()
     if not stat.S_ISDIR(status.st_mode) or status.st_uid != os.getuid() or status.st_mode & 0o077:
-        raise NoQueueServer(f"The folder {short} must belong to this user alone: remove it or set CLEAVE_DATA_DIR.")
-    return short / "queue.sock"
+        raise NoQueueServer(f"The folder {folder} must belong to this user alone: remove it or set CLEAVE_DATA_DIR.")
+
+
+def _is_usable(path: Path) -> bool:
+    return _PLAIN_PATH.fullmatch(str(path)) is not None and len(os.fsencode(path)) <= _MAX_SOCKET_PATH
 
 
 def stop_orphan(server: QueueServer) -> None:

@@ -6,7 +6,7 @@ import os
 import signal
 import subprocess
 import time
-from collections.abc import Iterable
+from collections.abc import Callable, Iterable
 from contextlib import suppress
 from dataclasses import dataclass, field
 from functools import partial
@@ -39,6 +39,7 @@ class Program:
     descriptors: tuple[int, ...] = ()  # open files that it inherits
     grace_s: float = 5.0  # from SIGTERM to SIGKILL; set by hand
     is_support: bool = False  # stopped after the others, which need it while they stop
+    on_end: Callable[[int], None] | None = None  # called with the exit status before a restart, if it ended by itself
 
 
 class Supervisor:
@@ -124,6 +125,8 @@ class _Child:
 
     def _schedule_restart(self, status: int) -> None:
         self._process = None
+        if self.program.on_end is not None:
+            self.program.on_end(status)
         ran_s = time.monotonic() - self._started_at
         self._delay_s = _FIRST_DELAY_S if ran_s > _STABLE_S else min(2 * self._delay_s, _MAX_DELAY_S)
         self._start_at = time.monotonic() + self._delay_s

@@ -63,6 +63,8 @@ def _completed(document: dict[str, Any], keys_required: bool) -> dict[str, Any]:
         for operation in operations.values():
             _correct(operation, keys_required)
             _add_problem(operation, "malformed_request")
+            if path.startswith("/v1/"):
+                _add_problem(operation, "invalid_request")
             if path.startswith(_STORE_PATHS):
                 _add_problem(operation, "store_unavailable")
     if not keys_required:
@@ -85,6 +87,6 @@ def _add_problem(operation: dict[str, Any], code: str) -> None:
     """Add a problem to the responses of an operation, besides other problems with the same status."""
     for status, response in documented(code).items():
         existing = operation["responses"].setdefault(str(status), response)
-        if existing is not response:
+        if existing is not response and code not in existing["content"][MEDIA_TYPE]["examples"]:
             existing["description"] += f" `{code}`"
             existing["content"][MEDIA_TYPE]["examples"] |= response["content"][MEDIA_TYPE]["examples"]

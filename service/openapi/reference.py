@@ -55,7 +55,7 @@ def html_body(document: dict[str, Any]) -> str:
     """Return the reference as the body of an HTML page, without styles and scripts."""
     parts = [f"<h1>{escape(document['info']['title'])} API</h1>"]
     parts += [f"<p>{escape(paragraph)}</p>" for paragraph in document["info"]["description"].strip().split("\n\n")]
-    parts.append('<p>For programs: <a href="/openapi.json">openapi.json</a>.</p>')
+    parts.append('<p>For programs: <a href="openapi.json">openapi.json</a>.</p>')
     for operation in operations(document):
         parts.append(f"<h2><code>{operation.method} {escape(operation.path)}</code></h2>")
         parts.append(f"<p>{escape(operation.sentence)}</p>")

@@ -22,7 +22,7 @@ def get_docs(request: Request) -> HTMLResponse:
     body = html_body(request.app.openapi())
     return HTMLResponse(
         f'<!doctype html><html lang="en"><head><meta charset="utf-8"><title>Cleave API</title>'
-        f'<meta name="viewport" content="width=device-width"><link rel="stylesheet" href="/docs.css"></head>'
+        f'<meta name="viewport" content="width=device-width"><link rel="stylesheet" href="docs.css"></head>'
         f"<body>{body}</body></html>"
     )
 

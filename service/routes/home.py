@@ -1,13 +1,15 @@
 """The viewer at /, a page of static files, and its sample meshes. The sources of the page are in viewer/."""
 
+import gzip
 from functools import cache
-from hashlib import sha256
 from importlib.resources import files
+from typing import NamedTuple
 
 from fastapi import APIRouter, Request
 from starlette.exceptions import HTTPException
 from starlette.responses import Response
 
+from service.answer.renditions import entity_tag, is_current, takes_gzip
 from service.samples import SAMPLES, sample_ply
 
 router = APIRouter(include_in_schema=False)
@@ -50,16 +52,26 @@ def get_sample(name: str) -> Response:
     return Response(sample_ply(name), headers=headers, media_type="model/ply")
 
 
+class _File(NamedTuple):
+    content: bytes
+    packed: bytes  # with gzip
+
+
 def _answer(request: Request, name: str, media_type: str, headers: dict[str, str]) -> Response:
-    content, tag = _files()[name]
-    headers = {**headers, "ETag": tag}
-    if request.headers.get("If-None-Match") == tag:
+    file = _files()[name]
+    is_packed = not media_type.startswith("image/png") and takes_gzip(request.headers.get("accept-encoding", ""))
+    body = file.packed if is_packed else file.content
+    tag = entity_tag(body)
+    headers = {**headers, "ETag": tag, "Vary": "Accept-Encoding"}
+    if is_current(request, tag):
         return Response(status_code=304, headers=headers)
-    return Response(content, headers=headers, media_type=media_type)
+    if is_packed:
+        headers["Content-Encoding"] = "gzip"
+    return Response(body, headers=headers, media_type=media_type)
 
 
 @cache
-def _files() -> dict[str, tuple[bytes, str]]:
-    """Return the built files and their ETags by name; they are part of the package and do not change."""
+def _files() -> dict[str, _File]:
+    """Return the built files by name; they are part of the package and do not change."""
     contents = {entry.name: entry.read_bytes() for entry in files("service").joinpath("viewer").iterdir()}
-    return {name: (content, f'"{sha256(content).hexdigest()[:32]}"') for name, content in contents.items()}
+    return {name: _File(content, gzip.compress(content, mtime=0)) for name, content in contents.items()}

@@ -22,6 +22,9 @@ router = APIRouter(prefix="/v1/jobs", tags=["jobs"])
 
 _CHANGE_PROBLEMS = (*JOB_PROBLEMS, "foreign_site", "insufficient_storage")
 
+# nginx would otherwise collect events before it sends them on.
+_STREAM_HEADERS = {"Cache-Control": "no-store", "X-Accel-Buffering": "no"}
+
 Wait = Annotated[
     float,
     Query(ge=0, le=LONGEST_WAIT_S, description="Seconds to wait for the end of the job, up to a limit of the server."),
@@ -91,7 +94,7 @@ async def get_events(
     if has_last_event(await run_in_threadpool(describe, context, job), last_event_id):
         return Response(status_code=204)
     stream = job_events(context, job, last_event_id)
-    return StreamingResponse(stream, media_type="text/event-stream", headers={"Cache-Control": "no-store"})
+    return StreamingResponse(stream, media_type="text/event-stream", headers=_STREAM_HEADERS)
 
 
 @router.post(

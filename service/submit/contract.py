@@ -95,8 +95,8 @@ _LINKS = {
 JOB_RESPONSES: dict[int | str, dict[str, Any]] = {
     200: {
         "model": SubmittedJobDocument,
-        "description": "The job has ended: within the time of Prefer: wait, or earlier, with the same mesh and "
-        "parameters.",
+        "description": "The job has ended: within the time of Prefer: wait, or at once, if it shares the result of an "
+        "earlier job of the caller with the same mesh and parameters.",
         "headers": _JOB_HEADERS,
         "links": _LINKS,
     },

@@ -1,4 +1,4 @@
-"""Creation of a job for an uploaded mesh, or reuse of one with the same mesh and parameters."""
+"""Creation of a job for an uploaded mesh; it is done at once if its mesh was segmented with the same parameters."""
 
 import logging
 from dataclasses import asdict, dataclass
@@ -30,7 +30,7 @@ class JobRequest:
     file_name: str | None = None
     webhook_url: str | None = None
     idempotency_key: str | None = None
-    may_reuse: bool = True  # the result of an earlier job with the same mesh and parameters is sufficient
+    may_reuse: bool = True  # the result of an earlier job with the same mesh and parameters may be shared
 
 
 @dataclass(frozen=True, slots=True)
@@ -38,11 +38,12 @@ class Receipt:
     """The job of a request."""
 
     job: Job
-    is_new: bool  # not reused, and not the job of an earlier request with the same Idempotency-Key
+    is_new: bool  # not the job of an earlier request with the same Idempotency-Key
+    shares_result: bool = False  # with an earlier job
 
 
 def accept_job(context: Context, caller: Caller, mesh: ReceivedMesh, wanted: JobRequest) -> Receipt:
-    """Accept a job into the store and enqueue it, unless an existing job serves the request.
+    """Accept a job into the store, and enqueue it unless the result of an earlier job is its result too.
 
     Raises
     ------
@@ -50,10 +51,6 @@ def accept_job(context: Context, caller: Caller, mesh: ReceivedMesh, wanted: Job
         If the mesh is empty, or the Idempotency-Key belongs to another request or a deleted job.
     """
     job = _new_job(context, caller, mesh, wanted)
-    if wanted.may_reuse and not (wanted.idempotency_key and context.store.records.job(job.id)):
-        known = context.store.computed_before(job)
-        if known is not None:
-            return Receipt(known, is_new=False)
     if wanted.idempotency_key and context.store.deletions.was_deleted(job.id, caller.owner):
         raise Problem("idempotency_key_spent")
     try:
@@ -62,8 +59,10 @@ def accept_job(context: Context, caller: Caller, mesh: ReceivedMesh, wanted: Job
         return _existing(context, job)
     with about(job.id, job.traceparent):
         log.info("accepted", extra={"fields": {"bytes": job.size_bytes, "owner": job.owner}})
-        _enqueue(context, job)
-    return Receipt(job, is_new=True)
+        shares_result = wanted.may_reuse and context.store.finish_as_before(job)
+        if not shares_result:
+            _enqueue(context, job)
+    return Receipt(job, is_new=True, shares_result=shares_result)
 
 
 def _enqueue(context: Context, job: Job) -> None:

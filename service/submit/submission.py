@@ -71,7 +71,7 @@ async def check_service(context: Context, webhook: str | None) -> None:
 def _accept(context: Context, caller: Caller, mesh: ReceivedMesh, wanted: JobRequest) -> Receipt:
     receipt = accept_job(context, caller, mesh, wanted)
     note_job(receipt.job.id)
-    context.metrics.jobs.labels("accepted" if receipt.is_new else "reused").inc()
+    context.metrics.jobs.labels("accepted" if receipt.is_new and not receipt.shares_result else "reused").inc()
     context.metrics.upload_bytes.inc(mesh.upload.size_bytes)
     if context.settings.key_upload_bytes_per_hour is not None:
         context.quota.add(caller.owner, mesh.upload.size_bytes)

@@ -4,9 +4,11 @@ They are read at every scrape, and every service returns the same values: aggreg
 with ``sum``. The counters restart at 0 if Redis loses its data.
 """
 
+import shutil
 import time
 from collections import Counter
 from collections.abc import Callable, Iterator, Mapping
+from pathlib import Path
 
 from prometheus_client.core import CounterMetricFamily, GaugeMetricFamily, HistogramMetricFamily, Metric
 from prometheus_client.registry import Collector
@@ -66,6 +68,21 @@ class QueueCollector(Collector):
         yield _family(GaugeMetricFamily, "cleave_running_jobs", "Running jobs by their stage.", "stage", stages)
 
 
+class DiskCollector(Collector):
+    """Metrics of the disk of the data folder of this machine."""
+
+    def __init__(self, data_dir: Path) -> None:
+        self._data_dir = data_dir
+
+    def collect(self) -> Iterator[Metric]:
+        try:
+            disk = shutil.disk_usage(self._data_dir)
+        except OSError:
+            return
+        yield _gauge("cleave_disk_free_bytes", "Free bytes on the disk of the data folder.", disk.free)
+        yield _gauge("cleave_disk_bytes", "Size of that disk.", disk.total)
+
+
 class CounterCollector(Collector):
     """Metrics that the workers and the janitor count in Redis, and the errors of the store in this process."""
 
@@ -76,7 +93,7 @@ class CounterCollector(Collector):
     def collect(self) -> Iterator[Metric]:
         own = {"service": float(self._own_store_errors())}
         try:
-            counts = self._counters.counts()
+            counts, stored = self._counters.counts(), self._counters.stored()
         except QueueError:  # a counter of 0 would look like an increase when Redis is back
             yield _store_errors(own)
             return
@@ -89,6 +106,11 @@ class CounterCollector(Collector):
             "cause",
             _labelled(counts, "lost"),
         )
+        if stored is not None:
+            yield _gauge(
+                "cleave_stored_bytes", "Size of all stored jobs, when the janitor last listed them.", stored.size_bytes
+            )
+            yield _gauge("cleave_stored_jobs", "Number of stored jobs, when the janitor last listed them.", stored.jobs)
         yield CounterMetricFamily("cleave_faces", "Faces that were segmented.", counts.get(("faces",), 0.0))
         yield CounterMetricFamily(
             "cleave_recovered_jobs",

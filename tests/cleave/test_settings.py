@@ -4,7 +4,7 @@ from pathlib import Path
 
 import pytest
 
-from cleave.settings import InvalidSettings, load_settings
+from cleave.settings import InvalidSettings, load_settings, unknown_variables
 
 
 def test_the_environment_overrides_the_defaults(monkeypatch: pytest.MonkeyPatch) -> None:
@@ -43,3 +43,30 @@ def test_an_invalid_value_is_refused_with_the_name_of_its_variable(
     monkeypatch.setenv(name, value)
     with pytest.raises(InvalidSettings, match=f"^{name} is '{value}'"):
         load_settings()
+
+
+def test_variables_that_are_no_settings_are_found_with_the_nearest_one() -> None:
+    environment = {
+        "CLEAVE_MAX_FACE": "1",
+        "cleave_data_dri": "/data",
+        "CLEAVE_COLOUR": "red",
+        "CLEAVE_MAX_FACES": "2",
+        "CLEAVE_API_KEY": "key",
+        "PATH": "/bin",
+    }
+    assert unknown_variables(environment) == {
+        "CLEAVE_COLOUR": None,
+        "CLEAVE_MAX_FACE": "CLEAVE_MAX_FACES",
+        "cleave_data_dri": "CLEAVE_DATA_DIR",
+    }
+
+
+def test_variables_that_kubernetes_sets_for_its_services_are_no_misspelt_settings() -> None:
+    names = ("SERVICE_HOST", "SERVICE_PORT", "SERVICE_PORT_HTTP", "PORT", "PORT_8000_TCP", "PORT_8000_TCP_ADDR")
+    environment = dict.fromkeys([f"CLEAVE_{name}" for name in names] + ["CLEAVE_REDIS_PORT_6379_TCP_PROTO"], "")
+    assert unknown_variables(environment) == {}
+
+
+@pytest.mark.parametrize("text", ["https://a.example/, HTTPS://B.example", "https://a.example ,https://b.example//,"])
+def test_origins_are_compared_as_browsers_send_them(text: str) -> None:
+    assert load_settings(cors_origins=text).allowed_origins() == ["https://a.example", "https://b.example"]

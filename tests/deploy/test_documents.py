@@ -8,6 +8,7 @@ import pytest
 from cleave.settings import Settings
 from service.problems import STATUS
 from service.telemetry.metrics import Metrics
+from worker.jobs.queue.counters import JobCounters, Stored
 from worker.jobs.queue.queue import JobQueue
 from worker.jobs.store.store import JobStore
 
@@ -23,10 +24,13 @@ def test_every_setting_that_is_named_exists(text: str) -> None:
     assert set(re.findall(r"\bCLEAVE_[A-Z_]+\b", text)) <= known
 
 
-def test_exactly_the_existing_metrics_are_explained(store: JobStore, queue: JobQueue) -> None:
+def test_exactly_the_existing_metrics_are_explained(store: JobStore, queue: JobQueue, tmp_path: Path) -> None:
+    JobCounters(queue.connection).jobs_listed(Stored(0, 0))
+    ending = {"counter": "_total", "info": "_info"}
     there = {
-        f"{family.name}_total" if family.type == "counter" else family.name
-        for family in Metrics(store, queue).registry.collect()
+        f"{family.name}{ending.get(family.type, '')}"
+        for family in Metrics(store, queue, tmp_path).registry.collect()
+        if family.name.startswith("cleave_")
     }
     rows = [line for line in OPERATIONS.splitlines() if line.startswith("| `cleave_")]
     assert {name for row in rows for name in re.findall(r"`(cleave_\w+)", row)} == there

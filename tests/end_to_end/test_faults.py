@@ -93,12 +93,27 @@ def test_separate_workers_run_the_jobs_of_a_service() -> None:
             workers.stdout.close()
 
 
-def test_a_data_folder_with_a_long_path_has_a_short_socket_path(tmp_path: Path) -> None:
+@pytest.mark.parametrize("folder", ["long" * 20, "Application Support", "a=b, 50% & 'c'#1?"])
+def test_a_data_folder_with_an_odd_path_has_a_plain_socket_path(tmp_path: Path, folder: str) -> None:
     installation = Installation(workers=1)
     installation.data_dir.rmdir()
-    installation.data_dir = tmp_path / ("long" * 20) / "with spaces"
+    installation.data_dir = tmp_path / folder
     with installation:
         path = installation.submit(sphere(12))
         wait_until(lambda: installation.status(path) == "succeeded")
         installation.stop()
         assert not (installation.data_dir / "queue" / "queue.sock").exists()
+
+
+def test_a_damaged_queue_costs_no_job() -> None:
+    """After a loss of power the files of the queue server may be torn; the store has every job."""
+    with Installation(workers=1) as installation:
+        paths = [installation.submit(sphere(12)) for _ in range(20)]
+        installation.kill()
+        wait_until(lambda: not installation.processes())
+        for file in (installation.data_dir / "queue" / "appendonlydir").glob("*.incr.aof"):
+            data = file.read_bytes()
+            file.write_bytes(data[: len(data) // 2] + bytes(1000) + data[len(data) // 2 :])
+        installation.start()
+        wait_until(lambda: installation.statuses(paths) == {"succeeded"}, within_s=120)
+        assert (installation.data_dir / "queue" / "damaged").is_dir()

@@ -33,9 +33,11 @@ def test_an_unknown_preset_is_refused_with_the_known_ones():
         SegmentationParameters.preset("nobody1999")
 
 
-def test_an_unknown_name_is_refused_with_the_known_ones():
-    with pytest.raises(InvalidParameters, match=r"'segments'.*affinity, .*max_segments, "):
+def test_an_unknown_name_is_refused_with_the_nearest_one_or_all():
+    with pytest.raises(InvalidParameters, match=r"'segments'.*the nearest one is 'max_segments'"):
         SegmentationParameters.from_mapping({"segments": 9})
+    with pytest.raises(InvalidParameters, match=r"'colour'.*affinity, .*max_segments, "):
+        SegmentationParameters.from_mapping({"colour": 9})
 
 
 def test_the_schema_has_a_description_and_the_default_of_every_parameter():

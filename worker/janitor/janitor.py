@@ -37,7 +37,7 @@ class Janitor:
         self._locks = Locks(queue.connection)
         self._counters = JobCounters(queue.connection)
         self._settings = settings
-        self._housekeeping = Housekeeping(store, settings)
+        self._housekeeping = Housekeeping(store, settings, self._counters)
         # The process id of the supervisor, so that a restarted janitor is the leader at once.
         self._name = f"{socket.gethostname()}.{os.getppid()}"
         self._missing_since: dict[str, float] = {}

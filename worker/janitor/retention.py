@@ -7,12 +7,14 @@ from dataclasses import dataclass
 
 from cleave.settings import Settings
 from worker.jobs.objects.interface import ObjectInfo
+from worker.jobs.queue.counters import JobCounters, Stored
 from worker.jobs.store.layout import JOBS, MANIFEST, RECORD
 from worker.jobs.store.store import JobStore, UnknownJob
 
 log = logging.getLogger("cleave.janitor")
 
 _PAUSE_S = 30.0  # between two listings of all objects, in a folder
+_LIST_PAUSE_S = 3600.0  # between two listings only for the metrics
 _PAUSE_POLLS = 600  # poll intervals of the storage: 300 s in a bucket, in which a listing costs time and money
 _GRACE_S = 60.0  # for a client that waits for a job to see its end, beside CLEAVE_MAX_WAIT_S; set by hand
 _UPLOAD_UNTOUCHED_S = 3600.0  # far longer than CLEAVE_UPLOAD_IDLE_S (30 s), after which an upload is ended
@@ -39,11 +41,13 @@ class StoredJob:
 class Housekeeping:
     """Removes what is not kept, at intervals, as that needs a list of all objects."""
 
-    def __init__(self, store: JobStore, settings: Settings) -> None:
+    def __init__(self, store: JobStore, settings: Settings, counters: JobCounters) -> None:
         self._store = store
         self._settings = settings
         self._pause_s = max(_PAUSE_S, _PAUSE_POLLS * store.objects.poll_interval_s)
         self._next_at = float("-inf")
+        self._next_list_at = float("-inf")
+        self._counters = counters
 
     def sweep_machine(self) -> None:
         """Remove abandoned uploads on this machine, which no other machine can do."""
@@ -56,15 +60,18 @@ class Housekeeping:
         self._next_at = at_s + self._pause_s
         self._store.finish_deletions(_DELETION_S)
         self._store.deletions.forget(_DELETED_S)
-        remove_surplus(self._store, self._settings, time.time())
+        is_limited = self._settings.retention_s is not None or self._settings.retention_bytes is not None
+        if is_limited or at_s >= self._next_list_at:
+            self._next_list_at = at_s + _LIST_PAUSE_S
+            jobs = stored_jobs(self._store)
+            self._counters.jobs_listed(Stored(len(jobs), sum(job.size_bytes for job in jobs)))
+            remove_surplus(self._store, jobs, self._settings, time.time())
 
 
-def remove_surplus(store: JobStore, settings: Settings, at_s: float) -> None:
-    """Delete the jobs that the settings do not keep, at a time in seconds since 1970."""
-    if settings.retention_s is None and settings.retention_bytes is None:
-        return
+def remove_surplus(store: JobStore, jobs: Iterable[StoredJob], settings: Settings, at_s: float) -> None:
+    """Delete those of the stored jobs that the settings do not keep, at a time in seconds since 1970."""
     undelivered = store.outbox.job_ids()
-    for job_id in surplus(stored_jobs(store), undelivered, settings, at_s):
+    for job_id in surplus(jobs, undelivered, settings, at_s):
         try:
             store.delete(job_id)
         except UnknownJob:

@@ -65,7 +65,7 @@ class WebhookSender:
                 str(job.webhook_url),
                 f"msg_{job.id}",
                 secret,
-                webhook_body(job, outcome),
+                webhook_body(job, outcome, self.settings.root_path),
                 at,
                 self.settings.webhook_private_targets,
             )

@@ -35,12 +35,17 @@ def objection_to(url: str, private_targets: bool) -> str | None:
     return None
 
 
-def webhook_body(job: Job, outcome: Outcome) -> bytes:
-    """Return the body of the message, which has the id and the status; receivers fetch the rest from the API."""
+def webhook_body(job: Job, outcome: Outcome, root_path: str = "") -> bytes:
+    """Return the body of the message, which has the id and the status; receivers fetch the rest from the API.
+
+    Parameters
+    ----------
+    root_path : the path below which a proxy shows the service.
+    """
     message = {
         "type": f"job.{outcome.status}",
         "timestamp": outcome.finished_at.isoformat().replace("+00:00", "Z"),
-        "data": {"id": job.id, "status": outcome.status, "links": {"self": f"/v1/jobs/{job.id}"}},
+        "data": {"id": job.id, "status": outcome.status, "links": {"self": f"{root_path}/v1/jobs/{job.id}"}},
     }
     return json.dumps(message, separators=(",", ":")).encode()
 

@@ -3,8 +3,10 @@
 import pytest
 
 from bench.__main__ import main
-from bench.commands.scale import render, render_crowds
+from bench.commands.scale import render, render_crowds, render_hard
 from bench.scale.cost import STAGES, Cost
+from bench.scale.hard_shapes import HARD_SHAPES
+from segcore.method import segment
 
 
 def test_costs_are_per_face_and_add_up():
@@ -17,6 +19,20 @@ def test_costs_are_per_face_and_add_up():
 def test_crowds_are_compared_with_the_first_one():
     costs = [Cost(name, 12, dict.fromkeys(STAGES, seconds), 0) for name, seconds in (("one", 0.1), ("many", 0.2))]
     assert [line.split()[-1] for line in render_crowds(costs).splitlines()[2:]] == ["1.00", "2.00"]
+
+
+def test_hard_meshes_are_compared_with_smooth_ones_of_their_size():
+    hard, smooth = (Cost("any", 12, dict.fromkeys(STAGES, seconds), 0) for seconds in (0.5, 0.2))
+    (line,) = render_hard([(hard, smooth)]).splitlines()[2:]
+    assert line.split()[2:5] == ["2.50", "1.00", "2.50"]
+
+
+@pytest.mark.parametrize("name", HARD_SHAPES)
+def test_hard_meshes_have_the_stated_size_and_can_be_segmented(name):
+    mesh = HARD_SHAPES[name][0](2000)
+    assert len(mesh.faces) == pytest.approx(2000, rel=0.1)
+    hierarchy = segment(mesh)
+    assert hierarchy.labels(hierarchy.max_segments).shape == (len(mesh.faces),)
 
 
 def test_every_mesh_has_a_line(capsys):

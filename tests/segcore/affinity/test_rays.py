@@ -3,6 +3,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
+from bench.scale.hard_shapes import torus_of_random_places
 from segcore import shapes
 from segcore.affinity.rays import RayCaster
 
@@ -47,3 +48,22 @@ def test_rays_from_inside_a_box_end_at_its_walls_and_those_from_outside_have_no_
     np.testing.assert_allclose(caster.inner_distances(np.tile(middle, (6, 1)), axes), walls, rtol=1e-6)
     outside = middle - 3 * (high - low) * axes
     assert np.isinf(caster.inner_distances(outside, axes)).all()
+
+
+def test_rays_among_faces_that_cross_everywhere_are_given_up():
+    mesh = torus_of_random_places(20_000)
+    rng = np.random.default_rng(0)
+    origins, directions = rng.random((20_000, 3)), rng.normal(size=(20_000, 3))
+    directions /= np.linalg.norm(directions, axis=1, keepdims=True)
+    caster = RayCaster.of(mesh.vertices, mesh.faces)
+    found = np.isfinite(caster.inner_distances(origins, directions))
+    assert found[:50].mean() > 0.3  # half of the rays meet a face from behind
+    assert found[-10_000:].mean() < 0.01
+
+
+def test_no_ray_is_given_up_in_a_body():
+    mesh = shapes.burr(5).mesh
+    inside = -1e-3 * np.ones((50_000, 3)) + 1e-4 * np.random.default_rng(0).normal(size=(50_000, 3))
+    directions = np.random.default_rng(1).normal(size=(50_000, 3))
+    directions /= np.linalg.norm(directions, axis=1, keepdims=True)
+    assert np.isfinite(RayCaster.of(mesh.vertices, mesh.faces).inner_distances(inside, directions)).all()

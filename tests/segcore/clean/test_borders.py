@@ -44,3 +44,24 @@ def test_near_points_are_those_of_all_distances(seed: int) -> None:
 def test_a_segment_without_length_has_no_points_beside_it() -> None:
     points = np.zeros((3, 3))
     assert len(near_segments(points, np.zeros((1, 2, 3)), np.array([0.1]))) == 0
+
+
+def test_a_point_with_very_many_segments_is_in_a_thicket_and_left_out():
+    turn = np.linspace(0, np.pi, 40, endpoint=False)
+    ends = 0.1 * np.stack([np.cos(turn), np.sin(turn), 0 * turn], axis=1)
+    segments = np.stack([-ends, ends], axis=1)  # all through the origin
+    points = np.array([[0.0, 0.0, 0.0], [0.1, 0.0, 0.0], [1.0, 1.0, 1.0]])
+    pairs = near_segments(points, segments, np.full(40, 1e-3))
+    assert 0 not in pairs[:, 1]
+    assert [0, 1] in pairs.tolist()
+    few = near_segments(points, segments[::2], np.full(20, 1e-3))
+    assert np.count_nonzero(few[:, 1] == 0) == 20
+
+
+def test_the_search_along_segments_is_limited_and_begins_with_the_short_ones(monkeypatch):
+    monkeypatch.setattr("segcore.clean.borders._MOST_SAMPLES", 1100)
+    short = np.array([[[0.0, 0.0, 0.0], [0.01, 0.0, 0.0]]])
+    long = np.tile([[[0.0, 0.5, 0.0], [1.0, 0.5, 0.0]]], (3, 1, 1))
+    points = np.array([[0.005, 0.0, 0.0], [0.5, 0.5, 0.0], [1.0, 1.0, 1.0]])
+    pairs = near_segments(points, np.concatenate([long, short]), np.full(4, 1e-3))
+    assert pairs.tolist() == [[0, 1], [1, 1], [3, 0]]

@@ -54,6 +54,16 @@ def test_border_vertices_are_the_ends_of_edges_of_one_face(faces):
     assert set(np.flatnonzero(border_vertices(faces, 7)).tolist()) == expected
 
 
+@pytest.mark.parametrize("seed", range(5))
+def test_edges_of_vertices_with_very_many_faces_are_found_as_well(seed):
+    faces = np.random.default_rng(seed).integers(0, 7, (300, 3), dtype=np.int32)
+    test_dual_edges_agree_with_a_dictionary_of_edges.hypothesis.inner_test(faces)
+    test_border_vertices_are_the_ends_of_edges_of_one_face.hypothesis.inner_test(faces)
+    fan = np.array([[0, 1 + k, 2 + k] for k in np.random.default_rng(seed).permutation(100)], dtype=np.int32)
+    assert border_vertices(fan, 102).all()
+    assert len(dual_edges(fan, 102).faces) == 99
+
+
 @given(any_faces())
 def test_mesh_edges_are_the_distinct_pairs_of_corners_in_order(faces):
     expected = sorted({(min(a, b), max(a, b)) for _, a, b in half_edges(faces) if a != b})

@@ -7,6 +7,7 @@ import pytest
 
 from helpers.queue_servers import StartServer
 from service.commands.main import main
+from worker.jobs.store.opening import open_folder
 
 
 def test_findings_are_text_or_json_and_errors_set_the_exit_status(
@@ -28,3 +29,18 @@ def test_a_missing_queue_server_is_a_warning(
     monkeypatch.delenv("CLEAVE_REDIS_URL", raising=False)
     assert main(["doctor", "--data-dir", str(tmp_path / "data")]) == 0
     assert "Start `cleave serve`" in capsys.readouterr().out
+
+
+def test_the_doctor_makes_nothing_and_leaves_nothing(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.delenv("CLEAVE_REDIS_URL", raising=False)
+    folder = tmp_path / "data"
+    main(["doctor", "--data-dir", str(folder)])
+    assert "does not exist yet, and the first start can make it" in capsys.readouterr().out
+    assert not folder.exists()
+    open_folder(folder)
+    folder.chmod(0o700)
+    before = sorted(folder.rglob("*"))
+    main(["doctor", "--data-dir", str(folder)])
+    assert sorted(folder.rglob("*")) == before

@@ -15,7 +15,7 @@ from service.commands.main import COMMANDS, main
         (["segment", "MESH", "--preset", "nobody1999"], "preset must be one of chahhou2014, not 'nobody1999'."),
         (["segment", "MESH", "--set", "solver=luck"], "solver must be one of flow, fiedler"),
         (["segment", "MESH", "--set", "solver"], "a parameter is NAME=VALUE, not 'solver'"),
-        (["segment", "MESH", "--set", "colour=red"], "Unknown parameter 'colour'"),
+        (["segment", "MESH", "--set", "colour=red"], "There is no parameter 'colour'"),
         (["segment", "nowhere.off"], "nowhere.off: No such file or directory."),
         (["segment", "MESH", "--segments", "0"], "The number of segments must be at least 1, not 0."),
         (["segment", "MESH", "--granularity", "2"], "a granularity is a number from 0 (coarse) to 1 (fine), not '2'"),

@@ -44,3 +44,9 @@ def test_without_keys_other_host_names_are_refused(client: httpx.Client, setting
     for choice in ({"auth": "off"}, {"api_keys": KEYS}):
         with serving(settings.model_copy(update=choice)) as other:
             assert other.get("/healthz", headers={"Host": host}).status_code == 200
+
+
+def test_a_slash_at_the_end_of_an_allowed_origin_does_not_matter(settings: Settings) -> None:
+    with serving(settings.model_copy(update={"cors_origins": "https://other.example/"})) as client:
+        answer = client.get("/v1/formats", headers={"Origin": "https://other.example"})
+        assert answer.headers["Access-Control-Allow-Origin"] == "https://other.example"

@@ -57,5 +57,5 @@ def test_a_read_only_installation_without_kernels_compiles_into_the_data_folder(
 ) -> None:
     monkeypatch.setenv(VARIABLE, "")
     monkeypatch.delenv(VARIABLE)
-    monkeypatch.setattr(os, "access", lambda *_: False)
+    monkeypatch.setattr(os, "access", lambda path, _: Path(path) == tmp_path)
     assert chosen_cache(tmp_path) == tmp_path / "data" / "kernels"

@@ -1,6 +1,7 @@
 """The embedded queue server: its binary, its socket, and its persistence."""
 
 import os
+import re
 import stat
 import subprocess
 from pathlib import Path
@@ -28,18 +29,40 @@ def test_a_socket_path_is_never_too_long_for_the_kernel(tmp_path: Path) -> None:
     assert len(os.fsencode(path)) <= 100
     assert path == socket_path(folder)
     assert path != socket_path(folder / "other")
-    assert stat.S_IMODE(path.parent.stat().st_mode) == 0o700
-    for created in (path, socket_path(folder / "other")):
-        created.parent.rmdir()
+    assert not path.parent.exists()  # nothing is made before a server starts
+
+
+def test_the_folder_of_a_socket_elsewhere_is_private(tmp_path: Path) -> None:
+    server = embedded_queue_server(tmp_path / ("long" * 30))
+    assert stat.S_IMODE(server.socket.parent.stat().st_mode) == 0o700
+    server.remove_socket()
+    assert not server.socket.parent.exists()
+
+
+@pytest.mark.parametrize("name", ["a b", "a=b", "it's", "50%", "a#b", "ümlaut", "a?b", "a&b"])
+def test_a_socket_path_has_no_characters_that_urls_and_lists_of_clients_treat_specially(
+    tmp_path: Path, name: str
+) -> None:
+    path = socket_path(tmp_path / name)
+    assert path.parent != tmp_path / name
+    assert re.fullmatch(r"[A-Za-z0-9/._+-]+", str(path))
+
+
+def test_a_temporary_folder_with_a_blank_is_not_used_for_the_socket(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr("tempfile.tempdir", str(tmp_path / "my temp"))
+    path = socket_path(tmp_path / "my data")
+    assert path.parent.parent == Path("/tmp")
 
 
 def test_a_folder_that_others_can_write_is_not_used_for_the_socket(tmp_path: Path) -> None:
     folder = tmp_path / ("long" * 30)
-    short = socket_path(folder).parent
+    short = embedded_queue_server(folder).socket.parent
     short.chmod(0o777)
     try:
         with pytest.raises(NoQueueServer, match="must belong to this user alone"):
-            socket_path(folder)
+            embedded_queue_server(folder)
     finally:
         short.rmdir()
 

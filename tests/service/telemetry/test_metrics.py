@@ -2,8 +2,10 @@
 
 import httpx
 
+from cleave.version import installed_version
 from helpers.api import samples, submit
 from helpers.jobs import SMALL
+from worker.jobs.queue.counters import JobCounters, Stored
 from worker.jobs.queue.queue import JobQueue
 
 
@@ -28,3 +30,20 @@ def test_metrics_are_served_while_the_queue_is_down(client_without_queue: httpx.
     assert found["cleave_queue_up"] == 0
     assert 'cleave_waiting_jobs{queue="small"}' not in found
     assert "cleave_faces_total" not in found  # a 0 would look like an increase when the queue is back
+
+
+def test_the_operator_sees_the_version_the_process_and_the_disk(client: httpx.Client) -> None:
+    submit(client)
+    found = samples(client)
+    (build,) = (name for name in found if name.startswith("cleave_build_info{"))
+    assert f'version="{installed_version()}"' in build
+    assert found["process_resident_memory_bytes"] > 0
+    assert 0 < found["cleave_disk_free_bytes"] <= found["cleave_disk_bytes"]
+    assert not [name for name in found if "_created" in name]
+
+
+def test_the_size_of_the_store_is_that_which_the_janitor_has_noted(client: httpx.Client, queue: JobQueue) -> None:
+    assert "cleave_stored_bytes" not in samples(client)
+    JobCounters(queue.connection).jobs_listed(Stored(7, 1234))
+    found = samples(client)
+    assert (found["cleave_stored_jobs"], found["cleave_stored_bytes"]) == (7, 1234)

@@ -2,14 +2,15 @@
 
 import time
 from dataclasses import replace
-from pathlib import Path
 
 import pytest
+from redis import Redis
 
 from cleave.settings import Settings
 from helpers.jobs import accepted
 from worker.janitor.retention import Housekeeping, StoredJob, remove_surplus, stored_jobs, surplus
 from worker.jobs.job import Job, Succeeded, new_job_id, now
+from worker.jobs.queue.counters import JobCounters, Stored
 from worker.jobs.store.store import JobStore
 
 DAY_S = 24 * 3600.0
@@ -60,9 +61,9 @@ def ended_job(store: JobStore) -> Job:
 def test_a_sweep_deletes_ended_jobs_and_keeps_unfinished_ones(any_store: JobStore) -> None:
     ended, waiting = ended_job(any_store), accepted(any_store, b"mesh")
     for settings in (Settings(), Settings(retention_s=2 * DAY_S)):
-        remove_surplus(any_store, settings, time.time() + DAY_S)
+        remove_surplus(any_store, stored_jobs(any_store), settings, time.time() + DAY_S)
         assert any_store.records.job(ended.id) == ended
-    remove_surplus(any_store, Settings(retention_s=DAY_S / 2), time.time() + DAY_S)
+    remove_surplus(any_store, stored_jobs(any_store), Settings(retention_s=DAY_S / 2), time.time() + DAY_S)
     assert any_store.records.job(ended.id) is None
     assert any_store.deletions.was_deleted(ended.id, None)
     assert any_store.records.job(waiting.id) == waiting
@@ -73,18 +74,35 @@ def test_a_sweep_counts_every_byte_of_a_job(any_store: JobStore) -> None:
     ended = ended_job(any_store)
     (stored,) = stored_jobs(any_store)
     assert stored.size_bytes > len(b"mesh bytes") + len(b"result")
-    remove_surplus(any_store, Settings(retention_bytes=stored.size_bytes), time.time() + DAY_S)
+    remove_surplus(any_store, stored_jobs(any_store), Settings(retention_bytes=stored.size_bytes), time.time() + DAY_S)
     assert any_store.records.job(ended.id) == ended
-    remove_surplus(any_store, Settings(retention_bytes=stored.size_bytes - 1), time.time() + DAY_S)
+    remove_surplus(
+        any_store, stored_jobs(any_store), Settings(retention_bytes=stored.size_bytes - 1), time.time() + DAY_S
+    )
     assert any_store.records.job(ended.id) is None
 
 
-def test_the_objects_are_listed_every_half_minute_only(
-    store: JobStore, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+@pytest.mark.parametrize(("settings", "lists"), [({"retention_s": 1.0}, 3), ({}, 2)])
+def test_the_jobs_are_listed_rarely(
+    store: JobStore, connection: Redis, monkeypatch: pytest.MonkeyPatch, settings: dict[str, float], lists: int
 ) -> None:
+    """Twice a minute if they may be removed, and once an hour for the metrics."""
     sweeps: list[float] = []
     monkeypatch.setattr("worker.janitor.retention.remove_surplus", lambda *_: sweeps.append(0))
-    housekeeping = Housekeeping(store, Settings(data_dir=tmp_path))
-    for at_s in (0.0, 1.0, 29.0, 31.0, 32.0):
+    counters = JobCounters(connection)
+    assert counters.stored() is None
+    housekeeping = Housekeeping(store, Settings(**settings), counters)
+    for at_s in (0.0, 1.0, 29.0, 31.0, 32.0, 3601.0):
         housekeeping.sweep(at_s)
-    assert len(sweeps) == 2
+    assert len(sweeps) == lists
+    assert counters.stored() == Stored(0, 0)
+
+
+def test_the_size_of_all_jobs_is_noted_for_the_metrics(store: JobStore, connection: Redis) -> None:
+    job = accepted(store, b"mesh")
+    counters = JobCounters(connection)
+    Housekeeping(store, Settings(), counters).sweep(0.0)
+    (listed,) = stored_jobs(store)
+    assert counters.stored() == Stored(1, listed.size_bytes)
+    assert listed.id == job.id
+    assert listed.size_bytes > len(b"mesh")

@@ -42,6 +42,17 @@ def create_file(path: Path, data: bytes) -> bool:
     return True
 
 
+def link_file(source: Path, path: Path) -> None:
+    """Write or replace a file by another name of the same bytes."""
+    temporary = path.with_name(_temporary_name(path))
+    os.link(source, temporary)
+    try:
+        os.replace(temporary, path)
+    finally:
+        temporary.unlink(missing_ok=True)  # os.replace does nothing if both are names of the same file
+    sync_folder(path.parent)
+
+
 def sync_file(file: BinaryIO) -> None:
     file.flush()
     os.fsync(file.fileno())
@@ -62,8 +73,12 @@ def sync_folder(folder: Path) -> None:
         os.close(descriptor)
 
 
+def _temporary_name(path: Path) -> str:
+    return f".{path.name}.{secrets.token_hex(8)}{TEMPORARY_SUFFIX}"
+
+
 def _write_temporary(path: Path, write: Callable[[BinaryIO], object], *, durable: bool = True) -> Path:
-    temporary = path.with_name(f".{path.name}.{secrets.token_hex(8)}{TEMPORARY_SUFFIX}")
+    temporary = path.with_name(_temporary_name(path))
     try:
         with temporary.open("xb") as file:
             write(file)

@@ -56,6 +56,15 @@ class ObjectStorage(Protocol):
     def put_file(self, key: str, path: Path) -> None:
         """Write or replace an object with the contents of a file; the file may be moved."""
 
+    def copy(self, key: str, target: str) -> None:
+        """Write or replace an object with the contents of another one; a folder shares the bytes of both.
+
+        Raises
+        ------
+        FileNotFoundError
+            If there is no object to copy.
+        """
+
     def get(self, key: str) -> bytes | None:
         """Return the bytes of a small object; None if there is none."""
 

@@ -10,7 +10,7 @@ from contextlib import suppress
 from pathlib import Path
 from typing import BinaryIO
 
-from worker.jobs.objects.durable import TEMPORARY_SUFFIX, create_file, replace_file, sync_folder, sync_path
+from worker.jobs.objects.durable import TEMPORARY_SUFFIX, create_file, link_file, replace_file, sync_folder, sync_path
 from worker.jobs.objects.interface import Item, ObjectInfo, Value
 
 _TRIES = 10  # to write into a folder that other processes remove while it is empty; set by hand
@@ -48,6 +48,11 @@ class LocalObjects:
             with path.open("rb") as source:
                 replace_file(target, lambda copy: shutil.copyfileobj(source, copy))
         sync_folder(target.parent)
+
+    def copy(self, key: str, target: str) -> None:
+        source, path = self._path(key), self._path(target)
+        source.stat()  # a FileNotFoundError below then means that the folder was removed
+        self._in_folder(path.parent, lambda: link_file(source, path))
 
     def get(self, key: str) -> bytes | None:
         try:

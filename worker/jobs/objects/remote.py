@@ -50,6 +50,10 @@ class RemoteObjects:
         with _translated_errors(), _missing_bucket_reported():
             self._bucket.transfers.put(key, path)
 
+    def copy(self, key: str, target: str) -> None:
+        with _translated_errors():
+            self._bucket.transfers.copy(key, target)
+
     def get(self, key: str) -> bytes | None:
         with suppress(FileNotFoundError), _translated_errors():
             return bytes(self._bucket.reads.get(key).bytes())

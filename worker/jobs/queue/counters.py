@@ -7,6 +7,7 @@ data, all counters restart at 0, which Prometheus expects of counters.
 import logging
 from bisect import bisect_left
 from collections.abc import Mapping
+from contextlib import suppress
 from dataclasses import dataclass
 
 from redis import Redis
@@ -22,6 +23,7 @@ log = logging.getLogger("cleave.counters")
 BOUNDS_S = (0.01, 0.03, 0.1, 0.3, 1.0, 3.0, 10.0, 30.0, 100.0, 300.0, 1000.0, 3000.0)
 
 _KEY = "cleave:tallies"  # the name in installations that are in use
+_STORED_KEY = "cleave:stored"
 _SEPARATOR = "|"
 _SUM = "sum"
 
@@ -32,6 +34,14 @@ class Durations:
 
     counts: tuple[float, ...]  # (len(BOUNDS_S) + 1,) durations per bound, not cumulative; the last are above all bounds
     sum_s: float
+
+
+@dataclass(frozen=True, slots=True)
+class Stored:
+    """The jobs in the store."""
+
+    jobs: int
+    size_bytes: int
 
 
 class JobCounters:
@@ -66,6 +76,22 @@ class JobCounters:
     def job_recovered(self) -> None:
         """Count a job that the queue had lost and the janitor has enqueued again."""
         self._add({("recovered",): 1.0})
+
+    def jobs_listed(self, stored: Stored) -> None:
+        """Note how many jobs there are; a failure is ignored, as the next list will be noted."""
+        with suppress(QueueError):
+            self._connection.hset(_STORED_KEY, mapping={"jobs": stored.jobs, "size_bytes": stored.size_bytes})
+
+    def stored(self) -> Stored | None:
+        """Return the jobs in the store when they were last listed; None if they never were.
+
+        Raises
+        ------
+        QueueError
+            If Redis does not answer.
+        """
+        values = {text_of(name): int(value) for name, value in self._connection.hgetall(_STORED_KEY).items()}
+        return Stored(**values) if values else None
 
     def store_failed(self, process: str) -> None:
         """Count a failed read or write of the store by a process."""

@@ -1,11 +1,9 @@
 """Acceptance of a job: its mesh and its index entries are written first, and its record last."""
 
-from contextlib import suppress
 from pathlib import Path
 
 from worker.jobs.job import Job
 from worker.jobs.objects.interface import ObjectStorage, StoreError
-from worker.jobs.store.computed import ComputedIndex
 from worker.jobs.store.index import JobIndex
 from worker.jobs.store.layout import entry_name, job_key, mesh_name
 from worker.jobs.store.outbox import Delivery, Outbox
@@ -24,7 +22,6 @@ class Acceptance:
         self._outbox = outbox
         self._records = Records(objects)
         self._index = JobIndex(objects)
-        self._computed = ComputedIndex(objects)
 
     def accept(self, job: Job, mesh: Path) -> None:
         """Store a job and its mesh, a file that may be moved.
@@ -47,8 +44,6 @@ class Acceptance:
         if not is_new:
             self._clean_up(job)
             raise JobExists(job.id)
-        with suppress(OSError):  # only an optimisation is lost
-            self._computed.add(job)
 
     def _prepare(self, job: Job, mesh: Path) -> None:
         """Write everything but the record; the marker comes first, so that the rest can be found after a crash."""

@@ -2,29 +2,28 @@
 
 import hashlib
 import json
+from collections.abc import Iterator
 
 from worker.jobs.job import Job, is_job_id
-from worker.jobs.objects.interface import ObjectStorage
+from worker.jobs.objects.interface import ObjectStorage, name_of
 from worker.jobs.store.layout import NO_OWNER
 
 
 class ComputedIndex:
-    """Finds an earlier job with the same input; that job may have failed or been deleted."""
+    """Finds the jobs that have succeeded with an input; one of them may have been deleted meanwhile."""
 
     def __init__(self, objects: ObjectStorage) -> None:
         self._objects = objects
 
     def add(self, job: Job) -> None:
-        self._objects.put(_key(job), job.id.encode(), durable=False)  # a lost entry costs only time
+        self._objects.put(_key(job), b"", durable=False)  # a lost entry costs only time
 
-    def find(self, job: Job) -> str | None:
-        """Return the id of a job of the same owner with the same input."""
-        job_id = (self._objects.get(_key(job)) or b"").decode()
-        return job_id if is_job_id(job_id) else None
+    def equal_to(self, job: Job) -> Iterator[str]:
+        """Yield the ids of the jobs of the same owner that have succeeded with the same input."""
+        yield from filter(is_job_id, map(name_of, self._objects.keys_below(_folder(job))))
 
     def remove(self, job: Job) -> None:
-        if self.find(job) == job.id:
-            self._objects.delete(_key(job))
+        self._objects.delete(_key(job))
 
 
 def fingerprint(job: Job) -> str:
@@ -33,5 +32,9 @@ def fingerprint(job: Job) -> str:
     return hashlib.sha256(json.dumps(given).encode()).hexdigest()
 
 
-def _key(job: Job) -> str:
+def _folder(job: Job) -> str:
     return f"computed/{job.owner or NO_OWNER}/{fingerprint(job)}"
+
+
+def _key(job: Job) -> str:
+    return f"{_folder(job)}/{job.id}"

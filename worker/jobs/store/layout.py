@@ -2,7 +2,7 @@
 
     pending/<time>-<id>[.<owner>]   empty: the job has no outcome yet; made before the job is accepted
     index/<owner>/<time>-<id>       empty: the job exists; for lists of jobs
-    computed/<owner>/<fingerprint>  the id of a job with this input
+    computed/<owner>/<fingerprint>/<id>  empty: the job has succeeded with this input
     outbox/<id>                     the state of the delivery of its webhook
     batches/<id>.json               the jobs of a batch
     gone/<id>                       the job was deleted; contains its owner
@@ -11,7 +11,7 @@
     jobs/<id>/mesh-<sha256>         the bytes of the request
              /job.json              the record, written after everything else: the job is accepted
              /attempt-<n>.json
-             /result.cleave         mesh and hierarchy
+             /result.cleave         mesh and hierarchy; jobs with the same input share its bytes in a folder
              /manifest.json         the outcome, written last and once: the job is finished
 
 Only the objects under ``jobs`` count. The others are indexes: they are written before a job and removed after it, so a

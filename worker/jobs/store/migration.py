@@ -20,6 +20,10 @@ def migrate(data_dir: Path) -> None:
         for entry in _scan(Path(folder)):
             if entry.name.startswith(_THIS_MILLENNIUM) and is_entry_name(entry.name):
                 _rename(Path(entry), complemented(entry.name))
+    for folder in _scan(data_dir / "computed"):
+        for entry in _scan(Path(folder)):
+            if entry.is_file():  # of a version in which one job stood for all with the same input
+                Path(entry).unlink(missing_ok=True)
     for marker in _scan(data_dir / "pending"):
         job_id, owner = marker.name[:_ID_LENGTH], marker.name[_ID_LENGTH:]
         if is_job_id(job_id) and owner[:1] in ("", "."):

@@ -39,6 +39,19 @@ class ResultFiles:
         self._objects.put_file(key, path)
         self._records.require(job_id, lambda: self._objects.delete(key))
 
+    def share(self, job_id: str, other_id: str) -> None:
+        """Give a job the result of another one.
+
+        Raises
+        ------
+        FileNotFoundError
+            If the other one has none.
+        """
+        key = job_key(other_id, RESULT)
+        self._records.require(other_id)
+        self._objects.copy(job_key(job_id, RESULT), key)
+        self._records.require(other_id, lambda: self._objects.delete(key))
+
     def open(self, job_id: str) -> BinaryIO:
         """Open the result of a job.
 

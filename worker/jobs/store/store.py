@@ -4,10 +4,12 @@ A job is accepted when its record is created, after everything else that belongs
 is created, which only the first writer can do. ``worker.jobs.store.layout`` lists the names of the objects.
 """
 
+from contextlib import suppress
+from dataclasses import replace
 from typing import BinaryIO
 
 from worker.jobs.attempts import Attempt
-from worker.jobs.job import Job, Outcome, Succeeded
+from worker.jobs.job import Job, Outcome, Succeeded, now
 from worker.jobs.objects.file_cache import FileCache
 from worker.jobs.objects.interface import ObjectStorage
 from worker.jobs.store.acceptance import Acceptance
@@ -65,10 +67,19 @@ class JobStore:
         upload.close()
         self._acceptance.accept(job, upload.path)
 
-    def computed_before(self, job: Job) -> Job | None:
-        """Return a job of the same owner that has succeeded with the same mesh, parameters and software."""
-        job_id = self.computed.find(job)
-        return self.records.job(job_id) if job_id and isinstance(self.records.outcome(job_id), Succeeded) else None
+    def finish_as_before(self, job: Job) -> bool:
+        """Give a job the result of an earlier one of its owner with the same mesh, parameters and software, if any.
+
+        Return False if there is no such result.
+        """
+        for earlier in self.computed.equal_to(job):
+            outcome = self.records.outcome(earlier)
+            if isinstance(outcome, Succeeded):
+                with suppress(FileNotFoundError):  # it is being deleted
+                    self.results.share(earlier, job.id)
+                    self.finish(job.id, replace(outcome, finished_at=now()))
+                    return True
+        return False
 
     def page(self, owner: str | None, cursor: str | None, limit: int) -> JobPage:
         """Return the jobs of an owner from a cursor on, newest first."""
@@ -100,6 +111,10 @@ class JobStore:
         if job is None:
             raise UnknownJob(job_id)
         standing = self.records.write_outcome(job_id, outcome)
+        if isinstance(standing, Succeeded):
+            with suppress(OSError):  # only an optimisation is lost
+                self.computed.add(job)
+                self.records.require(job_id, lambda: self.computed.remove(job))
         self.pending.remove(job)
         return standing
 

@@ -18,7 +18,7 @@ from worker.jobs.store.outbox import Delivery
 from worker.jobs.store.spool import Spool
 from worker.jobs.store.store import JobStore, UnknownJob
 
-_WRITES = ("create", "put", "put_file", "delete")
+_WRITES = ("create", "put", "put_file", "copy", "delete")
 
 
 class Killed(BaseException):

@@ -242,12 +242,60 @@ def test_owners_see_their_own_jobs_alone(any_store: JobStore) -> None:
     assert any_store.page("me", None, 10).jobs == [mine]
 
 
-def test_an_earlier_result_is_found_for_its_owner_alone(any_store: JobStore) -> None:
-    job = owned(any_store, "me")
-    assert any_store.computed_before(job) is None
-    any_store.finish(job.id, succeeded())
-    assert any_store.computed_before(replace(job, id=new_job_id())) == job
-    assert any_store.computed_before(replace(job, owner="them")) is None
+def with_result(store: JobStore, owner: str | None, data: bytes) -> Job:
+    job = owned(store, owner)
+    store.results.write(job.id, lambda target: target.write(data))
+    store.finish(job.id, succeeded())
+    return job
+
+
+def test_jobs_with_the_same_input_share_a_result_and_each_keeps_it(any_store: JobStore) -> None:
+    first = with_result(any_store, "me", b"a result")
+    second, third, fourth = (owned(any_store, "me") for _ in range(3))
+    assert any_store.finish_as_before(second)
+    assert any_store.pending.all().keys() == {third.id, fourth.id}
+    any_store.delete(first.id)
+    assert any_store.finish_as_before(third)  # the second job has the result
+    any_store.delete(third.id)
+    with any_store.results.open(second.id) as result:
+        assert result.read() == b"a result"
+    any_store.delete(second.id)
+    assert not any_store.finish_as_before(fourth)  # the last job that had the result is gone
+    any_store.delete(fourth.id)
+    assert [key for key in keys(any_store) if not key.startswith(DELETED)] == []
+
+
+def test_a_shared_result_has_its_own_time_of_its_end(any_store: JobStore) -> None:
+    first = with_result(any_store, "me", b"a result")
+    second = owned(any_store, "me")
+    assert any_store.finish_as_before(second)
+    ends = [any_store.records.outcome(job.id) for job in (first, second)]
+    assert ends[0] is not None
+    assert ends[1] is not None
+    assert ends[0].finished_at < ends[1].finished_at
+    assert replace(ends[1], finished_at=ends[0].finished_at) == ends[0]
+
+
+def test_results_are_shared_by_jobs_of_one_owner_and_equal_input_alone(any_store: JobStore) -> None:
+    with_result(any_store, "me", b"a result")
+    for other in (owned(any_store, "them"), owned(any_store, None)):
+        assert not any_store.finish_as_before(other)
+    mine = owned(any_store, "me")
+    for changed in (
+        replace(mine, unit="inch"),
+        replace(mine, up="z"),
+        replace(mine, mesh_format="stl"),
+        replace(mine, version="0.0.1"),
+        replace(mine, parameters={"seed": 1}),
+    ):
+        assert not any_store.finish_as_before(changed)
+    assert any_store.finish_as_before(mine)
+
+
+def test_failed_and_canceled_jobs_share_nothing(any_store: JobStore) -> None:
+    for outcome in (Failed(finished_at=now(), code="invalid_mesh", message="No."), Canceled(finished_at=now())):
+        any_store.finish(owned(any_store, "me").id, outcome)
+    assert not any_store.finish_as_before(owned(any_store, "me"))
 
 
 def test_a_second_job_of_the_same_id_does_not_change_the_first(any_store: JobStore) -> None:
@@ -304,7 +352,9 @@ def test_a_data_folder_of_an_earlier_version_is_migrated(tmp_path: Path) -> None
         entry = folder / "index" / "me" / complemented(entry_name(one))
         entry.rename(entry.with_name(entry_name(one)))
     (folder / "pending" / f"{entry_name(job)}.me").rename(folder / "pending" / f"{job.id}.me")
+    (folder / "computed" / "me" / "0123").write_text(ended.id)
     store = open_folder(tmp_path / "data")
+    assert not (folder / "computed" / "me" / "0123").exists()
     assert store.pending.all() == {job.id: "me"}
     assert store.page("me", None, 10).jobs == [ended, job]
     with store.open_mesh(job.id) as mesh:

@@ -1,0 +1,58 @@
+"""The cache of compiled kernels, chosen when segcore is imported.
+
+numba keeps the kernels beside their modules or in the cache folder of the user, and refuses to import them if it can
+write neither, as in an installation that belongs to root, without a home. The kernels are then kept in the temporary
+folder, and if that cannot be written either, they are compiled again in every process.
+"""
+
+import logging
+import os
+import stat
+import tempfile
+from pathlib import Path
+
+import numba
+from numba.core.caching import CompileResultCacheImpl
+from numba.core.registry import CPUDispatcher
+
+log = logging.getLogger("segcore")
+
+
+def _choose() -> None:
+    if _has_place():
+        return
+    try:
+        folder = str(_private_folder())
+    except OSError as error:
+        _compile_always(str(error))
+        return
+    numba.config.CACHE_DIR = os.environ["NUMBA_CACHE_DIR"] = folder  # also of child processes
+    if not _has_place():
+        _compile_always(f"{folder} cannot be written")
+
+
+def _has_place() -> bool:
+    """Whether numba finds a place for the kernels of this package."""
+    try:
+        CompileResultCacheImpl(_choose)
+    except RuntimeError:
+        return False
+    return True
+
+
+def _private_folder() -> Path:
+    """Return a folder in the temporary folder that this user alone can write; OSError if there is none."""
+    folder = Path(tempfile.gettempdir()) / f"cleave-kernels-{os.getuid()}"
+    folder.mkdir(mode=0o700, exist_ok=True)
+    status = folder.lstat()
+    if not stat.S_ISDIR(status.st_mode) or status.st_uid != os.getuid() or status.st_mode & 0o022:
+        raise OSError(f"{folder} belongs to another user")
+    return folder
+
+
+def _compile_always(reason: str) -> None:
+    log.warning("kernels are compiled in every process, because %s: set NUMBA_CACHE_DIR to a writable folder", reason)
+    CPUDispatcher.enable_caching = lambda _: None
+
+
+_choose()
