@@ -58,7 +58,7 @@ def accept_job(context: Context, caller: Caller, mesh: ReceivedMesh, wanted: Job
     except JobExists:
         return _existing(context, job)
     with about(job.id, job.traceparent):
-        log.info("accepted", extra={"fields": {"bytes": job.size_bytes, "owner": job.owner}})
+        log.debug("accepted", extra={"fields": {"bytes": job.size_bytes, "owner": job.owner}})
         shares_result = wanted.may_reuse and context.store.finish_as_before(job)
         if not shares_result:
             _enqueue(context, job)

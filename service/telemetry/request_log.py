@@ -64,7 +64,11 @@ class RequestLogMiddleware:
 
 
 def _level(method: str, route: str, status: int) -> int:
-    """Return WARNING for server errors, DEBUG for probes and reads, which are frequent, and INFO for the rest."""
+    """Return WARNING for server errors, DEBUG for frequent requests, and INFO for the rest.
+
+    Frequent are probes, reads and accepted submissions; their jobs have a line of their own when they end.
+    """
     if (status >= 500 or not status) and route not in _PROBES:
         return logging.WARNING
-    return logging.DEBUG if method in ("GET", "HEAD", "OPTIONS") else logging.INFO
+    is_accepted = route == "/v1/jobs" and status < 400
+    return logging.DEBUG if method in ("GET", "HEAD", "OPTIONS") or is_accepted else logging.INFO

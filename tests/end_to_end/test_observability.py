@@ -44,6 +44,25 @@ def test_the_log_lines_of_a_job_have_its_id_and_trace_in_every_process() -> None
         check_metrics(installation)
 
 
+class TerseInstallation(LoggingInstallation):
+    settings = LoggingInstallation.settings | {"CLEAVE_LOG_LEVEL": "info"}  # the default
+
+
+def test_a_job_has_one_line_in_the_log_by_default() -> None:
+    with TerseInstallation() as installation:
+        path = installation.submit(sphere(12))
+        wait_until(lambda: installation.status(path) == "succeeded")
+        failed = installation.submit(b"not a mesh")
+        wait_until(lambda: installation.status(failed) == "failed")
+        wait_until(lambda: any(line["message"] == "failed" for line in installation.lines()))
+        lines = {job: [line for line in installation.lines() if line.get("job_id") in job] for job in (path, failed)}
+    (done,) = lines[path]
+    assert (done["message"], done["faces"], done["owner"]) == ("succeeded", 4 * 12 * 11, None)
+    assert 0 < sum(done["stage_seconds"].values()) < done["seconds"]
+    (refused,) = lines[failed]
+    assert (refused["message"], refused["code"]) == ("failed", "unsupported_format")
+
+
 def check_metrics(installation: Installation) -> None:
     metrics = installation.get("/metrics").text
     found = dict(re.findall(r"^(\w+(?:{.*})?) ([\d.e+-]+)$", metrics, re.MULTILINE))

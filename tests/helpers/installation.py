@@ -152,9 +152,9 @@ class Installation:
 
 
 class LoggingInstallation(Installation):
-    """An installation that writes a log in JSON."""
+    """An installation that writes a log in JSON, by default with all details."""
 
-    settings = Installation.settings | {"CLEAVE_LOG_LEVEL": "info", "CLEAVE_LOG_FORMAT": "json"}
+    settings = Installation.settings | {"CLEAVE_LOG_LEVEL": "debug", "CLEAVE_LOG_FORMAT": "json"}
 
     def command(self, *arguments: str) -> "subprocess.Popen[str]":
         with self.log.open("ab") as log:

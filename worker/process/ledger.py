@@ -80,7 +80,7 @@ class Ledger:
     def settle(self, job_id: str) -> None:
         """Release the lease of a job, and requeue it if it has no outcome in the store."""
         outcome = self._store.records.outcome(job_id)
-        log.info("job %s: %s", job_id, outcome.status if outcome else "no outcome")
+        log.debug("job %s: %s", job_id, outcome.status if outcome else "no outcome")
         self._queue.release(job_id, self._worker)
         if self._is_open(job_id):
             self._queue.requeue(job_id, self._size, at_front=True)

@@ -37,10 +37,20 @@ def perform(store: JobStore, settings: Settings, job_id: str, on_progress: OnPro
     except UnknownJob:
         return None
     work = Work(job, outcome, clock.stop())
-    log.info(
-        outcome.status, extra={"fields": {"stage_seconds": {k: round(s, 4) for k, s in work.stage_seconds.items()}}}
-    )
+    log.info(outcome.status, extra={"fields": _fields(work)})
     return work
+
+
+def _fields(work: Work) -> dict[str, object]:
+    """What the one line of a job in the log says, apart from its id and how it ended."""
+    job, outcome = work.job, work.outcome
+    seconds = (outcome.finished_at - job.created_at).total_seconds()
+    fields: dict[str, object] = {"owner": job.owner, "bytes": job.size_bytes, "seconds": round(seconds, 3)}
+    if isinstance(outcome, Succeeded):
+        fields |= {"faces": outcome.faces, "segments": outcome.automatic_segments}
+    if isinstance(outcome, Failed):
+        fields |= {"code": outcome.code}
+    return fields | {"stage_seconds": {name: round(s, 4) for name, s in work.stage_seconds.items()}}
 
 
 def segment_stored_mesh(store: JobStore, job: Job, limits: ReadLimits, clock: StageClock) -> Outcome:

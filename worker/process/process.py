@@ -146,7 +146,7 @@ class JobWorker(Worker):  # type: ignore[misc]  # rq is not analysed
         return parse_traceparent(job.traceparent) if job else None
 
     def _attempt(self, entry: Entry, queue: Any, attempt: Attempt) -> None:
-        log.info("job %s: attempt %d", entry.id, attempt.number)
+        log.log(logging.INFO if attempt.number > 1 else logging.DEBUG, "job %s: attempt %d", entry.id, attempt.number)
         try:
             with stage(self._store, entry.id, partial(self._lease.kept, entry.id)) as self._staged:
                 ending = self._run_work_horse(entry, queue)
@@ -169,7 +169,7 @@ class JobWorker(Worker):  # type: ignore[misc]  # rq is not analysed
         )
         _, status, usage = self.wait_for_horse()
         self._horse_pid = 0
-        log.info("job %s: the work-horse ended with %d, %d KiB", entry.id, status, usage.ru_maxrss)
+        log.debug("job %s: the work-horse ended with %d, %d KiB", entry.id, status, usage.ru_maxrss)
         return stopped_for or ending_of(status, kills_before)
 
     def _perform(self, job_id: str) -> None:
