@@ -90,6 +90,8 @@ def cut_short(element: Element, row: int) -> InvalidMesh:
 def read_header(data: bytes) -> Header:
     """Read a PLY header; its lines end with a newline, a carriage return or both in any order.
 
+    Lines before the first element that are no statements are ignored.
+
     Raises
     ------
     InvalidMesh, UnsupportedFormat
@@ -109,6 +111,8 @@ def read_header(data: bytes) -> Header:
             case ["property", *words] if elements:
                 last = elements[-1]
                 elements[-1] = Element(last.name, last.count, (*last.properties, _property(words, number)))
+            case [keyword, *_] if not elements and keyword not in ("element", "property"):
+                pass  # the rest of a comment with a line end in it; here it cannot hide numbers
             case _:
                 raise InvalidMesh(f"Line {number}: {line[:80]!r} is not a statement of a PLY header.")
     if byte_order is None:

@@ -52,6 +52,7 @@ def lines_of(data: bytes) -> list[bytes]:
 def slow_off(data: bytes) -> Result:
     text = b"\n".join(line.partition(b"#")[0] for line in lines_of(data))
     keyword = re.match(rb"\s*((?:ST|C|N)*)OFF(?!\s+BINARY)", text)
+    keyword = keyword or re.match(rb"\s*()(?=\d+[ \t]+\d+[ \t]*(\d+[ \t]*)?\n)", text)
     assert keyword
     prefixes = keyword[1]
     rest = text[keyword.end() :].split(b"\n")
@@ -121,13 +122,11 @@ def slow_obj(data: bytes) -> Result:
             values = [number(word) for word in words[1:]]
             vertices.append((values[0], values[1], values[2]))
         if words[:1] == [b"f"]:
-            assert len(words) > 3
             assert all(re.fullmatch(rb"[-+]?\d+(/[-/\d]*)?", word) for word in words[1:])
             indices = [int(word.partition(b"/")[0]) for word in words[1:]]
             corners = [i - 1 if i > 0 else len(vertices) + i for i in indices]
             assert 0 not in indices
-            assert min(corners) >= 0
-            assert max(corners) < total
+            assert all(0 <= corner < total for corner in corners)
             faces.append(corners)
     return checked(vertices, faces)
 
@@ -163,7 +162,7 @@ def slow_ply(data: bytes) -> Result:
             assert len(words) == (5 if words[1] == b"list" else 3)
             elements[-1][2].append(words[1:])
         else:
-            assert not words or words[0] in (b"comment", b"obj_info")
+            assert not words or not elements or words[0] in (b"comment", b"obj_info")
     if encoding == b"ascii":
         try:
             rows = _rows_of_lines(data, len(header), elements)

@@ -267,15 +267,17 @@ def test_wrong_copies_are_refused_with_the_element(attributes: dict[str, int], m
         read(asset.glb())
 
 
-def test_copies_of_a_mesh_with_a_skin_are_left_out_and_noted() -> None:
+def copied_with_a_skin() -> Asset:
     asset = skinned(FIRST, WHOLE)
     attributes = {"TRANSLATION": asset.accessor([(0.0, 0, 0), (5, 0, 0)], FLOAT)}
     asset.document["nodes"][0]["extensions"] = {"EXT_mesh_gpu_instancing": {"attributes": attributes}}
-    mesh = read(asset.glb())
-    assert len(mesh.faces) == 2
-    assert mesh.notes == (
-        "The copies of nodes[0] (EXT_mesh_gpu_instancing) are left out, because nodes[0] has a skin.",
-    )
+    return asset
+
+
+def test_copies_have_no_skin() -> None:
+    mesh = read(copied_with_a_skin().glb())
+    assert mesh.vertices.tolist() == [*(POINTS + 100).tolist(), *np.add(POINTS, [105, 100, 100]).tolist()]
+    assert mesh.notes == ("The skin of nodes[0] is left out, because nodes[0] has copies (EXT_mesh_gpu_instancing).",)
 
 
 def test_primitives_that_are_no_triangles_in_space_are_left_out_and_noted() -> None:
@@ -306,7 +308,12 @@ def test_a_damaged_file_gives_a_mesh_or_a_typed_error(data: bytes) -> None:
 
 @pytest.mark.timeout(300)
 def test_three_js_has_every_corner_at_the_same_place(tmp_path: Path) -> None:
-    assets = {"blended": blended(), "copied": copied(), "morphed": morphed([0.5, 3])}
+    assets = {
+        "blended": blended(),
+        "copied": copied(),
+        "copied with a skin": copied_with_a_skin(),
+        "morphed": morphed([0.5, 3]),
+    }
     paths = {name: tmp_path / f"{name}.glb" for name in assets}
     for name, asset in assets.items():
         paths[name].write_bytes(asset.glb())

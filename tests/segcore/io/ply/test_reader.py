@@ -185,6 +185,15 @@ def test_a_header_may_have_line_ends_of_two_kinds(encoding: str) -> None:
     assert_is_soup(read(data[:begin].replace(b"\n", b"\r\n") + data[begin:]), SOUP)
 
 
+@pytest.mark.parametrize("encoding", ENCODINGS)
+def test_a_comment_may_go_on_in_another_line_before_the_first_element(encoding: str) -> None:
+    broken = b"Created by a program, source file:\n"
+    for after in (b"ply\n", SQUARES[encoding][: SQUARES[encoding].index(b"element")]):
+        assert_is_soup(read(SQUARES[encoding].replace(after, after + broken, 1)), SOUP)
+    with pytest.raises(InvalidMesh, match="Line 6: 'Created by"):
+        read(SQUARES[encoding].replace(b"property", broken + b"property", 1))
+
+
 def test_what_a_line_has_too_much_is_ignored_with_a_note() -> None:
     mesh = read(LONG_LINES)
     assert_is_soup(mesh, SOUP)
