@@ -15,7 +15,7 @@ _TYPES = {
     "int8": "i1", "uint8": "u1", "int16": "i2", "uint16": "u2", "int32": "i4", "uint32": "u4",
     "float": "f4", "float32": "f4", "double": "f8", "float64": "f8",
 }  # fmt: skip
-_FIRST_LINE = re.compile(rb"ply[ \t]*+(\r+\n|\n\r|\n|\r)")
+_FIRST_LINE = re.compile(rb"ply[ \t]*+(\r+\n|\n\r|\n|\r)", re.IGNORECASE)
 _LAST_LINE = re.compile(rb"(?<=[\r\n])end_header[ \t\v\f]*+(?=[\r\n])")
 _LINE_END, _LINE_END_OF_CR = re.compile(rb"\r+\n|\n\r|\n"), re.compile(rb"\r\n|\n|\r")
 _ENCODINGS: dict[str, Literal["", "<", ">"]] = {"ascii": "", "binary_little_endian": "<", "binary_big_endian": ">"}

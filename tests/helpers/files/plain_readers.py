@@ -139,7 +139,7 @@ _PLY = {
 
 
 def slow_ply(data: bytes) -> Result:
-    first = re.match(rb"ply[ \t]*(\r+\n|\n\r|\n|\r)", data)
+    first = re.match(rb"(?i)ply[ \t]*(\r+\n|\n\r|\n|\r)", data)
     end = re.search(rb"[\r\n](end_header[ \t\v\f]*)[\r\n]", data)
     assert first
     assert end

@@ -186,6 +186,11 @@ def test_a_header_may_have_line_ends_of_two_kinds(encoding: str) -> None:
 
 
 @pytest.mark.parametrize("encoding", ENCODINGS)
+def test_the_first_word_may_be_in_upper_case(encoding: str) -> None:
+    assert_is_soup(read(SQUARES[encoding].replace(b"ply", b"PLY", 1)), SOUP)
+
+
+@pytest.mark.parametrize("encoding", ENCODINGS)
 def test_a_comment_may_go_on_in_another_line_before_the_first_element(encoding: str) -> None:
     broken = b"Created by a program, source file:\n"
     for after in (b"ply\n", SQUARES[encoding][: SQUARES[encoding].index(b"element")]):
