@@ -164,9 +164,10 @@ def slow_ply(data: bytes) -> Result:
         else:
             assert not words or not elements or words[0] in (b"comment", b"obj_info")
     if encoding == b"ascii":
-        try:
-            rows = _rows_of_lines(data, len(header), elements)
-        except (AssertionError, ValueError):
+        lines = _lines_of_rows(data, len(header))
+        if len(lines) == sum(count for _, count, properties in elements if properties):
+            rows = _rows_of_lines(lines, elements)
+        else:
             take = _take_words(body)
             rows = {name: [_ply_row(properties, take) for _ in range(count)] for name, count, properties in elements}
             with_nothing_left(take)
@@ -185,11 +186,13 @@ def slow_ply(data: bytes) -> Result:
     return checked(vertices, faces)
 
 
-def _rows_of_lines(data: bytes, begin: int, elements: list[tuple[bytes, int, list[list[bytes]]]]) -> dict:
+def _lines_of_rows(data: bytes, begin: int) -> list[bytes]:
+    return [line for line in lines_of(b" " * begin + data[begin:].replace(b"end_header", b" ", 1)) if line.split()]
+
+
+def _rows_of_lines(lines: list[bytes], elements: list[tuple[bytes, int, list[list[bytes]]]]) -> dict:
     """The rows if there is exactly one line for each of them; what a line has too much is ignored."""
-    lines = [line for line in lines_of(b" " * begin + data[begin:].replace(b"end_header", b" ", 1)) if line.split()]
     wanted = [(name, properties) for name, count, properties in elements if properties for _ in range(count)]
-    assert len(lines) == len(wanted)
     rows: dict[bytes, list] = {name: [] for name, _, _ in elements}
     for line, (name, properties) in zip(lines, wanted, strict=True):
         rows[name].append(_ply_row(properties, _take_words(line)))

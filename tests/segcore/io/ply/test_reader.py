@@ -218,6 +218,14 @@ def test_every_line_may_have_more_values_than_declared(more: str) -> None:
     assert len(mesh.notes) == 2
 
 
+def test_what_a_line_has_too_little_is_not_taken_from_another_line() -> None:
+    head, body = SQUARES["ascii"].split(b"end_header\n")
+    first, second, *others = body.splitlines(keepends=True)
+    moved = [first.replace(b"\n", b" 7\n"), second.rpartition(b" ")[0] + b"\n", *others]
+    with pytest.raises(InvalidMesh, match=r"Line \d+ of the PLY file: it has fewer values"):
+        read(head + b"end_header\n" + b"".join(moved))
+
+
 def test_lists_of_other_values_than_declared_do_not_move_the_next_line() -> None:
     head = SQUARES["ascii"].decode().split("element face")[0]
     head += "element face 2\nproperty list uchar int vertex_indices\nproperty list uchar float texcoord\n"
@@ -239,6 +247,19 @@ def test_colours_are_the_same_if_lines_are_too_long() -> None:
     head, body = data.split(b"end_header\n")
     every = head + b"end_header\n" + body.replace(b"\n", b" 7\n")
     assert read_look(every).colors.tolist() == read_look(data).colors.tolist()
+
+
+@pytest.mark.parametrize(("kind", "full"), [("uint8", 1), ("uint16", 0), ("float", 255)])
+@pytest.mark.parametrize("more", ["", " 7"])
+@pytest.mark.parametrize("x", ["1", "1.5"])
+def test_the_declared_type_of_colours_counts_and_not_how_they_are_written(
+    kind: str, full: int, more: str, x: str
+) -> None:
+    columns = [*XYZ, *((kind, name) for name in ("red", "green", "blue"))]
+    rows = [[*vertex, 1, 0, 1] for vertex in [(0, 0, 0), (2, 0, 0), (0, 3, 0)]]
+    head, body = ply("ascii", [("vertex", columns, rows), ("face", INDICES, [[[0, 1, 2]]])]).split(b"end_header\n")
+    lines = body.replace(b".0", b"").replace(b"2 0 0", f"{x} 0 0".encode()).replace(b"\n", f"{more}\n".encode())
+    assert read_look(head + b"end_header\n" + lines).colors.tolist() == [[full, 0, full, 255]] * 3
 
 
 def test_a_face_whose_number_of_corners_is_too_small_for_its_line_is_damage() -> None:
