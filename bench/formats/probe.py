@@ -1,10 +1,16 @@
-"""Measures one reader or writer in its own process: ``python -m bench.formats.probe PROGRAM read|write PATH``."""
+"""Measures one reader or writer in its own process: ``python -m bench.formats.probe PROGRAM read|write PATH``.
+
+With ``serve`` in place of these, measures Cleave for each line of the input, ``read``, ``look`` or ``write`` and a
+path: ``look`` reads with the appearance. The file can be run by another version of Cleave, and imports it alone.
+"""
 
 import json
 import sys
 import time
 from collections.abc import Callable
+from functools import cache
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 
@@ -45,22 +51,36 @@ def _status(name: str) -> int:
     return 1024 * int(text.split(f"{name}:")[1].split()[0])
 
 
-def _reader(program: str, path: Path) -> Callable[[], object]:
+def _reader(program: str, path: Path, appearance: bool = False) -> Callable[[], object]:
     if program == "trimesh":
         import trimesh
 
         return lambda: trimesh.load_scene(path, process=False)
     from segcore.io import read_mesh
 
-    return lambda: read_mesh(path)
+    return lambda: read_mesh(path, appearance=appearance)
 
 
 def _writer(path: Path) -> Callable[[], object]:
-    from segcore.hierarchy import Hierarchy
-    from segcore.io import read_mesh
     from segcore.io.writing import writer_for
 
-    mesh = read_mesh(path.with_suffix(".ply"))
+    mesh, hierarchy = _segmented(path.with_suffix(".ply"))
+    writer = writer_for(path.name)
+
+    def write() -> None:
+        with path.open("wb") as target:
+            writer.write(target, mesh, hierarchy, None)
+
+    return write
+
+
+@cache
+def _segmented(path: Path) -> tuple[Any, Any]:
+    """The mesh of a file, and a hierarchy of it."""
+    from segcore.hierarchy import Hierarchy
+    from segcore.io import read_mesh
+
+    mesh = read_mesh(path)
     splits = np.arange(_SLICES - 1)
     leaf = np.minimum(2 * np.arange(_SLICES) + 1, 2 * _SLICES - 2)
     share = len(mesh.faces) // _SLICES + 1
@@ -74,16 +94,31 @@ def _writer(path: Path) -> Callable[[], object]:
         face_leaf=face_leaf,
         automatic_segments=_SLICES,
     )
-    writer = writer_for(path.name)
+    return mesh, hierarchy
 
-    def write() -> None:
-        with path.open("wb") as target:
-            writer.write(target, mesh, hierarchy, None)
 
-    return write
+def _work(action: str, path: Path) -> Callable[[], object]:
+    return _writer(path) if action == "write" else _reader("cleave", path, appearance=action == "look")
+
+
+def _serve() -> None:
+    """Answer each line with the CPU seconds of one run, after one on the small file for a new one."""
+    seen = set()
+    for line in sys.stdin:
+        action, name = line.rstrip("\n").split(" ", 1)
+        if line not in seen:
+            _work(action, Path(name).with_stem("small"))()
+            seen.add(line)
+        work = _work(action, Path(name))
+        begin = time.process_time()
+        work()
+        print(json.dumps({"seconds": time.process_time() - begin}), flush=True)
 
 
 def main(arguments: list[str]) -> None:
+    if arguments == ["serve"]:
+        _serve()
+        return
     program, action, name = arguments
     path = Path(name)
     work = _reader(program, path.with_stem("small")) if action == "read" else _writer(path.with_stem("small"))

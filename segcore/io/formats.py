@@ -47,7 +47,7 @@ FORMATS: dict[str, Format] = {
 
 _BOM = b"\xef\xbb\xbf"
 _OFF = re.compile(rb"(?:\s++|#[^\r\n]*+[\r\n])*+(?:ST|[CN4n])*+OFF")
-_PLY = re.compile(rb"ply[ \t]*+[\r\n]")
+_PLY = re.compile(rb"ply[ \t]*+[\r\n]", re.IGNORECASE)
 _ASCII_STL = re.compile(  # up to 20 other lines may stand between the line of the solid and the first face
     rb"(?:\s++|#[^\r\n]*+[\r\n])*+solid\b[^\r\n]*+(?:[\r\n]\s*+(?!facet\s|end[ \t_-]*+solid)[^\r\n]*+){0,20}+"
     rb"[\r\n]\s*+(?:facet\s|end[ \t_-]*+solid)",

@@ -48,6 +48,10 @@ def mesh_of_polygons(
     limits.check_faces(int(triangles.sum()))
     source_polygon = np.repeat(np.arange(len(triangles), dtype=np.int32), triangles)
     corners, fans = triangle_corners(vertices, polygons)
+    too_small = int(np.count_nonzero(polygons.sizes < 3))
+    if too_small:
+        of_file = "1 face" if too_small == 1 else f"{too_small} faces"
+        notes += (f"{of_file} of the file with fewer than three corners {'is' if too_small == 1 else 'are'} left out.",)
     if fans:
         notes += (f"{fans} concave polygons have too many corners to be clipped: they are triangulated as fans.",)
     return Mesh(vertices, polygons.corners[corners], source_polygon, appearance, structure, notes)

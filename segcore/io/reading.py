@@ -19,7 +19,7 @@ from segcore.io.limits import ReadLimits
 from segcore.io.obj.reader import read_obj
 from segcore.io.off.reader import read_off
 from segcore.io.ply.reader import read_ply
-from segcore.io.source import read_source
+from segcore.io.source import read_source, without_utf_16
 from segcore.io.stl.reader import read_stl
 from segcore.io.threemf.reader import read_3mf
 from segcore.mesh import Mesh
@@ -116,6 +116,7 @@ def open_model(
         model = model_in_archive(data, limits)
         declared, companions = declared_format(model.name, None), model.companions
         data = read_source(io.BytesIO(model.data), limits)
+    data = without_utf_16(data)
     return OpenedModel(detect_format(data, declared), data, companions)
 
 

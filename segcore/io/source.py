@@ -9,6 +9,8 @@ from segcore.errors import InvalidMesh, LimitExceeded
 from segcore.io.limits import ReadLimits
 
 GZIP_MAGIC = b"\x1f\x8b"
+_UTF_16 = {b"\xff\xfe": ("utf-16-le", 1), b"\xfe\xff": ("utf-16-be", 0)}  # and the place of the high byte
+_BEGINNING = 64  # bytes that are looked at, set by hand
 _CHUNK = 2**20  # bytes read or decompressed at a time; bounds the memory beyond a limit
 _GZIP_WINDOW = 31  # zlib's code for: 32 KiB window, gzip header and checksum
 
@@ -31,6 +33,25 @@ def read_source(source: str | os.PathLike[str] | BinaryIO, limits: ReadLimits) -
     if not data:
         raise InvalidMesh("The file is empty: send a mesh file.")
     return data
+
+
+def without_utf_16(data: bytes) -> bytes:
+    """Return a text in UTF-16, as some consoles of Windows write it, in UTF-8; return other bytes as they are.
+
+    It is a text in UTF-16 if it begins with a byte order mark and characters of Latin-1.
+
+    Raises
+    ------
+    InvalidMesh
+        If it is damaged.
+    """
+    encoding, high = _UTF_16.get(data[:2], ("", 0))
+    if not encoding or data[2 + high : _BEGINNING : 2].strip(b"\0") or 0 in data[3 - high : _BEGINNING : 2]:
+        return data
+    try:
+        return data[2:].decode(encoding).encode()
+    except UnicodeDecodeError as error:
+        raise InvalidMesh("The file is a text in UTF-16 that is damaged or cut short: save it as UTF-8.") from error
 
 
 def _read_path(path: str | os.PathLike[str], limits: ReadLimits) -> bytes:

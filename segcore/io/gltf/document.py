@@ -17,7 +17,8 @@ _LARGEST = 2**53  # integers up to here are exact in JSON readers that use float
 # Extensions for the look or the meaning of faces, not for their positions.
 _HARMLESS = (
     "EXT_instance_features", "EXT_lights_", "EXT_mesh_features", "EXT_structural_metadata", "EXT_texture_",
-    "KHR_animation_pointer", "KHR_lights_", "KHR_materials_", "KHR_texture_", "KHR_xmp", "MSFT_texture_dds",
+    "KHR_animation_pointer", "KHR_lights_", "KHR_materials_", "KHR_technique", "KHR_texture_", "KHR_xmp",
+    "MSFT_texture_dds",
 )  # fmt: skip
 _UNDERSTOOD = (
     "KHR_mesh_quantization", "KHR_draco_mesh_compression", "EXT_meshopt_compression", "KHR_meshopt_compression",
@@ -95,10 +96,10 @@ def read_document(data: bytes, companions: Companions | None = None) -> Document
     root = _parse(text)
     asset = root.get("asset")
     version = asset.get("version") if isinstance(asset, dict) else None
-    if not isinstance(version, str):
+    if not isinstance(version, str | int | float):
         raise InvalidMesh("The file is JSON, but not glTF: it has no asset.version.")
-    if not version.startswith("2."):
-        raise UnsupportedFormat(f"glTF version {version[:20]!r} cannot be read: save it as glTF 2.0.")
+    if str(version).partition(".")[0] != "2":
+        raise UnsupportedFormat(f"glTF version {str(version)[:20]!r} cannot be read: save it as glTF 2.0.")
     _check_extensions(root.get("extensionsRequired", []))
     return Document(root, binary, len(data), companions or NoCompanions())
 

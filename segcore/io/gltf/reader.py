@@ -60,7 +60,8 @@ def _assemble(found: SceneParts, accessors: Accessors, limits: ReadLimits, with_
     for part in parts:
         if own is None or own[0] is not part.primitive:
             own = part.primitive, primitive_faces(part.primitive, accessors)
-        faces.append(_outside_out(own[1], posed[part.pose].mirrored) + np.int32(starts[part.pose]))
+        outside_out = _outside_out(own[1], posed[part.pose].mirrored)
+        faces.append(outside_out + np.int32(starts[part.pose]) if starts[part.pose] else outside_out)
     return Mesh(
         np.concatenate([np.zeros((0, 3)), *vertices]) if len(vertices) != 1 else vertices[0],
         np.concatenate([np.zeros((0, 3), dtype=np.int32), *faces]) if len(faces) != 1 else faces[0],

@@ -77,9 +77,9 @@ def read_scene(document: Document) -> Scene:
         mesh = integer(entry, "mesh", where)
         skin = integer(entry, "skin", where) if "skin" in entry else None
         copies = _copies(entry, where)
-        if skin is not None and copies is not None:
-            copies = None
-            scene.notes.append(f"The copies of {where} ({INSTANCING}) are left out, because {where} has a skin.")
+        if skin is not None and copies is not None:  # the extension knows no skins; three.js shows the copies alone
+            skin = None
+            scene.notes.append(f"The skin of {where} is left out, because {where} has copies ({INSTANCING}).")
         name = _name(entry) or _name(document.item("meshes", mesh))
         weights = number_list(entry, "weights", where) if "weights" in entry else None
         scene.instances.append(Instance(node, mesh, transform, name, skin, weights, copies))

@@ -26,10 +26,11 @@ _CORNER = re.compile(r"[-+]?\d+(/-?\d*){0,2}", re.ASCII)
 def read_obj(data: bytes, limits: ReadLimits, with_appearance: bool = False) -> Mesh:
     """Read the vertices and polygons of an OBJ file.
 
-    Points and lines are ignored, and no file that is named in it is opened. A negative index counts back from the last
-    vertex before its line. A line of numbers continues after a backslash at its end; other lines do not, because names
-    and paths may end in one. The appearance is the texture coordinates and normals of the corners, the colours of the
-    vertices and the names of groups and objects. The structure is the groups and objects, and the names of materials.
+    Points, lines and faces with fewer than three corners are ignored, and no file that is named in it is opened. A
+    negative index counts back from the last vertex before its line. A line of numbers continues after a backslash at
+    its end; other lines do not, because names and paths may end in one. The appearance is the texture coordinates and
+    normals of the corners, the colours of the vertices and the names of groups and objects. The structure is the groups
+    and objects, and the names of materials.
 
     An OBJ file does not specify its length: a file that is cut short between two lines cannot be detected.
 
@@ -92,18 +93,21 @@ def _joined_lines(text: bytes) -> bytes:
     return b"".join([*pieces, memoryview(text)[at:]]) if pieces else text
 
 
-def _values_per_line(words: Words, lines: LongArray, what: str) -> LongArray:
-    """(N,) the number of words after the keyword of each line, which must be at least three."""
-    counts = (words.line_start[lines + 1] - words.line_start[lines] - 1).astype(np.int64)
-    if (counts < 3).any():
-        first = words.line_start[lines[int(np.argmax(counts < 3))]]
-        raise InvalidMesh(f"Line {words.line_number(int(first))}: {what} needs at least three values.")
-    return counts
+def _values_per_line(words: Words, lines: LongArray) -> LongArray:
+    """(N,) the number of words after the keyword of each line."""
+    return (words.line_start[lines + 1] - words.line_start[lines] - 1).astype(np.int64)
+
+
+def _too_few(words: Words, line: int, what: str) -> InvalidMesh:
+    number = words.line_number(int(words.line_start[line]))
+    return InvalidMesh(f"Line {number}: {what} needs at least three values.")
 
 
 def _vertices(words: Words, is_vertex: BoolArray) -> FloatArray:
     lines = np.flatnonzero(is_vertex)
-    _values_per_line(words, lines, "a vertex")
+    is_short = _values_per_line(words, lines) < 3
+    if is_short.any():
+        raise _too_few(words, int(lines[int(np.argmax(is_short))]), "a vertex")
     vertices, unread = np.empty((len(lines), 3)), np.empty(len(lines), dtype=bool)
     if parse_vertex_lines(words.lines, lines, vertices, unread):
         for i in np.flatnonzero(unread).tolist():
@@ -114,7 +118,9 @@ def _vertices(words: Words, is_vertex: BoolArray) -> FloatArray:
 
 def _polygons(words: Words, is_vertex: BoolArray, is_face: BoolArray) -> Polygons:
     lines = np.flatnonzero(is_face)
-    sizes = _values_per_line(words, lines, "a face")
+    sizes = _values_per_line(words, lines)
+    if lines[-1:].tolist() == [len(is_face) - 1] and sizes[-1] < 3 and not words.ends_with_newline:
+        raise _too_few(words, int(lines[-1]), "a face")  # the file is cut short in its last line
     before = np.cumsum(is_vertex, dtype=np.int32)[lines]
     corners = np.empty(int(sizes.sum()), dtype=np.int32)
     bad = parse_face_lines(words.lines, FaceLines(lines, before, int(np.count_nonzero(is_vertex))), corners)

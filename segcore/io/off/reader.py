@@ -16,14 +16,15 @@ from segcore.io.text.words import Words, find_words, plain_text, whole_numbers, 
 from segcore.mesh import Mesh
 
 _KEYWORD = re.compile(rb"\s*+((?:ST|[CN4n])*+)OFF(\s+BINARY)?")
+_COUNTS = re.compile(rb"\s*+()()(?=\d++[ \t]++\d++[ \t]*+(?:\d++[ \t]*+)?\n)")
 _UNIT = 0.01  # largest deviation from the length 1 of a normal: files with two digits
 
 
 def read_off(data: bytes, limits: ReadLimits, with_appearance: bool = False) -> Mesh:
     """Read an OFF file, also with the prefixes ST, C and N: texture coordinates, colours and normals, the appearance.
 
-    The prefixes may be in any order. The number of edges may be missing. A vertex is its position, its normal, its
-    colour and its texture coordinates; the normal may also follow the colour.
+    The prefixes may be in any order. The word OFF may be missing, as Geomview has it, and the number of edges, too. A
+    vertex is its position, its normal, its colour and its texture coordinates; the normal may also follow the colour.
 
     The prefixes give the number of words of a vertex, over any lines. If the file cannot be read so, each line is a
     vertex, and the words after its coordinates are ignored. A face ends with its line; the words after its indices are
@@ -36,7 +37,7 @@ def read_off(data: bytes, limits: ReadLimits, with_appearance: bool = False) -> 
     InvalidMesh, UnsupportedFormat, LimitExceeded
     """
     text = without_comments(plain_text(data))
-    keyword = _KEYWORD.match(text)
+    keyword = _KEYWORD.match(text) or _COUNTS.match(text)
     if keyword is None:
         raise InvalidMesh("The file does not begin with the word OFF: send an OFF file, or name its real format.")
     prefixes, binary = keyword.groups()

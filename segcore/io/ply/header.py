@@ -15,7 +15,7 @@ _TYPES = {
     "int8": "i1", "uint8": "u1", "int16": "i2", "uint16": "u2", "int32": "i4", "uint32": "u4",
     "float": "f4", "float32": "f4", "double": "f8", "float64": "f8",
 }  # fmt: skip
-_FIRST_LINE = re.compile(rb"ply[ \t]*+(\r+\n|\n\r|\n|\r)")
+_FIRST_LINE = re.compile(rb"ply[ \t]*+(\r+\n|\n\r|\n|\r)", re.IGNORECASE)
 _LAST_LINE = re.compile(rb"(?<=[\r\n])end_header[ \t\v\f]*+(?=[\r\n])")
 _LINE_END, _LINE_END_OF_CR = re.compile(rb"\r+\n|\n\r|\n"), re.compile(rb"\r\n|\n|\r")
 _ENCODINGS: dict[str, Literal["", "<", ">"]] = {"ascii": "", "binary_little_endian": "<", "binary_big_endian": ">"}
@@ -90,6 +90,8 @@ def cut_short(element: Element, row: int) -> InvalidMesh:
 def read_header(data: bytes) -> Header:
     """Read a PLY header; its lines end with a newline, a carriage return or both in any order.
 
+    Lines before the first element that are no statements are ignored.
+
     Raises
     ------
     InvalidMesh, UnsupportedFormat
@@ -109,6 +111,8 @@ def read_header(data: bytes) -> Header:
             case ["property", *words] if elements:
                 last = elements[-1]
                 elements[-1] = Element(last.name, last.count, (*last.properties, _property(words, number)))
+            case [keyword, *_] if not elements and keyword not in ("element", "property"):
+                pass  # the rest of a comment with a line end in it; here it cannot hide numbers
             case _:
                 raise InvalidMesh(f"Line {number}: {line[:80]!r} is not a statement of a PLY header.")
     if byte_order is None:

@@ -10,7 +10,7 @@ from segcore.arrays import FloatArray, IntArray, LongArray
 from segcore.errors import InvalidMesh
 from segcore.io.limits import ReadLimits
 from segcore.io.ply.binary_elements import BinaryBody
-from segcore.io.ply.header import Elements, Header, Rows, read_header
+from segcore.io.ply.header import Element, Elements, Header, Rows, read_header
 from segcore.io.ply.text_elements import read_text_elements
 from segcore.io.polygons import Polygons, mesh_of_polygons, strip_faces
 from segcore.io.text.words import whole_numbers
@@ -43,7 +43,8 @@ def read_ply(data: bytes, limits: ReadLimits, with_appearance: bool = False) -> 
         raise InvalidMesh("The PLY file has no element 'vertex'.")
     vertices = _vertices(rows[_VERTICES])
     parts = [_polygons(name, rows[name]) for name in rows if name in (_FACES, _STRIPS)]
-    appearance = _appearance(rows[_VERTICES]) if with_appearance else None
+    vertex = next(element for element in header.elements if element.name == _VERTICES)
+    appearance = _appearance(rows[_VERTICES], vertex) if with_appearance else None
     return mesh_of_polygons(vertices, _joined(parts), limits, appearance, notes=read.notes)
 
 
@@ -69,9 +70,9 @@ def _vertices(rows: Rows) -> FloatArray:
     return vertices
 
 
-def _appearance(rows: Rows) -> Appearance | None:
-    normals, colors = _columns(rows, "nx", "ny", "nz"), _columns(rows, "red", "green", "blue", "alpha")
-    colors = _columns(rows, "red", "green", "blue") if colors is None else colors
+def _appearance(rows: Rows, element: Element) -> Appearance | None:
+    normals, colors = _columns(rows, "nx", "ny", "nz"), _typed_columns(rows, element, "red", "green", "blue", "alpha")
+    colors = _typed_columns(rows, element, "red", "green", "blue") if colors is None else colors
     uvs = next((found for names in _UVS if (found := _columns(rows, *names)) is not None), None)
     return appearance_or_none(
         Appearance(
@@ -86,6 +87,16 @@ def _columns(rows: Rows, *names: str) -> NDArray[Any] | None:
     """(V, N) the properties with these names, or None if one is missing."""
     columns = [rows.numbers[name] for name in names if name in rows.numbers]
     return np.stack(columns, axis=1) if len(columns) == len(names) else None
+
+
+def _typed_columns(rows: Rows, element: Element, *names: str) -> NDArray[Any] | None:
+    """The same in the types of the header if the values have them; text may be read in another type."""
+    columns = _columns(rows, *names)
+    if columns is None:
+        return None
+    types = {entry.name: entry.type for entry in element.properties}
+    typed = columns.astype(np.result_type(*(types[name] for name in names)))
+    return typed if typed.dtype.kind == "f" or (typed == columns).all() else columns
 
 
 def _polygons(name: str, rows: Rows) -> Polygons:

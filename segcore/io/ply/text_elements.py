@@ -6,7 +6,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from segcore.arrays import LongArray
+from segcore.arrays import BoolArray, LongArray
 from segcore.errors import InvalidMesh
 from segcore.io.ply.header import Element, Elements, Header, Lists, Property, Rows, cut_short, empty_rows
 from segcore.io.polygons import ragged_range
@@ -24,18 +24,22 @@ def read_text_elements(data: bytes, header: Header) -> Elements:
     Raises
     ------
     InvalidMesh
-        If the file ends before they do or goes on after them, or a word is not a number; the message has the place.
+        If the file ends before they do or goes on after them, or a word is not a number; the message has the place. If
+        there are as many lines as rows, but some are too short: what others have too much is not theirs.
     """
+    too_short: InvalidMesh | None = None
     # Empty lines replace the header, so that the line numbers of errors are those of the file.
     words = find_words(plain_text(data[: header.size].translate(_BLANK) + data[header.size :]))
     if len(words.line_start) - 1 == sum(element.count for element in header.elements if element.properties):
         try:
             return _read_lines(words, header)
-        except InvalidMesh:
-            pass  # the lines are too short: the rows may have other lines
+        except InvalidMesh as error:
+            too_short = error
     body = TextBody(words)
     rows = {element.name: body.read(element) for element in header.elements}
     body.finish()
+    if too_short is not None:
+        raise too_short
     return Elements(rows)
 
 
@@ -172,8 +176,10 @@ def _read_lines(words: Words, header: Header) -> Elements:
         if rows is None:
             rows, ends = _columns(words, starts, element)
             longer = np.flatnonzero(ends < starts[1:])
-            if any((lists.sizes[longer] < _LEAST_CORNERS).any() for lists in rows.lists.values()):
-                raise InvalidMesh("A list is shorter than a face, though its line goes on: its length is damaged.")
+            for lists in rows.lists.values():
+                small = longer[lists.sizes[longer] < _LEAST_CORNERS]
+                if len(small):
+                    raise _damaged(words, starts, small, "a list is shorter than a face, though its line goes on")
             if len(longer):
                 notes.append(_note(element, len(longer), words.line_number(int(ends[longer[0]]))))
         elements[element.name] = rows
@@ -185,14 +191,14 @@ def _columns(words: Words, starts: LongArray, element: Element) -> tuple[Rows, L
     at, limit = starts[:-1], starts[1:]
     numbers, lists = {}, {}
     for entry in element.properties:
-        sizes: LongArray | None = np.ones(len(at), dtype=np.int64)
+        sizes = np.ones(len(at), dtype=np.int64)
         if entry.count_type is not None:
-            if (at >= limit).any():
-                raise InvalidMesh("A line is shorter than its row.")
-            sizes = whole_numbers(words.numbers_at(at))
-            at = at + 1
-        if sizes is None or (sizes < 0).any() or (sizes > limit - at).any():
-            raise InvalidMesh("A line is shorter than its row.")
+            _check_lines(words, starts, at < limit)
+            lengths = whole_numbers(words.numbers_at(at))
+            if lengths is None:
+                raise InvalidMesh("The PLY file has a list whose length is not a whole number.")
+            sizes, at = lengths, at + 1
+        _check_lines(words, starts, (sizes >= 0) & (sizes <= limit - at))
         values = words.numbers_at(at if entry.count_type is None else ragged_range(at, sizes))
         if entry.count_type is None:
             numbers[entry.name] = values
@@ -200,6 +206,18 @@ def _columns(words: Words, starts: LongArray, element: Element) -> tuple[Rows, L
             lists[entry.name] = Lists(values, sizes)
         at = at + sizes
     return Rows(numbers, lists), at
+
+
+def _check_lines(words: Words, starts: LongArray, are_right: BoolArray) -> None:
+    """Raise InvalidMesh for the first of the lines from ``starts`` on that is not right."""
+    wrong = np.flatnonzero(~are_right)
+    if len(wrong):
+        raise _damaged(words, starts, wrong, "it has fewer values than the header declares")
+
+
+def _damaged(words: Words, starts: LongArray, lines: LongArray, problem: str) -> InvalidMesh:
+    number = words.line_number(int(starts[lines[0]]))
+    return InvalidMesh(f"Line {number} of the PLY file: {problem}: it is damaged.")
 
 
 def _note(element: Element, count: int, line: int) -> str:

@@ -42,8 +42,12 @@ def read_ascii_stl(data: bytes, limits: ReadLimits, with_appearance: bool = Fals
     InvalidMesh, LimitExceeded
     """
     plain = plain_text(data)
-    text = _with_plain_ends(plain.lower())
-    read = _read_regular(plain, text, limits, with_appearance)
+    lower = plain.lower()
+    read = _read_regular(plain, lower, limits, with_appearance)
+    if read is not None:
+        return read
+    text = _with_plain_ends(lower)
+    read = None if text == lower else _read_regular(plain, text, limits, with_appearance)
     if read is not None:
         return read
     without_solids = _SOLID.sub(lambda line: b" " * len(line[0]), text)
@@ -84,8 +88,10 @@ def _with_plain_ends(text: bytes) -> bytes:
 def _read_regular(
     plain: bytes, text: bytes, limits: ReadLimits, with_appearance: bool, notes: tuple[str, ...] = ()
 ) -> Mesh | None:
-    """Read faces that are seven lines each; None if one is not."""
+    """Read faces that are seven lines each, before ``endsolid``; None if one is not."""
     words = find_words(text)
+    if not words.equal(words.line_start[-2:-1], b"endsolid").all():
+        return None
     is_solid = words.lines_with(b"solid") | words.lines_with(b"endsolid")  # the rest of the line is a name
     vertices = _regular_vertices(words, np.flatnonzero(~is_solid))
     if vertices is None:

@@ -44,6 +44,11 @@ class Words:
     def count(self) -> int:
         return len(self.start)
 
+    @property
+    def ends_with_newline(self) -> bool:
+        """Whether the line of the last word ends with a newline."""
+        return self.count == 0 or self.text.find(b"\n", int(self.start[-1])) >= 0
+
     def word(self, index: int) -> str:
         end = self.start[index + 1] if index + 1 < self.count else None
         return self.text[self.start[index] : end].rstrip().decode("ascii", "backslashreplace")

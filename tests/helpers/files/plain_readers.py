@@ -52,6 +52,7 @@ def lines_of(data: bytes) -> list[bytes]:
 def slow_off(data: bytes) -> Result:
     text = b"\n".join(line.partition(b"#")[0] for line in lines_of(data))
     keyword = re.match(rb"\s*((?:ST|C|N)*)OFF(?!\s+BINARY)", text)
+    keyword = keyword or re.match(rb"\s*()(?=\d+[ \t]+\d+[ \t]*(\d+[ \t]*)?\n)", text)
     assert keyword
     prefixes = keyword[1]
     rest = text[keyword.end() :].split(b"\n")
@@ -121,13 +122,11 @@ def slow_obj(data: bytes) -> Result:
             values = [number(word) for word in words[1:]]
             vertices.append((values[0], values[1], values[2]))
         if words[:1] == [b"f"]:
-            assert len(words) > 3
             assert all(re.fullmatch(rb"[-+]?\d+(/[-/\d]*)?", word) for word in words[1:])
             indices = [int(word.partition(b"/")[0]) for word in words[1:]]
             corners = [i - 1 if i > 0 else len(vertices) + i for i in indices]
             assert 0 not in indices
-            assert min(corners) >= 0
-            assert max(corners) < total
+            assert all(0 <= corner < total for corner in corners)
             faces.append(corners)
     return checked(vertices, faces)
 
@@ -140,7 +139,7 @@ _PLY = {
 
 
 def slow_ply(data: bytes) -> Result:
-    first = re.match(rb"ply[ \t]*(\r+\n|\n\r|\n|\r)", data)
+    first = re.match(rb"(?i)ply[ \t]*(\r+\n|\n\r|\n|\r)", data)
     end = re.search(rb"[\r\n](end_header[ \t\v\f]*)[\r\n]", data)
     assert first
     assert end
@@ -163,11 +162,12 @@ def slow_ply(data: bytes) -> Result:
             assert len(words) == (5 if words[1] == b"list" else 3)
             elements[-1][2].append(words[1:])
         else:
-            assert not words or words[0] in (b"comment", b"obj_info")
+            assert not words or not elements or words[0] in (b"comment", b"obj_info")
     if encoding == b"ascii":
-        try:
-            rows = _rows_of_lines(data, len(header), elements)
-        except (AssertionError, ValueError):
+        lines = _lines_of_rows(data, len(header))
+        if len(lines) == sum(count for _, count, properties in elements if properties):
+            rows = _rows_of_lines(lines, elements)
+        else:
             take = _take_words(body)
             rows = {name: [_ply_row(properties, take) for _ in range(count)] for name, count, properties in elements}
             with_nothing_left(take)
@@ -186,11 +186,13 @@ def slow_ply(data: bytes) -> Result:
     return checked(vertices, faces)
 
 
-def _rows_of_lines(data: bytes, begin: int, elements: list[tuple[bytes, int, list[list[bytes]]]]) -> dict:
+def _lines_of_rows(data: bytes, begin: int) -> list[bytes]:
+    return [line for line in lines_of(b" " * begin + data[begin:].replace(b"end_header", b" ", 1)) if line.split()]
+
+
+def _rows_of_lines(lines: list[bytes], elements: list[tuple[bytes, int, list[list[bytes]]]]) -> dict:
     """The rows if there is exactly one line for each of them; what a line has too much is ignored."""
-    lines = [line for line in lines_of(b" " * begin + data[begin:].replace(b"end_header", b" ", 1)) if line.split()]
     wanted = [(name, properties) for name, count, properties in elements if properties for _ in range(count)]
-    assert len(lines) == len(wanted)
     rows: dict[bytes, list] = {name: [] for name, _, _ in elements}
     for line, (name, properties) in zip(lines, wanted, strict=True):
         rows[name].append(_ply_row(properties, _take_words(line)))

@@ -1,5 +1,6 @@
 """One small mesh, two triangles in space, in every format."""
 
+import json
 import struct
 
 from helpers.files.gltf import FLOAT, Asset
@@ -56,6 +57,13 @@ def gltf_square() -> Asset:
     asset.add("meshes", {"primitives": [asset.primitive(positions, [0, 1, 2, 0, 2, 3])]})
     asset.root(mesh=0)
     return asset
+
+
+def gltf_with_buffer(uri: str) -> tuple[bytes, bytes]:
+    """A glTF file of two faces whose buffer is another file, and that buffer."""
+    asset = gltf_square()
+    asset.document["buffers"] = [{"byteLength": len(asset.binary), "uri": uri}]
+    return json.dumps(asset.document).encode(), asset.binary
 
 
 def gltf_with_attributes() -> Asset:

@@ -2,13 +2,12 @@
 
 import gzip
 import io
-import json
 import os
 from pathlib import Path
 
 import pytest
 
-from helpers.files.samples import BINARY_STL, OBJ, OFF, gltf_square
+from helpers.files.samples import BINARY_STL, OBJ, OFF, gltf_with_buffer
 from helpers.uploads import zip_of
 from segcore.errors import InvalidMesh, LimitExceeded, UnsupportedFormat
 from segcore.io import ReadLimits, read_mesh
@@ -16,13 +15,6 @@ from segcore.io import ReadLimits, read_mesh
 
 def faces(data: bytes, **options: object) -> int:
     return len(read_mesh(io.BytesIO(data), **options).faces)  # type: ignore[arg-type]
-
-
-def gltf_with_buffer(uri: str) -> tuple[bytes, bytes]:
-    """A glTF file of two faces whose buffer is another file, and that buffer."""
-    asset = gltf_square()
-    asset.document["buffers"] = [{"byteLength": len(asset.binary), "uri": uri}]
-    return json.dumps(asset.document).encode(), asset.binary
 
 
 def test_the_one_mesh_of_an_archive_is_read_whatever_is_beside_it() -> None:

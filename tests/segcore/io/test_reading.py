@@ -83,7 +83,7 @@ def test_an_unknown_declaration_is_refused_with_the_formats_that_are_read() -> N
     [
         (b"Kaydara FBX Binary  \0", "FBX"),
         (b"<?xml version='1.0'?><COLLADA/>", "XML"),
-        (b"\xff\xfeO\0F\0F\0", "UTF-16"),
+        (b"\xff\xfe\0O\0F\0F", "UTF-16"),
         (gzip.compress(gzip.compress(OFF, mtime=0), mtime=0), "compressed twice"),
         (b"just some words", "no known mesh format"),
         (bytes(1000), "no known mesh format"),
@@ -92,6 +92,15 @@ def test_an_unknown_declaration_is_refused_with_the_formats_that_are_read() -> N
 def test_other_content_is_refused_with_its_name_if_it_is_known(data: bytes, message: str) -> None:
     with pytest.raises(UnsupportedFormat, match=message):
         read(data)
+
+
+@pytest.mark.parametrize("encoding", ["utf-16-le", "utf-16-be"])
+@pytest.mark.parametrize("data", [OFF, ASCII_STL, PLY["ascii"], OBJ, gltf_square().gltf(), "# größe\n".encode() + OBJ])
+def test_texts_in_utf_16_are_read(data: bytes, encoding: str) -> None:
+    text = f"\ufeff{data.decode()}".encode(encoding)
+    assert len(read(text).faces) == 2
+    with pytest.raises(InvalidMesh, match="UTF-16 that is damaged"):
+        read(text + b"\n")
 
 
 @pytest.mark.parametrize("declared", [None, *FORMATS])

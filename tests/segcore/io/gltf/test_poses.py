@@ -13,49 +13,32 @@ from hypothesis import given
 from helpers.files.damage import damaged
 from helpers.files.gltf import FLOAT, Asset
 from helpers.files.polygon_soups import read, read_or_none
+from helpers.files.posed import (
+    BYTE,
+    FIRST,
+    SECOND,
+    SHORT,
+    UNSIGNED_BYTE,
+    UNSIGNED_SHORT,
+    WHOLE,
+    blended,
+    copied,
+    instanced,
+    morphed,
+    shifted,
+    skinned,
+)
 from helpers.files.samples import SQUARE, gltf_with_attributes
 from helpers.files.samples import gltf_square as square
 from helpers.node.programs import install, run
 from segcore.errors import InvalidMesh, LimitExceeded
 from segcore.io import ReadLimits, read_mesh
 
-BYTE, SHORT, UNSIGNED_BYTE, UNSIGNED_SHORT = 5120, 5122, 5121, 5123
 POINTS = np.array(SQUARE.vertices)
-
-
-def shifted(x: float, y: float, z: float, scale: float = 1.0) -> tuple[float, ...]:
-    """A matrix of glTF, by columns."""
-    return (scale, 0, 0, 0, 0, scale, 0, 0, 0, 0, scale, 0, x, y, z, 1)
-
-
-def skinned(
-    joints: list[tuple[int, ...]],
-    weights: list[tuple[float, ...]],
-    binds: list[tuple[float, ...]] | None = None,
-    component: int = UNSIGNED_BYTE,
-    weight_component: int = FLOAT,
-) -> Asset:
-    """The square with a skin of two joints at x = 10 and y = 20, below a node that scales by 2."""
-    asset = square()
-    attributes = asset.document["meshes"][0]["primitives"][0]["attributes"]
-    attributes["JOINTS_0"] = asset.accessor(joints, component)
-    attributes["WEIGHTS_0"] = asset.accessor(weights, weight_component, normalized=weight_component != FLOAT)
-    first, second = (asset.add("nodes", {"translation": at}) for at in ([10, 0, 0], [0, 20, 0]))
-    asset.root(scale=[2, 2, 2], children=[first, second])
-    skin: dict[str, Any] = {"joints": [first, second]}
-    if binds is not None:
-        skin["inverseBindMatrices"] = asset.accessor(binds, FLOAT)
-    asset.document["skins"] = [skin]
-    asset.document["nodes"][0] |= {"skin": 0, "translation": [100, 100, 100]}
-    return asset
 
 
 def positions(asset: Asset) -> np.ndarray:
     return read(asset.glb()).vertices
-
-
-FIRST, SECOND = [(0, 0, 0, 0)] * 4, [(1, 0, 0, 0)] * 4
-WHOLE = [(1.0, 0.0, 0.0, 0.0)] * 4
 
 
 @pytest.mark.parametrize("component", [UNSIGNED_BYTE, UNSIGNED_SHORT])
@@ -177,16 +160,6 @@ def test_numbers_of_skins_that_are_not_finite_are_refused() -> None:
         read(skinned(FIRST, [(math.inf, 0, 0, 0)] * 4).glb())
 
 
-def morphed(weights: list[float] | None = None) -> Asset:
-    """The square with two morph targets, of floats and of normalized bytes."""
-    asset = square()
-    targets = [asset.accessor([(0.0, 0, 4)] * 4, FLOAT), asset.accessor([(127, 0, 0)] * 4, BYTE, normalized=True)]
-    asset.document["meshes"][0]["primitives"][0]["targets"] = [{"POSITION": target} for target in targets]
-    if weights is not None:
-        asset.document["meshes"][0]["weights"] = weights
-    return asset
-
-
 def test_morph_targets_have_the_weights_of_the_node_else_of_the_mesh_else_none() -> None:
     assert positions(morphed()).tolist() == POINTS.tolist()
     assert positions(morphed([0.5, 3])).tolist() == np.add(POINTS, [3, 0, 2]).tolist()
@@ -243,12 +216,6 @@ def test_many_morph_targets_are_refused_before_they_are_added() -> None:
         read(asset.glb(), limits=ReadLimits(max_vertices=7))
 
 
-def instanced(**attributes: int) -> Asset:
-    asset = square()
-    asset.document["nodes"][0]["extensions"] = {"EXT_mesh_gpu_instancing": {"attributes": attributes}}
-    return asset
-
-
 @pytest.mark.parametrize("required", [False, True])
 @pytest.mark.parametrize("component", [FLOAT, BYTE, SHORT])
 def test_copies_have_the_transform_of_the_node_times_their_own(required: bool, component: int) -> None:
@@ -300,15 +267,17 @@ def test_wrong_copies_are_refused_with_the_element(attributes: dict[str, int], m
         read(asset.glb())
 
 
-def test_copies_of_a_mesh_with_a_skin_are_left_out_and_noted() -> None:
+def copied_with_a_skin() -> Asset:
     asset = skinned(FIRST, WHOLE)
     attributes = {"TRANSLATION": asset.accessor([(0.0, 0, 0), (5, 0, 0)], FLOAT)}
     asset.document["nodes"][0]["extensions"] = {"EXT_mesh_gpu_instancing": {"attributes": attributes}}
-    mesh = read(asset.glb())
-    assert len(mesh.faces) == 2
-    assert mesh.notes == (
-        "The copies of nodes[0] (EXT_mesh_gpu_instancing) are left out, because nodes[0] has a skin.",
-    )
+    return asset
+
+
+def test_copies_have_no_skin() -> None:
+    mesh = read(copied_with_a_skin().glb())
+    assert mesh.vertices.tolist() == [*(POINTS + 100).tolist(), *np.add(POINTS, [105, 100, 100]).tolist()]
+    assert mesh.notes == ("The skin of nodes[0] is left out, because nodes[0] has copies (EXT_mesh_gpu_instancing).",)
 
 
 def test_primitives_that_are_no_triangles_in_space_are_left_out_and_noted() -> None:
@@ -332,30 +301,6 @@ def test_primitives_that_are_no_triangles_in_space_are_left_out_and_noted() -> N
         read(asset.glb())
 
 
-def blended() -> Asset:
-    """Morph targets, then a skin with inverse bind matrices and weights that do not sum to 1; one vertex has none."""
-    weights = [(0.25, 0.25, 0, 0), (0.9, 0.3, 0.2, 0), (0.0, 0, 0, 0), (0, 1, 0, 0)]
-    asset = skinned([(0, 1, 0, 0)] * 4, weights, [shifted(1, 2, 3, 0.5), shifted(0, -1, 0)])
-    asset.document["nodes"][1]["rotation"] = [0.6, 0, 0, 0.8]
-    targets = [asset.accessor([(0.0, k, 4)] * 4, FLOAT) for k in range(2)]
-    asset.document["meshes"][0]["primitives"][0]["targets"] = [{"POSITION": target} for target in targets]
-    asset.document["meshes"][0]["weights"] = [0.5, -1]
-    asset.root(mesh=asset.add("meshes", {"primitives": [asset.primitive(0, [0, 1, 2])]}), scale=[3, 1, 1])
-    return asset
-
-
-def copied() -> Asset:
-    asset = instanced()
-    asset.document["nodes"][0] |= {"translation": [1, 2, 3], "scale": [2, 3, 4]}
-    asset.document["nodes"][0]["extensions"]["EXT_mesh_gpu_instancing"]["attributes"] = {
-        "TRANSLATION": asset.accessor([(float(k), 0, 0) for k in range(3)], FLOAT),
-        "ROTATION": asset.accessor([(0, 0, 0, 1), (0.6, 0, 0, 0.8), (0, 0.28, 0.96, 0)], FLOAT),
-        "SCALE": asset.accessor([(1.0, 2, 3)] * 3, FLOAT),
-    }
-    asset.document["extensionsUsed"] = ["EXT_mesh_gpu_instancing"]
-    return asset
-
-
 @given(damaged([blended().glb(), copied().glb(), morphed([0.5, 3]).glb()], b' \n{}[]",:0123456789-.\0\xff'))
 def test_a_damaged_file_gives_a_mesh_or_a_typed_error(data: bytes) -> None:
     read_or_none(data)
@@ -363,7 +308,12 @@ def test_a_damaged_file_gives_a_mesh_or_a_typed_error(data: bytes) -> None:
 
 @pytest.mark.timeout(300)
 def test_three_js_has_every_corner_at_the_same_place(tmp_path: Path) -> None:
-    assets = {"blended": blended(), "copied": copied(), "morphed": morphed([0.5, 3])}
+    assets = {
+        "blended": blended(),
+        "copied": copied(),
+        "copied with a skin": copied_with_a_skin(),
+        "morphed": morphed([0.5, 3]),
+    }
     paths = {name: tmp_path / f"{name}.glb" for name in assets}
     for name, asset in assets.items():
         paths[name].write_bytes(asset.glb())

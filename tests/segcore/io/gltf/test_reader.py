@@ -166,6 +166,8 @@ def test_a_buffer_in_another_file_is_refused(uri: str) -> None:
 def test_other_versions_are_refused_as_such() -> None:
     with pytest.raises(UnsupportedFormat, match=r"version '1\.0'"):
         read(change("asset", {"version": "1.0"}))
+    with pytest.raises(UnsupportedFormat, match="version '1'"):
+        read(change("asset", {"version": 1}))
     with pytest.raises(UnsupportedFormat, match="GLB version 1"):
         read(struct.pack("<4sIII", b"glTF", 1, 16, 0))
 

@@ -78,6 +78,16 @@ def test_usual_variants_are_read(data: bytes) -> None:
     assert_is_soup(read(data), SOUP)
 
 
+def test_faces_with_fewer_than_three_corners_are_left_out_and_noted() -> None:
+    mesh = read(SQUARE.replace(b"f 1 3 4", b"f 1 2\nf\nf 1 3 4\nf 4/1"), appearance=True)
+    assert mesh.faces.tolist() == SOUP.polygons
+    assert mesh.source_polygon.tolist() == [0, 3]
+    assert mesh.notes == ("3 faces of the file with fewer than three corners are left out.",)
+    assert read(SQUARE.replace(b"f 1 3 4", b"f 1")).notes == (
+        "1 face of the file with fewer than three corners is left out.",
+    )
+
+
 def test_everything_but_vertices_and_faces_is_passed_over() -> None:
     mesh = read(FULL)
     assert mesh.vertices.tolist() == [[0, 0, 0], [1, 0, 0], [1, 1, 0], [0.5, 1, -0.1], [0, 0, 9]]
@@ -92,7 +102,7 @@ def test_everything_but_vertices_and_faces_is_passed_over() -> None:
         (b"f 1 3 4", b"f 0 3 4", "Line 6: there is no vertex 0"),
         (b"f 1 3 4", b"f 1 3 5", "Line 6: there is no vertex 5"),
         (b"f 1 3 4", b"f 1 3 -5", "Line 6: there is no vertex -5"),
-        (b"f 1 3 4", b"f 1 3", "Line 6: a face needs"),
+        (b"f 1 3 4\n", b"f 1 3", "Line 6: a face needs"),
         (b"f 1 3 4", b"f 1 3 4.5", "Line 6: '4.5' is not a vertex index"),
         (b"f 1 3 4", b"f 1/x 3 4", "Line 6: '1/x'"),
         (b"f 1 3 4", b"f /1 3 4", "Line 6: '/1' is not a vertex index"),

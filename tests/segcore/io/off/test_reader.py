@@ -119,6 +119,13 @@ def test_usual_variants_are_read(data: bytes) -> None:
     assert_is_soup(read(data), SOUP)
 
 
+@pytest.mark.parametrize("data", [SQUARE[4:], b"# made by hand\n\n" + SQUARE[4:], SQUARE[4:].replace(b"4 2 0", b"4 2")])
+def test_the_word_off_may_be_missing_if_the_format_is_declared(data: bytes) -> None:
+    assert read(data, "off").faces.tolist() == [[0, 1, 2], [0, 2, 3]]
+    with pytest.raises(UnsupportedFormat):
+        read(data)
+
+
 def test_polygons_of_all_sizes_keep_the_order_of_the_file() -> None:
     mesh = read(MIXED)
     assert mesh.faces.tolist() == [[0, 1, 2], [0, 2, 3], [0, 1, 4], [0, 1, 2], [0, 2, 3], [0, 3, 4]]

@@ -185,6 +185,20 @@ def test_a_header_may_have_line_ends_of_two_kinds(encoding: str) -> None:
     assert_is_soup(read(data[:begin].replace(b"\n", b"\r\n") + data[begin:]), SOUP)
 
 
+@pytest.mark.parametrize("encoding", ENCODINGS)
+def test_the_first_word_may_be_in_upper_case(encoding: str) -> None:
+    assert_is_soup(read(SQUARES[encoding].replace(b"ply", b"PLY", 1)), SOUP)
+
+
+@pytest.mark.parametrize("encoding", ENCODINGS)
+def test_a_comment_may_go_on_in_another_line_before_the_first_element(encoding: str) -> None:
+    broken = b"Created by a program, source file:\n"
+    for after in (b"ply\n", SQUARES[encoding][: SQUARES[encoding].index(b"element")]):
+        assert_is_soup(read(SQUARES[encoding].replace(after, after + broken, 1)), SOUP)
+    with pytest.raises(InvalidMesh, match="Line 6: 'Created by"):
+        read(SQUARES[encoding].replace(b"property", broken + b"property", 1))
+
+
 def test_what_a_line_has_too_much_is_ignored_with_a_note() -> None:
     mesh = read(LONG_LINES)
     assert_is_soup(mesh, SOUP)
@@ -202,6 +216,14 @@ def test_every_line_may_have_more_values_than_declared(more: str) -> None:
     mesh = read(f"{head}end_header\n{lines}".encode())
     assert_is_soup(mesh, SOUP)
     assert len(mesh.notes) == 2
+
+
+def test_what_a_line_has_too_little_is_not_taken_from_another_line() -> None:
+    head, body = SQUARES["ascii"].split(b"end_header\n")
+    first, second, *others = body.splitlines(keepends=True)
+    moved = [first.replace(b"\n", b" 7\n"), second.rpartition(b" ")[0] + b"\n", *others]
+    with pytest.raises(InvalidMesh, match=r"Line \d+ of the PLY file: it has fewer values"):
+        read(head + b"end_header\n" + b"".join(moved))
 
 
 def test_lists_of_other_values_than_declared_do_not_move_the_next_line() -> None:
@@ -225,6 +247,19 @@ def test_colours_are_the_same_if_lines_are_too_long() -> None:
     head, body = data.split(b"end_header\n")
     every = head + b"end_header\n" + body.replace(b"\n", b" 7\n")
     assert read_look(every).colors.tolist() == read_look(data).colors.tolist()
+
+
+@pytest.mark.parametrize(("kind", "full"), [("uint8", 1), ("uint16", 0), ("float", 255)])
+@pytest.mark.parametrize("more", ["", " 7"])
+@pytest.mark.parametrize("x", ["1", "1.5"])
+def test_the_declared_type_of_colours_counts_and_not_how_they_are_written(
+    kind: str, full: int, more: str, x: str
+) -> None:
+    columns = [*XYZ, *((kind, name) for name in ("red", "green", "blue"))]
+    rows = [[*vertex, 1, 0, 1] for vertex in [(0, 0, 0), (2, 0, 0), (0, 3, 0)]]
+    head, body = ply("ascii", [("vertex", columns, rows), ("face", INDICES, [[[0, 1, 2]]])]).split(b"end_header\n")
+    lines = body.replace(b".0", b"").replace(b"2 0 0", f"{x} 0 0".encode()).replace(b"\n", f"{more}\n".encode())
+    assert read_look(head + b"end_header\n" + lines).colors.tolist() == [[full, 0, full, 255]] * 3
 
 
 def test_a_face_whose_number_of_corners_is_too_small_for_its_line_is_damage() -> None:

@@ -1,0 +1,1 @@
+"""Real mesh files, read by Cleave and by other readers."""
