@@ -9,14 +9,12 @@ from fastapi.routing import APIRoute
 
 from service.problems import Problem
 
+_KEY_IN_HEADER = "send an API key in the header Authorization: Bearer KEY"
 # What clients look for in the query although it is elsewhere.
 _ELSEWHERE = {
     "wait": "to wait for the result, send the header Prefer: wait=SECONDS",
     "max_segments": 'it is one of the parameters, such as ?parameters={"max_segments": 32}',
-    "api_key": "send an API key in the header Authorization: Bearer KEY",
-    "key": "send an API key in the header Authorization: Bearer KEY",
-    "token": "send an API key in the header Authorization: Bearer KEY",
-}
+} | dict.fromkeys(("api_key", "key", "token"), _KEY_IN_HEADER)
 
 
 async def refuse_unknown_parameters(request: Request) -> None:

@@ -123,7 +123,7 @@ def socket_path(folder: Path) -> Path:
     name = hashlib.sha256(os.fsencode(folder)).hexdigest()[:16]
     short = Path(tempfile.gettempdir()) / f"cleave-{os.getuid()}-{name}"
     if not _is_usable(short / path.name):
-        short = Path("/tmp") / short.name
+        short = Path("/tmp") / short.name  # nosec B108  # _make_private checks that it belongs to this user
     return short / path.name
 
 
