@@ -7,7 +7,7 @@ from segcore.levels import Fineness
 def level_summary(hierarchy: Hierarchy, segments: int, fineness: Fineness) -> str:
     """Return the number of segments, who has chosen it, and the number at which the hierarchy ends and why."""
     chosen = "chosen automatically" if fineness.is_automatic else "as requested"
-    return f"{segments} segments, {chosen}; {_end(hierarchy)}"
+    return f"{segments} segment{'s' if segments != 1 else ''}, {chosen}; {_end(hierarchy)}"
 
 
 def _end(hierarchy: Hierarchy) -> str:

@@ -1,5 +1,6 @@
 """The listening socket of the service."""
 
+import os
 import socket
 
 BACKLOG = 1024  # connections that the kernel completes before the process accepts them; set by hand
@@ -21,7 +22,9 @@ def listen(host: str, port: int) -> socket.socket:
         family, _, _, _, address = socket.getaddrinfo(host, port, type=socket.SOCK_STREAM, flags=socket.AI_PASSIVE)[0]
         return socket.create_server(address[:2], family=family, backlog=BACKLOG)
     except OSError as error:
-        raise CannotListen(f"Cannot listen on {host} port {port}: {error.strerror}.") from error
+        # create_server adds the address to the text of the system, which would say it twice.
+        reason = error.strerror if isinstance(error, socket.gaierror) else os.strerror(error.errno or 0)
+        raise CannotListen(f"Cannot listen on {host} port {port}: {reason}.") from error
 
 
 def url_of(listening: socket.socket) -> str:

@@ -21,3 +21,7 @@ def test_the_summary_says_where_the_hierarchy_ends_and_why(limit_reached: bool |
     hierarchy = replace(two_strips()[1], limit_reached=limit_reached)
     assert level_summary(hierarchy, 2, Fineness()) == f"2 segments, chosen automatically; {end}"
     assert level_summary(hierarchy, 3, Fineness(segments=3)) == f"3 segments, as requested; {end}"
+
+
+def test_one_segment_is_singular() -> None:
+    assert level_summary(two_strips()[1], 1, Fineness(segments=1)).startswith("1 segment, as requested; ")
