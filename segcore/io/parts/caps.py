@@ -54,7 +54,7 @@ def _with_new_edges(
     """New vertices, numbered from ``first``, and the triangles of a cap; its new edges are added to ``taken``."""
     number = cap.loop.tolist()
     triangles = [tuple(corners) for corners in cap.filling.triangles.tolist()]
-    added = []
+    added: list[FloatArray] = []
     for places in [*_bridges(number), *_inner_edges(cap.filling.triangles, len(number))]:
         edge = _lower_first(*(number[corner] for corner in places[0]))
         if edge in taken:
@@ -89,7 +89,7 @@ def _lower_first(a: int, b: int) -> tuple[int, int]:
 
 def _split(triangles: list[tuple[int, ...]], edge: tuple[int, int], middle: int) -> list[tuple[int, ...]]:
     """The triangles with a new corner in the middle of the edge between two corners."""
-    result = []
+    result: list[tuple[int, ...]] = []
     for triangle in triangles:
         for turn in range(3):
             x, y, z = triangle[turn], triangle[(turn + 1) % 3], triangle[turn - 1]

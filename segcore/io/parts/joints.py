@@ -7,7 +7,7 @@ from typing import TypeAlias
 import numpy as np
 from scipy.spatial import KDTree
 
-from segcore.arrays import BoolArray, FloatArray, IntArray
+from segcore.arrays import BoolArray, FloatArray, IntArray, LongArray
 from segcore.io.parts.triangulation import Filling, fill_flat, fill_ribbon
 
 Inside: TypeAlias = Callable[[FloatArray], BoolArray]  # (N,) whether points (N, 3) are inside the whole model
@@ -69,10 +69,16 @@ def _near_opposites(vertices: FloatArray, cap: Cap, others: list[Cap]) -> list[i
     gap = np.maximum(cap.box[0] - boxes[:, 1], boxes[:, 0] - cap.box[1]).max(axis=1)
     is_opposite = np.stack([other.area for other in others]) @ cap.area < 0
     distance = {
-        place: float(KDTree(vertices[others[place].loop]).query(vertices[cap.loop])[0].min())
+        place: float(_nearest_corners(vertices, cap.loop, others[place].loop)[0].min())
         for place in np.flatnonzero(is_opposite & (gap < reach)).tolist()
     }
     return sorted((place for place in distance if distance[place] < reach), key=distance.__getitem__)[:_PARTNERS]
+
+
+def _nearest_corners(vertices: FloatArray, loop: IntArray, other: IntArray) -> tuple[FloatArray, LongArray]:
+    """(N,) the distance of every corner of a loop from the nearest one of another loop, and (N,) which one that is."""
+    distance, corner = KDTree(vertices[other]).query(vertices[loop])
+    return np.asarray(distance), np.asarray(corner)
 
 
 def _joined(vertices: FloatArray, cap: Cap, other: Cap, is_inside: Inside) -> Cap | None:
@@ -86,7 +92,7 @@ def _joined(vertices: FloatArray, cap: Cap, other: Cap, is_inside: Inside) -> Ca
 
 def _cap_of_both(vertices: FloatArray, cap: Cap, other: Cap) -> Cap | None:
     """The cap in a plane with the shortest bridge that allows one, else a ribbon with the shortest bridge."""
-    distance, ends = KDTree(vertices[other.loop]).query(vertices[cap.loop])
+    distance, ends = _nearest_corners(vertices, cap.loop, other.loop)
     loops = [
         _bridged(other.loop, int(ends[end]), cap.loop, end)
         for end in np.argsort(distance, kind="stable")[:_BRIDGES].tolist()

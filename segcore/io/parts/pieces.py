@@ -1,7 +1,7 @@
 """The segments of a mesh as separate meshes, as they are or closed for printing."""
 
 from collections.abc import Iterator
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -25,7 +25,21 @@ class Part:
     label: int
     vertices: FloatArray  # (V, 3) the vertices that its faces use, in input order
     faces: IntArray  # (F, 3)
-    is_solid: bool = False  # closed by caps, and each edge has two faces, which are oriented consistently
+    is_solid: bool | None = None  # of closed parts: each edge has two faces, which are oriented consistently
+
+
+def parts_of(
+    mesh: Mesh, hierarchy: Hierarchy, segments: int | None, closed: bool, offset: FloatArray
+) -> Iterator[Part]:
+    """Yield each segment, closed or as it is, with ``offset`` (3,) subtracted from its vertices.
+
+    Raises
+    ------
+    InvalidParameters
+        If ``segments`` is not in 1..max_segments.
+    """
+    for part in (closed_parts if closed else segment_parts)(mesh, hierarchy, segments):
+        yield replace(part, vertices=part.vertices - offset) if offset.any() else part
 
 
 def segment_parts(mesh: Mesh, hierarchy: Hierarchy, segments: int | None = None) -> Iterator[Part]:

@@ -47,8 +47,9 @@ def test_several_outputs_at_once_and_the_options_of_formats(
     assert main(["convert", str(ball / "ball.cleave"), "--segments", "4", *outputs, *options]) == 0
     assert all(word in glb.read_bytes() for word in (b"KHR_materials_variants", b"EXT_structural_metadata"))
     with zipfile.ZipFile(archive) as parts:
-        assert parts.namelist() == [f"segment_{k}.obj" for k in range(4)]
-        for name in parts.namelist():
+        *names, last = parts.namelist()
+        assert (names, last) == ([f"segment_{k}.obj" for k in range(4)], "parts.json")
+        for name in names:
             assert trimesh.load(io.BytesIO(parts.read(name)), file_type="obj").is_watertight
     hierarchy = read_result(ball / "ball.cleave").hierarchy
     assert np.load(labels).tolist() == hierarchy.labels(4).tolist()
@@ -78,3 +79,21 @@ def test_what_cannot_be_kept_is_said(tmp_path: Path, capsys: pytest.CaptureFixtu
     (tmp_path / "a.obj").write_text("mtllib a.mtl\nv 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\nusemtl red\nf 1 2 3\nf 1 3 4\n")
     assert main(["segment", str(tmp_path / "a.obj"), "-o", str(tmp_path / "a.glb"), "--keep", "all"]) == 0
     assert "The picture 'red.png' is not in the set or cannot be read: it is left out." in capsys.readouterr().out
+
+
+@pytest.mark.parametrize(("option", "is_closed"), [([], True), (["--capped"], True), (["--open"], False)])
+def test_parts_for_printing_are_closed_unless_they_are_to_be_open(
+    ball: Path, tmp_path: Path, option: list[str], is_closed: bool
+) -> None:
+    outputs = ["-o", str(tmp_path / "ball.3mf"), "-o", str(tmp_path / "ball.zip")]
+    assert main(["convert", str(ball / "ball.cleave"), "--segments", "3", *outputs, *option]) == 0
+    parts = list(trimesh.load(tmp_path / "ball.3mf").geometry.values())
+    with zipfile.ZipFile(tmp_path / "ball.zip") as archive:
+        parts += [trimesh.load(io.BytesIO(archive.read(f"segment_{k}.stl")), file_type="stl") for k in range(3)]
+    assert [part.is_watertight for part in parts] == [is_closed] * 6
+
+
+def test_parts_are_either_open_or_closed(ball: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    with pytest.raises(SystemExit):
+        main(["convert", str(ball / "ball.cleave"), "-o", str(tmp_path / "ball.3mf"), "--open", "--capped"])
+    assert "not allowed with" in capsys.readouterr().err

@@ -59,12 +59,33 @@ def test_models_are_sent_as_attachments(
     assert answer.content.startswith(begins)
 
 
-def test_parts_are_a_file_per_segment(client: httpx.Client, finished_job: Callable[..., str]) -> None:
+def test_parts_are_a_file_per_segment_and_closed_if_they_are_for_printing(
+    client: httpx.Client, finished_job: Callable[..., str]
+) -> None:
     path = finished_job()
-    for form in ("stl", "obj"):
-        data = client.get(f"{path}/parts.zip", params={"segments": 3, "part_format": form}).content
-        names = zipfile.ZipFile(io.BytesIO(data)).namelist()
-        assert names == [f"segment_{number}.{form}" for number in range(3)]
+    cases = [
+        ("stl", {}, True),
+        ("stl", {"capped": "false"}, False),
+        ("obj", {}, False),
+        ("obj", {"capped": "true"}, True),
+    ]
+    for form, query, is_closed in cases:
+        data = client.get(f"{path}/parts.zip", params={"segments": 3, "part_format": form, **query}).content
+        archive = zipfile.ZipFile(io.BytesIO(data))
+        *names, last = archive.namelist()
+        assert (names, last) == ([f"segment_{number}.{form}" for number in range(3)], "parts.json")
+        parts = [trimesh.load(io.BytesIO(archive.read(name)), file_type=form) for name in names]
+        assert [part.is_watertight for part in parts] == [is_closed] * 3
+
+
+def test_objects_of_3mf_are_closed_unless_the_request_says_otherwise(
+    client: httpx.Client, finished_job: Callable[..., str]
+) -> None:
+    path = finished_job()
+    for query, is_closed in (({}, True), ({"capped": "true"}, True), ({"capped": "false"}, False)):
+        data = client.get(f"{path}/model.3mf", params={"segments": 3, **query}).content
+        scene = trimesh.load(io.BytesIO(data), file_type="3mf")
+        assert [part.is_watertight for part in scene.geometry.values()] == [is_closed] * 3
 
 
 def test_the_preview_shows_the_segments(client: httpx.Client, finished_job: Callable[..., str]) -> None:
