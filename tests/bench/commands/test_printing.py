@@ -6,7 +6,7 @@ import pytest
 
 from bench.__main__ import main
 from helpers.creatures import creature
-from helpers.slicers import needs_slicer
+from helpers.printing.slicers import needs_slicer
 from segcore.io import write_mesh
 
 

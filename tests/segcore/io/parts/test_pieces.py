@@ -11,7 +11,7 @@ from hypothesis import strategies as st
 from helpers.creatures import creature
 from helpers.files.hierarchies import segmentations
 from helpers.meshes import moved
-from helpers.solids import cup, fans, halves, lathe, pipe, volume
+from helpers.printing.solids import cup, fans, halves, lathe, pipe, volume
 from segcore import shapes
 from segcore.hierarchy import Hierarchy
 from segcore.io.parts.pieces import Part, closed_parts, segment_parts

@@ -10,8 +10,8 @@ from bench.printing.slicer import are_manifold, slice_file
 from helpers.creatures import creature
 from helpers.files.written import members, written
 from helpers.meshes import exploded, moved
-from helpers.slicers import needs_slicer
-from helpers.solids import cup, halves, pipe
+from helpers.printing.slicers import needs_slicer
+from helpers.printing.solids import cup, halves, pipe
 from segcore import shapes
 from segcore.hierarchy import Hierarchy
 from segcore.io.parts.pieces import closed_parts

@@ -9,7 +9,7 @@ from hypothesis import given
 
 from helpers.files.hierarchies import segmentations
 from helpers.files.written import members, written
-from helpers.solids import halves
+from helpers.printing.solids import halves
 from segcore import shapes
 from segcore.hierarchy import Hierarchy
 from segcore.io import read_mesh
