@@ -53,17 +53,42 @@ def _with_new_edges(
 ) -> tuple[FloatArray, IntArray]:
     """New vertices, numbered from ``first``, and the triangles of a cap; its new edges are added to ``taken``."""
     number = cap.loop.tolist()
-    triangles = [tuple(corners) for corners in cap.filling.triangles.tolist()]
+    triangles = _Triangles(cap.triangles)
     added: list[FloatArray] = []
-    for places in [*_bridges(number), *_inner_edges(cap.filling.triangles, len(number))]:
+    for places in [*_bridges(number), *_inner_edges(cap.triangles, len(number))]:
         edge = _lower_first(*(number[corner] for corner in places[0]))
         if edge in taken:
             for place in places:
-                triangles = _split(triangles, place, len(number))
+                triangles.split(place, len(number))
             number.append(first + len(added))
             added.append(0.5 * (vertices[edge[0]] + vertices[edge[1]]))
         taken.add(edge)
-    return np.array(added).reshape(-1, 3), np.array(number, dtype=np.int32)[np.array(triangles)]
+    return np.array(added).reshape(-1, 3), np.array(number, dtype=np.int32)[np.array(triangles.corners)]
+
+
+class _Triangles:
+    """Triangles of which edges can be split."""
+
+    def __init__(self, triangles: LongArray) -> None:
+        self.corners: list[list[int]] = triangles.tolist()
+        self._at_edge: dict[tuple[int, int], int] = {}  # the triangle on the left of a directed edge
+        for triangle in range(len(self.corners)):
+            self._enter(triangle)
+
+    def _enter(self, triangle: int) -> None:
+        a, b, c = self.corners[triangle]
+        self._at_edge |= dict.fromkeys([(a, b), (b, c), (c, a)], triangle)
+
+    def split(self, edge: tuple[int, int], middle: int) -> None:
+        """Put a new corner in the middle of an edge, in the triangles on both sides of it."""
+        for x, y in (edge, edge[::-1]):
+            if (x, y) in self._at_edge:
+                triangle = self._at_edge.pop((x, y))
+                (z,) = set(self.corners[triangle]) - {x, y}
+                self.corners[triangle] = [x, middle, z]
+                self.corners.append([middle, y, z])
+                self._enter(triangle)
+                self._enter(len(self.corners) - 1)
 
 
 def _inner_edges(triangles: LongArray, count: int) -> list[list[tuple[int, int]]]:
@@ -85,17 +110,3 @@ def _bridges(number: list[int]) -> list[list[tuple[int, int]]]:
 
 def _lower_first(a: int, b: int) -> tuple[int, int]:
     return (a, b) if a < b else (b, a)
-
-
-def _split(triangles: list[tuple[int, ...]], edge: tuple[int, int], middle: int) -> list[tuple[int, ...]]:
-    """The triangles with a new corner in the middle of the edge between two corners."""
-    result: list[tuple[int, ...]] = []
-    for triangle in triangles:
-        for turn in range(3):
-            x, y, z = triangle[turn], triangle[(turn + 1) % 3], triangle[turn - 1]
-            if {x, y} == {*edge}:
-                result += [(x, middle, z), (middle, y, z)]
-                break
-        else:
-            result.append(triangle)
-    return result

@@ -5,17 +5,31 @@ from numba import njit
 
 from segcore.arrays import BoolArray, FloatArray, IntArray
 
+_MOST_ANGLES = 10**9  # solid angles that are computed for one model: 20 s
 
-def is_inside(points: FloatArray, vertices: FloatArray, faces: IntArray) -> BoolArray:
-    """(N,) True for points (N, 3) around which an oriented surface winds more than half a time.
+
+class InsideTest:
+    """Tells whether points are inside a surface, as long as the time for it lasts.
+
+    A point is inside if the oriented surface winds around it more than half a time.
 
     References
     ----------
     Jacobson, Kavan and Sorkine-Hornung, Robust inside-outside segmentation using generalized winding numbers, 2013.
     Solid angle: Van Oosterom and Strackee, The solid angle of a plane triangle, 1983.
     """
-    inside: BoolArray = winding_numbers(points, vertices, faces) > 0.5
-    return inside
+
+    def __init__(self, vertices: FloatArray, faces: IntArray) -> None:
+        self._vertices, self._faces = vertices, faces
+        self._left = _MOST_ANGLES
+
+    def __call__(self, points: FloatArray) -> BoolArray:
+        """(N,) True for points (N, 3) inside; False for all if there is no time left."""
+        self._left -= len(points) * len(self._faces)
+        if self._left < 0:
+            return np.zeros(len(points), dtype=bool)
+        inside: BoolArray = winding_numbers(points, self._vertices, self._faces) > 0.5
+        return inside
 
 
 @njit(cache=True)

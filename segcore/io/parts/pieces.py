@@ -9,7 +9,7 @@ from segcore.arrays import FloatArray, IntArray
 from segcore.clean.surface import Surface, build_surface
 from segcore.hierarchy import Hierarchy
 from segcore.io.parts.caps import close_borders
-from segcore.io.parts.inside import is_inside
+from segcore.io.parts.inside import InsideTest
 from segcore.io.parts.joints import Inside
 from segcore.io.parts.solids import divided_vertices, is_manifold, outward
 from segcore.io.slices import Slices, group, segment_slices
@@ -70,10 +70,11 @@ def closed_parts(mesh: Mesh, hierarchy: Hierarchy, segments: int | None = None) 
     vertices = _positions(mesh, surface)
     label_of_face = np.zeros(len(surface.faces), dtype=np.int32)
     label_of_face[surface.face_of_input[::-1]] = labels[::-1]  # if they differ, that of the first input face
+    is_inside = InsideTest(vertices, surface.faces)
     a, b, c = surface.faces.T
     distinct = (a != b) & (b != c) & (c != a)  # all, unless all faces of the mesh are degenerate
     for part in _parts(vertices, surface.faces[distinct], group(label_of_face[distinct], count)):
-        yield _solid(part, lambda points: is_inside(points, vertices, surface.faces))
+        yield _solid(part, is_inside)
 
 
 def _solid(part: Part, is_inside: Inside) -> Part:
@@ -90,7 +91,8 @@ def _positions(mesh: Mesh, surface: Surface) -> FloatArray:
     kept, first = np.unique(surface.face_of_input, return_index=True)
     corners, given = surface.faces[kept], mesh.faces[first]
     given = np.where(surface.is_flipped[kept, None], given[:, [0, 2, 1]], given)
-    is_same = np.abs(mesh.vertices[given] - positions[corners]).max(axis=2) <= _ROUNDING * np.abs([low, high]).max()
+    near = np.abs(mesh.vertices[given] - positions[corners]) <= _ROUNDING * np.abs([low, high]).max()
+    is_same = near[:, :, 0] & near[:, :, 1] & near[:, :, 2]
     positions[corners[is_same]] = mesh.vertices[given[is_same]]
     return positions
 

@@ -5,6 +5,7 @@ import numpy as np
 from segcore.arrays import BoolArray, FloatArray, IntArray, LongArray, group_sums, pair_keys
 from segcore.graphs.surface_graph import connected_components
 
+_LARGEST = 64  # pieces that are tested for holding others, the largest; set by hand
 _NEXT = np.array([1, 1, -2])  # from a corner of a face to the next one, if corners are numbered 3 f + k
 
 
@@ -27,11 +28,10 @@ def divided_vertices(vertices: FloatArray, faces: IntArray) -> tuple[FloatArray,
 
 def is_manifold(faces: IntArray) -> bool:
     """Whether each edge has two faces, which run through it in opposite directions."""
-    ends = faces[:, [[0, 1], [1, 2], [2, 0]]].reshape(-1, 2)
-    keys = np.sort(pair_keys(ends, int(faces.max()) + 1))
-    directed = ends[:, 0].astype(np.int64) * (int(faces.max()) + 1) + ends[:, 1]
-    twice = len(keys) % 2 == 0 and bool((keys[::2] == keys[1::2]).all() and (keys[2::2] != keys[1:-1:2]).all())
-    return twice and len(np.unique(directed)) == len(directed)
+    ends = faces[:, [[0, 1], [1, 2], [2, 0]]].reshape(-1, 2).astype(np.int64)
+    count = int(faces.max()) + 1
+    forward, backward = (np.sort(ends[:, k] * count + ends[:, 1 - k]) for k in (0, 1))
+    return bool((forward[1:] > forward[:-1]).all() and (forward == backward).all())
 
 
 def _opposite_edges(vertices: FloatArray, faces: IntArray) -> LongArray:
@@ -98,10 +98,10 @@ def outward(vertices: FloatArray, faces: IntArray, is_cap: BoolArray) -> IntArra
     for corner in faces.T:
         np.minimum.at(low, piece, vertices[corner])
         np.maximum.at(high, piece, vertices[corner])
-    turned = [
-        p
-        for p in suspects.tolist()
-        if not ((low < low[p]) & (high > high[p]) & (volume > 0)[:, None]).all(axis=1).any()
-    ]
-    is_turned = np.isin(piece, turned)
+    extent = np.where(volume > 0, (high - low).max(axis=1), 0.0)
+    around = np.argsort(-extent, kind="stable")[:_LARGEST]
+    around = around[volume[around] > 0]
+    holds = (low[around] < low[suspects, None]) & (high[around] > high[suspects, None])
+    is_held: BoolArray = np.any(np.all(holds, axis=2), axis=1)
+    is_turned = np.isin(piece, suspects[~is_held])
     return np.where(is_turned[:, None], faces[:, ::-1], faces)

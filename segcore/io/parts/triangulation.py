@@ -19,7 +19,6 @@ class Filling:
     """The triangles that fill a loop."""
 
     triangles: LongArray  # (N - 2, 3) positions in the loop
-    area: float
     is_plain: bool  # the loop and its triangles have a projection without overlaps
 
 
@@ -36,12 +35,14 @@ def fill_flat(points: FloatArray, vertex: IntArray) -> Filling:
     Meisters, Polygons have ears, 1975. Newell's normal: Sutherland, Sproull and Schumacker, A characterization of ten
     hidden-surface algorithms, 1974.
     """
+    if len(points) == 3:
+        return Filling(np.arange(3)[None], True)
     flat = _projected(points)
     triangles = cut_ears(flat)
     turns = _doubled_areas(flat, triangles)
     total = float(turns.sum())
     is_plain = total > 0 and bool((turns >= -_ROUNDING * total).all()) and not _touches_itself(triangles, vertex)
-    return Filling(triangles, _area(points, triangles), is_plain)
+    return Filling(triangles, is_plain)
 
 
 def fill_ribbon(points: FloatArray, first: int) -> Filling | None:
@@ -63,7 +64,7 @@ def fill_ribbon(points: FloatArray, first: int) -> Filling | None:
     triangles = ribbon(points[: first + 1], points[first + 1 :][::-1])
     is_second = triangles > first
     triangles = np.where(is_second, len(points) + first - triangles, triangles)
-    return Filling(triangles, _area(points, triangles), False)
+    return Filling(triangles, False)
 
 
 def _touches_itself(triangles: LongArray, vertex: IntArray) -> bool:
@@ -77,11 +78,6 @@ def _doubled_areas(flat: FloatArray, triangles: LongArray) -> FloatArray:
     (ux, uy), (vx, vy) = (b - a).T, (c - a).T
     areas: FloatArray = ux * vy - uy * vx
     return areas
-
-
-def _area(points: FloatArray, triangles: LongArray) -> float:
-    a, b, c = (points[triangles[:, k]] for k in range(3))
-    return 0.5 * float(np.linalg.norm(np.cross(b - a, c - a), axis=1).sum())
 
 
 def _projected(points: FloatArray) -> FloatArray:

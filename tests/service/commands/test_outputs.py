@@ -29,7 +29,9 @@ def test_the_help_lists_the_extensions_of_the_writers(command: str, capsys: pyte
 @pytest.mark.parametrize("kind", WRITERS)
 def test_a_result_is_converted_to_what_segment_would_have_written(ball: Path, tmp_path: Path, kind: str) -> None:
     extension = WRITERS[kind].extension
-    converted, direct = tmp_path / f"converted{extension}", tmp_path / f"direct{extension}"
+    converted, direct = (tmp_path / folder / f"model{extension}" for folder in ("converted", "direct"))
+    for path in (converted, direct):
+        path.parent.mkdir()
     assert main(["convert", str(ball / "ball.cleave"), "--segments", "9", "-o", str(converted)]) == 0
     assert main(["segment", str(ball / "ball.off"), "--segments", "9", "-o", str(direct)]) == 0
     assert converted.read_bytes() == direct.read_bytes()
@@ -97,3 +99,21 @@ def test_parts_are_either_open_or_closed(ball: Path, tmp_path: Path, capsys: pyt
     with pytest.raises(SystemExit):
         main(["convert", str(ball / "ball.cleave"), "-o", str(tmp_path / "ball.3mf"), "--open", "--capped"])
     assert "not allowed with" in capsys.readouterr().err
+
+
+@pytest.mark.parametrize("command", ["segment", "convert"])
+def test_the_materials_of_an_obj_file_are_written_beside_it(ball: Path, tmp_path: Path, command: str) -> None:
+    source = ball / ("ball.off" if command == "segment" else "ball.cleave")
+    target = tmp_path / "a ball.obj"
+    assert main([command, str(source), "--segments", "3", "-o", str(target)]) == 0
+    assert sorted(path.name for path in tmp_path.iterdir()) == ["a ball.mtl", "a ball.obj"]
+    assert "\nmtllib a ball.mtl\n" in target.read_text()
+    assert target.with_suffix(".mtl").read_text().count("newmtl ") == 3
+
+
+def test_the_vertices_of_ply_are_those_of_the_input_if_colours_are_on_faces(ball: Path, tmp_path: Path) -> None:
+    count = len(read_result(ball / "ball.cleave").mesh.vertices)
+    for option, is_divided in ([], True), (["--colors", "faces"], False):
+        target = tmp_path / "ball.ply"
+        assert main(["convert", str(ball / "ball.cleave"), "--segments", "3", "-o", str(target), *option]) == 0
+        assert (len(trimesh.load(target, process=False).vertices) > count) == is_divided
