@@ -55,7 +55,7 @@ def _reader(program: str, path: Path) -> Callable[[], object]:
     return lambda: read_mesh(path)
 
 
-def _writer(path: Path) -> Callable[[], object]:
+def _writer(path: Path, options: dict[str, object]) -> Callable[[], object]:
     from segcore.hierarchy import Hierarchy
     from segcore.io import read_mesh
     from segcore.io.writing import writer_for
@@ -78,17 +78,19 @@ def _writer(path: Path) -> Callable[[], object]:
 
     def write() -> None:
         with path.open("wb") as target:
-            writer.write(target, mesh, hierarchy, None)
+            writer.write(target, mesh, hierarchy, None, **options)
 
     return write
 
 
 def main(arguments: list[str]) -> None:
-    program, action, name = arguments
+    program, action, name, *more = arguments
+    options = json.loads(more[0]) if more else {}  # of the writer
     path = Path(name)
-    work = _reader(program, path.with_stem("small")) if action == "read" else _writer(path.with_stem("small"))
+    small = path.with_stem("small")
+    work = _reader(program, small) if action == "read" else _writer(small, options)
     work()  # imports and compiles what the measured runs need
-    work = _reader(program, path) if action == "read" else _writer(path)
+    work = _reader(program, path) if action == "read" else _writer(path, options)
     print(json.dumps(_measure(work)))
 
 

@@ -55,7 +55,7 @@ def test_every_writer_takes_any_names_and_moves_no_label(given_names: dict[int, 
         }
         for label, name in enumerate(expected):
             assert of_group[name].tolist() == mesh.corners[labels == label].tolist()
-    assert read(written("ply", mesh, hierarchy, 3, names=given_names)).faces.tolist() == mesh.faces.tolist()
+    assert read(written("ply", mesh, hierarchy, 3, names=given_names)).corners.tolist() == mesh.corners.tolist()
     for part_format in ("stl", "obj"):
         files = members(written("zip", mesh, hierarchy, 3, names=given_names, part_format=part_format))
         assert list(files)[:-1] == [f"{stem}.{part_format}" for stem in file_stems(given_names, 3)]
