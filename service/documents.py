@@ -48,6 +48,8 @@ class JobLinks(BaseModel):
     )
     ply: str
     obj: str
+    mtl: str = Field(description="The colours of the OBJ file.")
+    objzip: str = Field(description="A ZIP archive with the OBJ file and its colours.")
     threemf: str
     parts: str = Field(description="A ZIP archive with a file per segment.")
     preview: str = Field(description="A picture.")

@@ -66,10 +66,11 @@ def _writer(path: Path) -> Callable[[], object]:
 
     mesh, hierarchy = _segmented(path.with_suffix(".ply"))
     writer = writer_for(path.name)
+    options = {"capped": False} if "capped" in writer.options else {}  # the same work in every version
 
     def write() -> None:
         with path.open("wb") as target:
-            writer.write(target, mesh, hierarchy, None)
+            writer.write(target, mesh, hierarchy, None, **options)
 
     return write
 

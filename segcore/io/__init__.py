@@ -15,10 +15,11 @@ from segcore.io.labels import hierarchy_document, labels_document, runs_document
 from segcore.io.limits import ReadLimits
 from segcore.io.mesh_writer import write_mesh
 from segcore.io.names import SegmentNames
+from segcore.io.obj.materials_writer import write_mtl, write_obj_archive
 from segcore.io.obj.writer import write_obj
 from segcore.io.parts.writer import write_parts
 from segcore.io.picture import draw, write_png
-from segcore.io.ply.writer import write_ply
+from segcore.io.ply.writer import PlyColors, write_ply
 from segcore.io.reading import read_mesh
 from segcore.io.result import Segmentation, read_result, write_result
 from segcore.io.threemf.writer import write_3mf
@@ -32,6 +33,7 @@ __all__ = [
     "Layout",
     "Original",
     "PartFormat",
+    "PlyColors",
     "ReadLimits",
     "SegmentNames",
     "Segmentation",
@@ -51,8 +53,10 @@ __all__ = [
     "write_kept",
     "write_kept_parts",
     "write_mesh",
+    "write_mtl",
     "write_npy",
     "write_obj",
+    "write_obj_archive",
     "write_parts",
     "write_ply",
     "write_png",

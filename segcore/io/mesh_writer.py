@@ -9,7 +9,7 @@ from segcore.errors import UnsupportedFormat
 from segcore.io.obj.writer import encode_obj
 from segcore.io.off.writer import encode_off
 from segcore.io.ply.writer import encode_ply
-from segcore.io.stl.writer import check_coordinates, encode_stl
+from segcore.io.stl.writer import check_coordinates, encode_stl, offset_of
 from segcore.mesh import Mesh
 
 Piece: TypeAlias = bytes | memoryview
@@ -22,7 +22,9 @@ def write_mesh(
 ) -> None:
     """Write a mesh as OFF, STL (binary), PLY (binary) or OBJ, its vertices and faces in their order.
 
-    OFF, PLY and OBJ keep the coordinates exactly; STL rounds them to float32 and repeats the vertices of each face.
+    OFF, PLY and OBJ keep the coordinates exactly; STL rounds them to float32 and repeats the vertices of each face. If
+    that would lose details of a mesh that is far from the origin, as on a map, an STL file is moved to the origin. Its
+    header begins with ``offset``, the three numbers to add to x, y and z for the place of the mesh.
     PLY and OBJ keep the normals, texture coordinates and colours of the appearance. Use :data:`segcore.io.WRITERS` to
     write a segmentation.
 
@@ -60,7 +62,11 @@ def _encoder(target: str | os.PathLike[str] | BinaryIO, declared: str | None) ->
 
 def _checked_stl(mesh: Mesh) -> Iterator[bytes]:
     check_coordinates(mesh)  # before the file is opened
-    return encode_stl(mesh.vertices, mesh.faces)
+    offset = offset_of(mesh)
+    if not offset.any():
+        return encode_stl(mesh.vertices, mesh.faces)
+    note = f"offset {' '.join(map(repr, offset.tolist()))}, written by Cleave"
+    return encode_stl(mesh.vertices - offset, mesh.faces, note.encode("ascii"))
 
 
 _ENCODERS: dict[str, Callable[[Mesh], Iterator[Piece]]] = {

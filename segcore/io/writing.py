@@ -8,13 +8,14 @@ from typing import Literal, TypeAlias
 from segcore.errors import UnsupportedFormat
 from segcore.io.keeping import write_glb_as, write_parts_as
 from segcore.io.labels import write_json, write_npy, write_seg
+from segcore.io.obj.materials_writer import write_mtl, write_obj_archive
 from segcore.io.obj.writer import write_obj
 from segcore.io.ply.writer import write_ply
 from segcore.io.result import write_result
 from segcore.io.threemf.writer import write_3mf
 
 WriteOption: TypeAlias = Literal[
-    "names", "all_levels", "features", "layout", "keep", "capped", "part_format", "unit", "up"
+    "names", "all_levels", "features", "layout", "keep", "capped", "part_format", "colors", "unit", "up"
 ]
 
 # What each option of a writer does, in the order of the command line.
@@ -24,8 +25,9 @@ WRITE_OPTIONS: dict[WriteOption, str] = {
     "features": "the hierarchy as EXT_structural_metadata, with EXT_mesh_features",
     "layout": "nodes as nested as the hierarchy (tree), or all parts below the root (flat)",
     "keep": "the input with everything that it has, divided by part",
-    "capped": "close every part, for printing",
+    "capped": "close every part at its cuts, for printing; so by default in 3MF and in parts as STL",
     "part_format": "the files in it",
+    "colors": "the colours of segments on vertices, divided between segments, or on faces alone",
     "unit": "the unit of the coordinates, such as mm, if that of the mesh is known",
     "up": "the axis that points up, y or z, if that of the mesh is known",
 }
@@ -51,6 +53,7 @@ class Writer:
     media_type: str
     write: Callable[..., tuple[str, ...] | None]  # notes on what could not be kept of the input
     options: frozenset[WriteOption] = frozenset()  # keyword arguments of ``write``; formats of models take ``names``
+    companion: str = ""  # the format of a file that belongs beside; ``write`` takes its name as ``library``
 
 
 WRITERS: dict[str, Writer] = {
@@ -61,11 +64,25 @@ WRITERS: dict[str, Writer] = {
         write_glb_as,
         _MODEL | {"all_levels", "features", "layout", "keep"},
     ),
-    "ply": Writer("PLY, a colour and a label per face", ".ply", "model/ply", write_ply, _FREE),
-    "obj": Writer("OBJ, a group per segment", ".obj", "model/obj", write_obj, _FREE),
-    "3mf": Writer("3MF, an object per segment", ".3mf", "model/3mf", write_3mf, _MODEL | {"capped"}),
+    "ply": Writer("PLY, coloured vertices and a label per face", ".ply", "model/ply", write_ply, _FREE | {"colors"}),
+    "obj": Writer("OBJ, an object per segment", ".obj", "model/obj", write_obj, _FREE, companion="mtl"),
+    "mtl": Writer(
+        "MTL, the colours for the OBJ file",
+        ".mtl",
+        "model/mtl",
+        lambda target, _, hierarchy, segments, **options: write_mtl(target, hierarchy, segments, **options),
+        _MODEL,
+    ),
+    "objzip": Writer(
+        "OBJ with MTL, an object and a colour per segment as ZIP",
+        ".obj.zip",
+        "application/zip",
+        write_obj_archive,
+        _FREE,
+    ),
+    "3mf": Writer("3MF, a closed object per segment", ".3mf", "model/3mf", write_3mf, _MODEL | {"capped"}),
     "zip": Writer(
-        "ZIP archive, an STL file per segment",
+        "ZIP archive, a closed STL file per segment",
         ".zip",
         "application/zip",
         write_parts_as,
@@ -99,16 +116,15 @@ WRITERS: dict[str, Writer] = {
 
 
 def writer_for(name: str) -> Writer:
-    """Return the writer for a file name, chosen by its extension.
+    """Return the writer for a file name, chosen by its extension, the longest one that fits.
 
     Raises
     ------
     UnsupportedFormat
         If no format has this extension.
     """
-    extension = PurePath(name).suffix.lower()
-    for writer in WRITERS.values():
-        if writer.extension == extension:
-            return writer
+    fitting = [writer for writer in WRITERS.values() if PurePath(name).name.lower().endswith(writer.extension)]
+    if fitting:
+        return max(fitting, key=lambda writer: len(writer.extension))
     known = ", ".join(writer.extension for writer in WRITERS.values())
     raise UnsupportedFormat(f"{name!r} does not end in the extension of an output format: use one of {known}.")

@@ -5,7 +5,7 @@ from typing import Any, BinaryIO
 
 from segcore.io import draw, write_png
 from service.answer.level import ChosenCut
-from service.answer.model_formats import MODELS
+from service.answer.model_formats import MODELS, model_file
 from service.answer.originals import stored_original
 from service.answer.part_names import names_digest
 from service.answer.renditions import Rendition, to_bytes
@@ -38,7 +38,8 @@ def model_rendition(
         with stored_original(context, cut.job_id) as original:
             writer.write(target, mesh, hierarchy, cut.segments, names=names, **{**options, "keep": original})
 
-    file_name = f"{cut.job_id}{writer.extension}"
+    is_companion = any(one.companion == name for one in MODELS.values())  # a file that others refer to by its name
+    file_name = model_file(name) if is_companion else f"{cut.job_id}{writer.extension}"
     return _cached(context.results, cut.job_id, f"{name}?{query}", writer.media_type, write, file_name)
 
 

@@ -9,6 +9,7 @@ from typing import BinaryIO, get_args
 from segcore.errors import InvalidParameters
 from segcore.hierarchy import Hierarchy
 from segcore.io import Layout, Original, PartFormat
+from segcore.io.ply.writer import PlyColors
 from segcore.io.writing import WRITERS, Writer, writer_for
 from segcore.mesh import Mesh
 from worker.jobs.objects.durable import replace_file
@@ -45,7 +46,26 @@ def add_outputs(parser: argparse.ArgumentParser, required: bool = False) -> None
         "--output-unit", metavar="UNIT", help="OBJ, PLY and ZIP: convert the coordinates to this unit, such as mm"
     )
     parser.add_argument("--output-up", metavar="AXIS", help="OBJ, PLY and ZIP: turn the mesh so that y or z points up")
-    parser.add_argument("--capped", action="store_true", help="3MF and ZIP: close every part, for printing")
+    closing = parser.add_mutually_exclusive_group()
+    closing.add_argument(
+        "--open",
+        action="store_false",
+        default=None,
+        dest="capped",
+        help="3MF and ZIP: write the parts as they are, open at their cuts",
+    )
+    closing.add_argument(
+        "--capped",
+        action="store_true",
+        default=None,
+        help="3MF and ZIP: close every part at its cuts (so by default, except OBJ)",
+    )
+    parser.add_argument(
+        "--colors",
+        choices=get_args(PlyColors),
+        default="vertices",
+        help="PLY: colours of segments on the vertices, divided between segments, or on the faces alone (%(default)s)",
+    )
     parser.add_argument(
         "--parts", choices=get_args(PartFormat), default="stl", help="ZIP: format of its files (%(default)s)"
     )
@@ -90,6 +110,7 @@ def output_options(choices: argparse.Namespace, source: Path | None) -> OutputOp
         "unit": choices.output_unit,
         "up": choices.output_up,
         "part_format": choices.parts,
+        "colors": choices.colors,
     }
     return OutputOptions(values, Original(source, neighbours=True) if source else None, choices.keep == "all")
 
@@ -112,6 +133,8 @@ def write_model(
 ) -> tuple[str, ...]:
     """Write a segmented mesh in the format of the extension, with those of the options that the format has.
 
+    The materials of an OBJ file are written beside it.
+
     Returns
     -------
     Notes on what could not be kept of the input.
@@ -122,6 +145,10 @@ def write_model(
     """
     writer = writer_for(path.name)
     chosen = options.of(writer)
+    if writer.companion:
+        beside = path.with_suffix(WRITERS[writer.companion].extension)
+        write_model(beside, mesh, hierarchy, segments, options)
+        chosen["library"] = beside.name
     notes: list[str] = []
     write_file(path, lambda target: notes.extend(writer.write(target, mesh, hierarchy, segments, **chosen) or ()))
     return tuple(notes)

@@ -16,13 +16,18 @@ class ServerResult:
     path: str  # below the path of the job
     params: dict[str, object] = field(default_factory=dict)
     has_level: bool = True  # False if the result is the same for every number of segments
+    is_closed: bool = False  # the parts are closed at their cuts unless the request says otherwise
 
 
 def _models() -> dict[str, ServerResult]:
     """The formats of meshes, as :mod:`service.routes.models` serves them."""
     models = {name: writer for name, writer in WRITERS.items() if "names" in writer.options}
     return {
-        name: ServerResult(name, "parts.zip" if name == "zip" else f"model{writer.extension}")
+        name: ServerResult(
+            writer.extension.removeprefix("."),
+            "parts.zip" if name == "zip" else f"model{writer.extension}",
+            is_closed="capped" in writer.options,
+        )
         for name, writer in models.items()
     }
 
@@ -46,13 +51,19 @@ def result_names(text: str) -> tuple[str, ...]:
     return chosen
 
 
-def save_result(client: Client, job_id: str, name: str, target: Path, level: dict[str, object]) -> None:
+def save_result(
+    client: Client, job_id: str, name: str, target: Path, level: dict[str, object], open_parts: bool = False
+) -> None:
     """Save a result of a finished job in a file, completely or not at all.
 
     Parameters
     ----------
     name : a key of RESULTS.
     level : query parameters of the number of segments.
+    open_parts : do not close the parts at their cuts.
     """
     result = RESULTS[name]
-    client.download(job_id, result.path, target, **(level if result.has_level else {}), **result.params)
+    params = {**(level if result.has_level else {}), **result.params}
+    if open_parts and result.is_closed:
+        params["capped"] = False
+    client.download(job_id, result.path, target, **params)

@@ -31,6 +31,7 @@ class Submission:
     results: Sequence[str]  # keys of RESULTS
     folder: Path
     again: bool  # compute and save the results even if they exist
+    open_parts: bool = False  # do not close the parts of 3MF and ZIP files at their cuts
 
     def missing(self) -> dict[str, Path]:
         """Return the results to save and their files."""
@@ -58,7 +59,7 @@ def submit_file(client: Client, submission: Submission, board: ProgressBoard, st
     try:
         job = _finished_job(client, submission, board, stopping)
         for result, target in missing.items():
-            save_result(client, job.id, result, target, submission.level())
+            save_result(client, job.id, result, target, submission.level(), submission.open_parts)
     except ClientError as error:
         board.finish(label, str(error))
         return f"{label}: {error}"

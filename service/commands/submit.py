@@ -43,6 +43,9 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         metavar="LIST",
         help=f"what to save, separated by commas: {', '.join(RESULTS)} ({','.join(DEFAULT_RESULTS)})",
     )
+    parser.add_argument(
+        "--open", action="store_true", help="3mf and zip: save the parts as they are, not closed at their cuts"
+    )
     parser.add_argument("-o", "--output", type=Path, default=Path(), metavar="DIR", help="folder of the results (here)")
     parser.add_argument("--again", action="store_true", help="compute and save again what was done before")
 
@@ -107,6 +110,7 @@ def _submissions(choices: argparse.Namespace) -> list[Submission]:
             results=choices.results,
             folder=choices.output,
             again=choices.again,
+            open_parts=choices.open,
         )
         for path, name in zip(choices.files, names, strict=True)
     ]

@@ -25,6 +25,7 @@ def page_lists() -> dict[str, Any]:
         "formats": [
             {"name": name, "title": writer.title, "extension": writer.extension, "path": model_file(name)}
             for name, writer in MODELS.items()
+            if name not in {one.companion for one in MODELS.values()}
         ],
         "stages": [{"name": stage, "title": _STAGE_TITLES[stage]} for stage in REPORTED_STAGES],
     }

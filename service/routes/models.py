@@ -8,7 +8,7 @@ from fastapi import APIRouter, Depends, Query
 from starlette.responses import Response
 
 from segcore.coordinates import Axis, Unit
-from segcore.io import Layout, PartFormat, WriteOption, Writer
+from segcore.io import Layout, PartFormat, PlyColors, WriteOption, Writer
 from service.answer.model_formats import MODELS, model_file, operation_name
 from service.answer.models import PNG, model_rendition, preview_rendition
 from service.answer.originals import ORIGINAL_PROBLEMS
@@ -57,6 +57,26 @@ OPTIONS: dict[WriteOption, tuple[Any, object]] = {
         Annotated[PartFormat, Query(description="The format of the files of the parts.")],
         "stl",
     ),
+    "colors": (
+        Annotated[
+            PlyColors,
+            Query(
+                description="Colours of segments on the vertices, divided between segments, and on the faces; or on "
+                "the faces alone, with vertices as in the input.",
+            ),
+        ],
+        "vertices",
+    ),
+    "capped": (
+        Annotated[
+            bool | None,
+            Query(
+                description="Close every part at its cuts, for printing, or write the parts as they are (false). By "
+                "default objects of 3MF and parts as STL are closed, and parts as OBJ are not.",
+            ),
+        ],
+        None,
+    ),
     "unit": (
         Annotated[
             str | None,
@@ -79,7 +99,6 @@ OPTIONS: dict[WriteOption, tuple[Any, object]] = {
         ],
         None,
     ),
-    "capped": (Annotated[bool, Query(description="Close every part at its cuts, for printing.")], False),
 }
 
 

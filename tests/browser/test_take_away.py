@@ -39,11 +39,16 @@ def test_each_format_has_the_parts_of_the_level(visit: Visit, job: str) -> None:
     assert name == "burr-5.glb"
     assert len(trimesh.load_scene(io.BytesIO(glb), file_type="glb").geometry) == 5
     assert download_as(visit, "ply")[1].startswith(b"ply\nformat binary_little_endian")
-    assert len([line for line in download_as(visit, "obj")[1].splitlines() if line.startswith(b"g ")]) == 5
+    assert len([line for line in download_as(visit, "obj")[1].splitlines() if line.startswith(b"o ")]) == 5
+    name, both = download_as(visit, "objzip")
+    assert name == "burr-5.obj.zip"
+    assert zipfile.ZipFile(io.BytesIO(both)).namelist() == ["model.obj", "model.mtl"]
     _, package = download_as(visit, "3mf")
     assert "3D/3dmodel.model" in zipfile.ZipFile(io.BytesIO(package)).namelist()
-    _, archive = download_as(visit, "zip")
-    assert len([n for n in zipfile.ZipFile(io.BytesIO(archive)).namelist() if n.endswith(".stl")]) == 5
+    name, archive = download_as(visit, "zip")
+    assert name == "burr-5-parts.zip"
+    listed = json.loads(zipfile.ZipFile(io.BytesIO(archive)).read("parts.json"))
+    assert [part["closed"] for part in listed["parts"]] == [True] * 5
     labels = json.loads(download_as(visit, "json")[1])
     assert (labels["segments"], set(labels["labels"])) == (5, set(range(5)))
     assert download_as(visit, "png")[1].startswith(b"\x89PNG")
@@ -67,7 +72,7 @@ def test_downloads_have_the_parts_of_a_manual_cut_and_their_names(visit: Visit, 
     assert len(scene.geometry[scene.graph[node][1]].faces) == by_name["Ärm"]
     label = labels["names"].index("Ärm")
     assert f"comment label {label} is ".encode() in download_as(visit, "ply")[1]
-    assert "g Ärm" in download_as(visit, "obj")[1].decode().splitlines()
+    assert "o Ärm" in download_as(visit, "obj")[1].decode().splitlines()
     _, package = download_as(visit, "3mf")
     assert 'name="Ärm"' in zipfile.ZipFile(io.BytesIO(package)).read("3D/3dmodel.model").decode()
     _, archive = download_as(visit, "zip")

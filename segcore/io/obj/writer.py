@@ -1,4 +1,4 @@
-"""The OBJ writer: plain meshes, and segmented ones with a group for each segment."""
+"""The OBJ writer: plain meshes, and segmented ones with an object and a material for each segment."""
 
 from collections.abc import Iterator
 from typing import BinaryIO
@@ -9,10 +9,12 @@ from segcore.appearance import Appearance
 from segcore.arrays import IntArray
 from segcore.hierarchy import Hierarchy
 from segcore.io.converting import requested
-from segcore.io.names import SegmentNames, comment, group_names
+from segcore.io.names import SegmentNames, comment, group_names, one_line
 from segcore.io.slices import segment_slices
 from segcore.io.text.rows import format_rows
 from segcore.mesh import Mesh
+
+LIBRARY = "model.mtl"  # the usual name of the file with the materials
 
 
 def encode_obj(mesh: Mesh) -> Iterator[bytes]:
@@ -29,18 +31,21 @@ def write_obj(
     segments: int | None = None,
     *,
     names: SegmentNames | None = None,
+    library: str = LIBRARY,
     unit: str | None = None,
     up: str | None = None,
 ) -> None:
-    """Write an OBJ file: all vertices in input order, then a group ``segment_k`` for each segment.
+    """Write an OBJ file: all vertices in input order, then an object ``segment_k`` for each segment.
 
-    A group has its faces in input order, so triangle t of group k is the t-th input face with label k. Coordinates are
+    An object has its faces in input order, so triangle t of object k is the t-th input face with label k. Its material
+    has its name; :func:`segcore.io.obj.materials_writer.write_mtl` writes the file with the colours. Coordinates are
     decimal numbers that read back as the same float64 numbers. Normals, texture coordinates and the colours of vertices
-    are those of the input. Comments after the name of a group list the groups of the input that its faces are in.
+    are those of the input. Comments after the name of an object list the groups of the input that its faces are in.
 
     Parameters
     ----------
     names : names of segments by label, in place of ``segment_k``; see :func:`segcore.io.names.group_names`.
+    library : the name of the file with the materials, beside this one.
     unit, up : convert the coordinates to this unit, such as ``mm``, and to this axis up, ``y`` or ``z``; by default
         they are those of the mesh.
 
@@ -52,12 +57,13 @@ def write_obj(
     mesh = requested(mesh, unit, up)
     slices = segment_slices(hierarchy, segments)
     appearance = mesh.appearance or Appearance()
-    target.write(b"# written by Cleave: group k, counted from 0, holds the faces with label k, in input order\n")
+    target.write(b"# written by Cleave: object k, counted from 0, holds the faces with label k, in input order\n")
+    target.write(f"mtllib {one_line(library)}\n".encode())
     for lines in _vertex_lines(mesh, appearance):
         target.write(lines)
     for label, name in enumerate(group_names(names, len(slices))):
         faces = slices[label]
-        target.write(f"g {name}\n".encode())
+        target.write(f"o {name}\nusemtl {name}\n".encode())
         for of_input in appearance.groups_of(faces):
             target.write(f"# group of the input: {comment(of_input)}\n".encode())
         for lines in _face_lines(mesh, appearance, faces):

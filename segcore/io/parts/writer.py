@@ -1,23 +1,25 @@
 """The writer of a ZIP archive with a file for each segment."""
 
+import json
 import zipfile
 from collections.abc import Callable, Iterator
 from typing import BinaryIO, Literal, get_args
 
-from segcore.arrays import FloatArray
+import numpy as np
+
 from segcore.errors import InvalidParameters
 from segcore.hierarchy import Hierarchy
 from segcore.io.archive import FAST, member
 from segcore.io.converting import requested
-from segcore.io.names import SegmentNames, file_stems, group_names
-from segcore.io.parts.pieces import Part, closed_parts, segment_parts
+from segcore.io.names import SegmentNames, file_stems, group_names, segment_names
+from segcore.io.parts.pieces import Part, parts_of
 from segcore.io.stl.writer import check_coordinates, encode_stl, offset_of
 from segcore.io.text.rows import format_rows
 from segcore.mesh import Mesh
 
 PlainFormat = Literal["stl", "obj"]
+PARTS_LIST = "parts.json"
 
-_OFFSET = "%r %r %r\nThe parts are moved to the origin. Add these numbers to x, y and z for the place in the input.\n"
 _STL_NOTE = b"binary STL, one segment, written by Cleave"
 
 
@@ -28,22 +30,25 @@ def write_parts(
     segments: int | None = None,
     *,
     part_format: PlainFormat = "stl",
-    capped: bool = False,
+    capped: bool | None = None,
     names: SegmentNames | None = None,
     unit: str | None = None,
     up: str | None = None,
 ) -> None:
     """Write a ZIP archive with a file for each segment: ``segment_0.stl``, ``segment_1.stl``, ...
 
-    A file has the faces of its segment in input order. If float32 would lose details of a mesh that is far from the
-    origin, all parts as STL are moved by one offset, which the last member, ``offset.txt``, holds. Only one segment at
-    a time is held in memory.
+    A file has the faces of its segment in input order, then its caps. If float32 would lose details of a mesh that is
+    far from the origin, all parts as STL are moved by one offset. Only one segment at a time is held in memory. The
+    last member, ``parts.json``, has the ``offset`` to add for the place in the input, and a list ``parts`` with
+    ``file``, ``label``, ``name``, ``faces`` and ``closed``: whether each edge has exactly two faces, null for a part
+    that is written as it is.
 
     Parameters
     ----------
     target : a binary file; needs ``write`` and ``flush`` only.
     part_format : binary STL (float32 coordinates) or OBJ (exact ones).
-    capped : close each part with caps, for printing; see :func:`segcore.io.parts.pieces.closed_parts`.
+    capped : close each part with caps, see :func:`segcore.io.parts.pieces.closed_parts`; by default parts as STL only,
+        which is a format for printing.
     names : names of segments by label, for files such as ``segment_3_wheel.stl``.
     unit, up : convert the coordinates to this unit, such as ``mm``, and to this axis up, ``y`` or ``z``; by default
         they are those of the mesh.
@@ -59,22 +64,23 @@ def write_parts(
         raise InvalidParameters(f"Parts are written as {' or '.join(get_args(PlainFormat))}, not {part_format!r}.")
     if part_format == "stl":
         check_coordinates(mesh)
-    offset = offset_of(mesh) if part_format == "stl" else None
+    offset = offset_of(mesh) if part_format == "stl" else np.zeros(3)
+    is_closed = part_format == "stl" if capped is None else capped
     count = len(hierarchy.segment_nodes(segments))
-    parts = (closed_parts if capped else segment_parts)(mesh, hierarchy, segments)
-    stems, called = file_stems(names, count), group_names(names, count)
+    stems, called, titles = file_stems(names, count), group_names(names, count), segment_names(names, count)
+    listed: list[dict[str, object]] = []
     with zipfile.ZipFile(target, "w", compresslevel=FAST) as archive:
-        for part in parts if offset is None else _moved(parts, offset):
+        for part in parts_of(mesh, hierarchy, segments, is_closed, offset):
             info = member(f"{stems[part.label]}.{part_format}", compressed=True)
             with archive.open(info, "w", force_zip64=True) as file:
                 file.writelines(_PARTS[part_format](part, called[part.label]))
-        if offset is not None:
-            archive.writestr(member("offset.txt"), _OFFSET % tuple(offset.tolist()))
+            listed.append(_entry(info.filename, part, titles[part.label]))
+        document = {"offset": offset.tolist(), "parts": listed}
+        archive.writestr(member(PARTS_LIST), json.dumps(document, ensure_ascii=False, indent=1))
 
 
-def _moved(parts: Iterator[Part], offset: FloatArray) -> Iterator[Part]:
-    for part in parts:
-        yield Part(part.label, part.vertices - offset, part.faces)
+def _entry(file: str, part: Part, name: str) -> dict[str, object]:
+    return {"file": file, "label": part.label, "name": name, "faces": len(part.faces), "closed": part.is_solid}
 
 
 def _stl(part: Part, _: str) -> Iterator[bytes]:

@@ -1,18 +1,22 @@
-"""The PLY writer, binary: plain meshes, and segmented ones with a colour and a label for each face."""
+"""The PLY writer, binary: plain meshes, and segmented ones with colours and labels of faces and vertices."""
 
 from collections.abc import Iterator, Sequence
-from typing import Any, BinaryIO, NamedTuple
+from typing import Any, BinaryIO, Literal, NamedTuple, get_args
 
 import numpy as np
 from numpy.typing import NDArray
 
 from segcore.appearance import Appearance
 from segcore.arrays import IntArray
+from segcore.errors import InvalidParameters
 from segcore.hierarchy import Hierarchy
 from segcore.io.converting import requested
 from segcore.io.names import SegmentNames, segment_names
 from segcore.io.palette import color_bytes
+from segcore.io.ply.divided import UNUSED, DividedVertices, divide
 from segcore.mesh import Mesh
+
+PlyColors = Literal["vertices", "faces"]
 
 _ROWS = 2**16  # vertices or faces in a piece, about 1 MB
 _NAMES = {"<f4": "float", "<f8": "double", "<i4": "int", "u1": "uchar"}
@@ -35,9 +39,9 @@ class _Column(NamedTuple):
 def encode_ply(mesh: Mesh) -> Iterator[bytes | memoryview]:
     """A binary little-endian PLY file of a mesh in pieces; the vertices are written as :func:`write_ply` does."""
     vertices = _vertex_columns(mesh)
-    yield _header(mesh, vertices)
+    yield _header(vertices, len(mesh.faces))
     yield from _records(vertices)
-    yield from _records(_corner_columns(mesh))
+    yield from _records(_corner_columns(mesh.faces))
 
 
 def write_ply(
@@ -46,18 +50,23 @@ def write_ply(
     hierarchy: Hierarchy,
     segments: int | None = None,
     *,
+    colors: PlyColors = "vertices",
     names: SegmentNames | None = None,
     unit: str | None = None,
     up: str | None = None,
 ) -> None:
-    """Write a binary little-endian PLY file: all vertices and all faces in input order.
+    """Write a binary little-endian PLY file with all faces in input order.
 
     A face has the properties ``vertex_indices``, ``red``, ``green``, ``blue`` and ``int label``. Coordinates are
-    ``float`` if that is exact, else ``double``. A vertex keeps its normal, its texture coordinates (``s``, ``t``) and
-    its colour if the input has one of each for every vertex.
+    ``float`` if that is exact, else ``double``. A vertex keeps its normal and its texture coordinates (``s``, ``t``) if
+    the input has one of each for every vertex.
 
     Parameters
     ----------
+    colors : ``vertices``: vertices have the colour of their segment, too, which is what most programs show. Vertices
+        between segments are divided: the vertices in input order are followed by copies, and each has an ``int label``
+        (-1 if no face uses it) and an ``int source_vertex``, its index in the input. ``faces``: the vertices are those
+        of the input, with their own colours.
     names : names of segments by label, for comments such as ``comment label 3 is wheel``.
     unit, up : convert the coordinates to this unit, such as ``mm``, and to this axis up, ``y`` or ``z``; by default
         they are those of the mesh.
@@ -65,33 +74,53 @@ def write_ply(
     Raises
     ------
     InvalidParameters
-        If ``segments`` is not in 1..max_segments, or the unit or the axis of the mesh is not known.
+        If ``segments`` is not in 1..max_segments, there are no such ``colors``, or the unit or the axis of the mesh is
+        not known.
     """
+    if colors not in get_args(PlyColors):
+        raise InvalidParameters(f"Colours of PLY are those of {' or '.join(get_args(PlyColors))}, not {colors!r}.")
     mesh = requested(mesh, unit, up)
     labels = hierarchy.labels(segments)
-    vertices = _vertex_columns(mesh)
+    faces, vertices = mesh.faces, _vertex_columns(mesh)
+    if colors == "vertices":
+        divided = divide(mesh, labels)
+        faces, vertices = divided.faces, _divided_columns(vertices, divided)
     comments = [
         "comment written by Cleave: label is the segment of a face",
         *_name_comments(names, len(hierarchy.segment_nodes(segments))),
     ]
     properties = [*(f"property uchar {channel}" for channel in _COLOR), "property int label"]
-    target.write(_header(mesh, vertices, comments, properties))
+    target.write(_header(vertices, len(faces), comments, properties))
     for piece in _records(vertices):
         target.write(piece)
-    for piece in _records([*_corner_columns(mesh), *_label_columns(labels)]):
+    for piece in _records([*_corner_columns(faces), *_label_columns(labels)]):
         target.write(piece)
+
+
+def _divided_columns(columns: list[_Column], divided: DividedVertices) -> list[_Column]:
+    """The columns of the vertices, with the colours of their segments in place of their own."""
+    palette = color_bytes(int(divided.label.max()) + 1)
+    shown = np.where(divided.label[:, None] == UNUSED, np.uint8(255), palette[divided.label])
+    kept = [column for column in columns if column.name not in _APPEARANCE["colors"][0]]
+    return [
+        *(_Column(column.name, column.dtype, column.values[divided.source]) for column in kept),
+        *(_Column(channel, "u1", shown[:, i]) for i, channel in enumerate(_COLOR)),
+        _Column("alpha", "u1", np.broadcast_to(np.uint8(255), len(shown))),
+        _Column("label", "<i4", divided.label),
+        _Column("source_vertex", "<i4", divided.source),
+    ]
 
 
 def _header(
-    mesh: Mesh, vertices: list[_Column], comments: Sequence[str] = (), face_properties: Sequence[str] = ()
+    vertices: list[_Column], face_count: int, comments: Sequence[str] = (), face_properties: Sequence[str] = ()
 ) -> bytes:
     lines = [
         "ply",
         "format binary_little_endian 1.0",
         *comments,
-        f"element vertex {len(mesh.vertices)}",
+        f"element vertex {len(vertices[0].values)}",
         *(f"property {_NAMES[column.dtype]} {column.name}" for column in vertices),
-        f"element face {len(mesh.faces)}",
+        f"element face {face_count}",
         "property list uchar int vertex_indices",
         *face_properties,
         "end_header\n",
@@ -119,9 +148,9 @@ def _vertex_columns(mesh: Mesh) -> list[_Column]:
     return columns
 
 
-def _corner_columns(mesh: Mesh) -> list[_Column]:
-    sizes = np.broadcast_to(np.uint8(3), len(mesh.faces))
-    return [_Column("size", "u1", sizes), _Column("corners", "<i4", mesh.faces)]
+def _corner_columns(faces: IntArray) -> list[_Column]:
+    sizes = np.broadcast_to(np.uint8(3), len(faces))
+    return [_Column("size", "u1", sizes), _Column("corners", "<i4", faces)]
 
 
 def _label_columns(labels: IntArray) -> list[_Column]:

@@ -2,16 +2,19 @@
 
 import zipfile
 from collections.abc import Iterator
+from dataclasses import replace
 from typing import BinaryIO
 
 from segcore.appearance import Appearance
+from segcore.arrays import FloatArray
 from segcore.hierarchy import Hierarchy
 from segcore.io.archive import FAST, member
 from segcore.io.converting import converted
 from segcore.io.names import SegmentNames, one_line, segment_names
 from segcore.io.palette import color_bytes
-from segcore.io.parts.pieces import Part, closed_parts, segment_parts
-from segcore.io.slices import Slices, segment_slices
+from segcore.io.parts.pieces import Part, parts_of
+from segcore.io.slices import segment_slices
+from segcore.io.stl.writer import offset_of
 from segcore.io.text.rows import format_rows
 from segcore.mesh import Mesh
 
@@ -31,6 +34,8 @@ _PACKAGE = {
         'Type="http://schemas.microsoft.com/3dmanufacturing/2013/01/3dmodel"/></Relationships>'
     ),
 }
+_TURN = "1 0 0 0 1 0 0 0 1"  # none: the first nine numbers of a transform
+_NOT_SOLID = "not a solid: an edge does not have two faces"
 _MATERIALS = 1  # the id of the colours; segment k is object k + 2
 
 
@@ -40,20 +45,23 @@ def write_3mf(
     hierarchy: Hierarchy,
     segments: int | None = None,
     *,
-    capped: bool = False,
+    capped: bool | None = None,
     names: SegmentNames | None = None,
 ) -> None:
     """Write a 3MF file: an assembly of the objects ``segment k``, each with its colour, in place.
 
-    An object has the faces of its segment in input order. Faces that repeat a vertex are left out, because the format
-    does not allow them. The description of an object lists the groups of the input that its faces are in. The file is
-    in millimetres with z up: a mesh with another unit or another axis up is converted, and numbers whose unit or axis
-    is not known are written as they are.
+    An object has the faces of its segment in input order, then its caps. Faces that repeat a vertex are left out,
+    because the format does not allow them. The description of an object lists the groups of the input that its faces
+    are in, and says if an edge of a closed object does not have two faces. The file is in millimetres with z up: a mesh
+    with another unit or another axis up is converted, and numbers whose unit or axis is not known are written as they
+    are. Coordinates are exact. If a mesh is far from the origin, so that float32 as in slicers would lose its details,
+    they are relative to a point nearby, and the transform of the item moves them there.
 
     Parameters
     ----------
     target : a binary file; needs ``write`` only.
-    capped : close each object with caps, for printing; see :func:`segcore.io.parts.pieces.closed_parts`.
+    capped : close each object with caps, see :func:`segcore.io.parts.pieces.closed_parts`; None for yes, because 3MF
+        is a format for printing.
     names : names of segments by label, in place of ``segment k``.
 
     Raises
@@ -63,24 +71,23 @@ def write_3mf(
     """
     count = len(hierarchy.segment_nodes(segments))
     mesh = converted(mesh, "millimeter", "z")
-    parts = (closed_parts if capped else segment_parts)(mesh, hierarchy, segments)
+    offset = offset_of(mesh)
+    parts = parts_of(mesh, hierarchy, segments, capped is not False, offset)
     called = [_quoted(name) for name in segment_names(names, count)]
-    described = _descriptions(mesh.appearance or Appearance(), segment_slices(hierarchy, segments))
+    look, slices = mesh.appearance or Appearance(), segment_slices(hierarchy, segments)
+    groups = [", ".join(map(one_line, look.groups_of(slices[label]))) for label in range(count)]
     with zipfile.ZipFile(target, "w", compresslevel=FAST) as archive:
         for name, text in _PACKAGE.items():
             archive.writestr(member(name, compressed=True), text, compresslevel=FAST)
         with archive.open(member(_MODEL, compressed=True), "w", force_zip64=True) as model:
-            model.writelines(_model(parts, called, described))
+            model.writelines(_model(parts, called, groups, offset))
 
 
-def _descriptions(look: Appearance, slices: Slices) -> list[str]:
-    """The XML of the description of each segment; empty if no group of the input is in it."""
-    result = []
-    for label in range(len(slices)):
-        groups = ", ".join(map(one_line, look.groups_of(slices[label])))
-        text = f'<metadata name="Description">groups of the input: {_escaped(groups)}</metadata>'
-        result.append(f"<metadatagroup>{text}</metadatagroup>\n" if groups else "")
-    return result
+def _description(part: Part, groups: str) -> str:
+    """The XML of the description of a part; empty if there is none."""
+    sentences = [f"groups of the input: {groups}"] * bool(groups) + [_NOT_SOLID] * (part.is_solid is False)
+    text = f'<metadata name="Description">{_escaped("; ".join(sentences))}</metadata>'
+    return f"<metadatagroup>{text}</metadatagroup>\n" if sentences else ""
 
 
 def _escaped(text: str) -> str:
@@ -95,7 +102,7 @@ def _quoted(text: str) -> str:
     return '"' + value.replace('"', "&quot;") + '"'
 
 
-def _model(parts: Iterator[Part], names: list[str], descriptions: list[str]) -> Iterator[bytes]:
+def _model(parts: Iterator[Part], names: list[str], groups: list[str], offset: FloatArray) -> Iterator[bytes]:
     materials = [
         f'<base name={name} displaycolor="#{bytes(color).hex().upper()}"/>\n'
         for name, color in zip(names, color_bytes(len(names)), strict=True)
@@ -109,18 +116,19 @@ def _model(parts: Iterator[Part], names: list[str], descriptions: list[str]) -> 
         distinct = _distinct_corners(part)
         if len(distinct.faces):
             objects.append(_MATERIALS + 1 + part.label)
-            yield from _object(distinct, objects[-1], names[part.label], descriptions[part.label])
+            yield from _object(distinct, objects[-1], names[part.label], _description(part, groups[part.label]))
     assembly = _MATERIALS + 1 + len(names)
     components = "".join(f'<component objectid="{part}"/>\n' for part in objects)
+    place = f' transform="{_TURN} {" ".join(map(repr, offset.tolist()))}"' if offset.any() else ""
     yield (
         f'<object id="{assembly}" type="model" name="segments">\n<components>\n{components}</components>\n</object>\n'
-        f'</resources>\n<build>\n<item objectid="{assembly}"/>\n</build>\n</model>\n'
+        f'</resources>\n<build>\n<item objectid="{assembly}"{place}/>\n</build>\n</model>\n'
     ).encode("ascii")
 
 
 def _distinct_corners(part: Part) -> Part:
     a, b, c = part.faces.T
-    return Part(part.label, part.vertices, part.faces[(a != b) & (b != c) & (c != a)])
+    return replace(part, faces=part.faces[(a != b) & (b != c) & (c != a)])
 
 
 def _object(part: Part, number: int, name: str, description: str) -> Iterator[bytes]:

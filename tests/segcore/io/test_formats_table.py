@@ -71,11 +71,15 @@ def how_read(kind: str) -> str:
     return "yes" if all(read_or_none(data) is not None for data in files) else "no"
 
 
+def files_of_parts() -> list[str]:
+    return [name for name in members(out("zip")) if name != "parts.json"]
+
+
 def how_written(kind: str) -> str:
     try:
         return "yes" if writer_for(f"a.{kind}") is WRITERS[kind] and out(kind) else "no"
     except UnsupportedFormat:
-        return "in `.zip`" if all(name.endswith(f".{kind}") for name in members(out("zip"))) else "no"
+        return "in `.zip`" if all(name.endswith(f".{kind}") for name in files_of_parts()) else "no"
 
 
 def how_the_look_is_kept(kind: str) -> str:
@@ -152,6 +156,14 @@ def ply_column(*names: str) -> np.ndarray:
     return np.stack([raw[name].ravel() for name in names], axis=1)
 
 
+def colors_of_ply_corners() -> np.ndarray:
+    """(F, 3, 4) the colours of the vertices of the faces, which agree within a face."""
+    mesh = read_mesh(io.BytesIO(out("ply")), appearance=True)
+    colors = mesh.appearance.colors[mesh.faces]
+    assert (colors == colors[:, :1]).all()
+    return colors
+
+
 def same_partition(colors: np.ndarray) -> bool:
     same = (colors[:, None] == colors[None]).all(axis=2)
     return bool((same == (labels()[:, None] == labels()[None])).all())
@@ -179,12 +191,16 @@ def labels_alone(kind: str) -> bool:
 
 
 CLAIMS: dict[str, dict[str, Callable[[], bool]]] = {
-    "stl": {"files": lambda: len(members(out("zip"))) == SEGMENTS},
+    "stl": {"files": lambda: len(files_of_parts()) == SEGMENTS},
     "ply": {
         "`label` of faces": lambda: ply_column("label").ravel().tolist() == labels().tolist(),
+        "colours of vertices": lambda: same_partition(colors_of_ply_corners()[:, 0]),
         "colours of faces": lambda: same_partition(ply_column("red", "green", "blue")),
     },
-    "obj": {"groups": lambda: re.findall("\ng (.*)", out("obj").decode()) == [f"segment_{k}" for k in range(SEGMENTS)]},
+    "obj": {
+        "objects": lambda: re.findall("\no (.*)", out("obj").decode()) == [f"segment_{k}" for k in range(SEGMENTS)],
+        "materials": lambda: out("mtl").decode().count("newmtl ") == SEGMENTS,
+    },
     "glb": {
         "nested nodes": are_nested,
         "materials": lambda: len(glb_document(out("glb"))["materials"]) == SEGMENTS,
@@ -218,7 +234,7 @@ PROOFS = dict(
 
 
 def test_the_table_has_a_row_for_every_format() -> None:
-    assert {kind_of(name) for name in table()} == set(FORMATS) | set(WRITERS) - {"zip"}
+    assert {kind_of(name) for name in table()} == set(FORMATS) | set(WRITERS) - {"zip", "mtl", "objzip"}
     assert {len(row) for row in table().values()} == {len(COLUMNS)}
 
 

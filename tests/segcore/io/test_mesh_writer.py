@@ -36,7 +36,24 @@ def test_vertices_and_faces_are_read_back_exactly(name: str, soup: Soup) -> None
 @given(triangle_soups())
 def test_the_corners_of_stl_are_those_of_the_mesh_in_float32(soup: Soup) -> None:
     mesh = mesh_of(soup)
-    assert read(mesh_bytes(mesh, "stl"), "stl").corners.tolist() == mesh.corners.astype("f4").tolist()
+    data = mesh_bytes(mesh, "stl")
+    corners = mesh.corners - offset_in(data)
+    assert read(data, "stl").corners.tolist() == corners.astype("f4").tolist()
+
+
+def offset_in(data: bytes) -> np.ndarray:
+    """The offset that the header of an STL file begins with, 0 if it has none."""
+    words = data[:80].decode("ascii").replace(",", "").split()
+    return np.array(words[1:4] if words[0] == "offset" else [0, 0, 0], dtype=np.float64)
+
+
+def test_an_stl_file_of_a_mesh_far_from_the_origin_keeps_its_details() -> None:
+    ball = shapes.icosphere(2)
+    far = Mesh(ball.vertices + np.array([500_000.0, 4_500_000.0, 0.1]), ball.faces)
+    data = mesh_bytes(far, "stl")
+    assert np.abs(offset_in(data) - [500_000, 4_500_000, 0]).max() <= 1
+    np.testing.assert_allclose(read(data).corners + offset_in(data), far.corners, rtol=0, atol=1e-6)
+    assert (offset_in(mesh_bytes(Mesh(ball.vertices + 100, ball.faces), "stl")) == 0).all()
 
 
 @pytest.mark.parametrize("name", FORMATS)

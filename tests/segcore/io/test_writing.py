@@ -46,8 +46,10 @@ def test_a_writer_takes_the_options_that_it_lists_and_no_others(kind: str) -> No
         "part_format": "obj",
         "layout": "flat",
         "keep": None,
+        "colors": "faces",
+        "unit": "mm",
+        "up": "z",
     }
-    values |= {"unit": "mm", "up": "z"}
     assert set(values) == set(WRITE_OPTIONS)
     mesh, hierarchy = two_strips()
     segmented = with_coordinates(mesh, "inch", "y"), hierarchy

@@ -1,9 +1,12 @@
 """`cleave submit`: results are saved in a folder, no job is run twice, and the exit status reports failures."""
 
+import io
 import json
+import zipfile
 from pathlib import Path
 
 import pytest
+import trimesh
 
 from cleave.client import Client
 from helpers.files.samples import TWO_SQUARES
@@ -111,3 +114,14 @@ def test_the_whole_input_divided_by_part_is_a_result(url: str, meshes: list[Path
     assert submit(url, meshes[:1], tmp_path, "--results", "kept,glb") == 0
     assert b"original look" in (tmp_path / "ball10.kept.glb").read_bytes()
     assert b"original look" not in (tmp_path / "ball10.glb").read_bytes()
+
+
+@pytest.mark.parametrize(("options", "is_closed"), [([], True), (["--open"], False)])
+def test_parts_for_printing_are_closed_unless_they_are_to_be_open(
+    url: str, meshes: list[Path], tmp_path: Path, options: list[str], is_closed: bool
+) -> None:
+    assert submit(url, meshes[:1], tmp_path, "--segments", "3", "--results", "seg,3mf,zip", *options) == 0
+    parts = list(trimesh.load(tmp_path / "ball10.3mf").geometry.values())
+    with zipfile.ZipFile(tmp_path / "ball10.zip") as archive:
+        parts += [trimesh.load(io.BytesIO(archive.read(f"segment_{k}.stl")), file_type="stl") for k in range(3)]
+    assert [part.is_watertight for part in parts] == [is_closed] * 6

@@ -2,6 +2,7 @@
 
 import io
 import json
+import re
 import struct
 import zipfile
 from collections.abc import Callable
@@ -45,7 +46,9 @@ def test_a_glb_can_contain_every_level(client: httpx.Client, finished_job: Calla
     [
         ("model.glb", "model/gltf-binary", b"glTF"),
         ("model.ply", "model/ply", b"ply"),
-        ("model.obj", "model/obj", b""),
+        ("model.obj", "model/obj", b"# written by Cleave"),
+        ("model.mtl", "model/mtl", b"# written by Cleave"),
+        ("model.obj.zip", "application/zip", b"PK"),
         ("model.3mf", "model/3mf", b"PK"),
         ("parts.zip", "application/zip", b"PK"),
     ],
@@ -59,12 +62,60 @@ def test_models_are_sent_as_attachments(
     assert answer.content.startswith(begins)
 
 
-def test_parts_are_a_file_per_segment(client: httpx.Client, finished_job: Callable[..., str]) -> None:
+def test_parts_are_a_file_per_segment_and_closed_if_they_are_for_printing(
+    client: httpx.Client, finished_job: Callable[..., str]
+) -> None:
     path = finished_job()
-    for form in ("stl", "obj"):
-        data = client.get(f"{path}/parts.zip", params={"segments": 3, "part_format": form}).content
-        names = zipfile.ZipFile(io.BytesIO(data)).namelist()
-        assert names == [f"segment_{number}.{form}" for number in range(3)]
+    cases = [
+        ("stl", {}, True),
+        ("stl", {"capped": "false"}, False),
+        ("obj", {}, False),
+        ("obj", {"capped": "true"}, True),
+    ]
+    for form, query, is_closed in cases:
+        data = client.get(f"{path}/parts.zip", params={"segments": 3, "part_format": form, **query}).content
+        archive = zipfile.ZipFile(io.BytesIO(data))
+        *names, last = archive.namelist()
+        assert (names, last) == ([f"segment_{number}.{form}" for number in range(3)], "parts.json")
+        parts = [trimesh.load(io.BytesIO(archive.read(name)), file_type=form) for name in names]
+        assert [part.is_watertight for part in parts] == [is_closed] * 3
+
+
+def test_the_materials_of_obj_are_in_the_file_that_it_names(
+    client: httpx.Client, finished_job: Callable[..., str]
+) -> None:
+    path, query = finished_job(), {"segments": 3, "name": "1:left wheel"}
+    model, colors = (client.get(f"{path}/model.{kind}", params=query) for kind in ("obj", "mtl"))
+    assert re.findall("^mtllib (.*)$", model.text, re.MULTILINE) == ["model.mtl"]
+    assert 'filename="model.mtl"' in colors.headers["Content-Disposition"]
+    used = ["segment_0", "left_wheel", "segment_2"]
+    assert re.findall("^usemtl (.*)$", model.text, re.MULTILINE) == used
+    assert re.findall("^newmtl (.*)$", colors.text, re.MULTILINE) == used
+    archive = zipfile.ZipFile(io.BytesIO(client.get(f"{path}/model.obj.zip", params=query).content))
+    assert {name: archive.read(name) for name in archive.namelist()} == {
+        "model.obj": model.content,
+        "model.mtl": colors.content,
+    }
+
+
+def test_colours_of_ply_are_those_of_vertices_unless_the_request_says_otherwise(
+    client: httpx.Client, finished_job: Callable[..., str]
+) -> None:
+    path = finished_job()
+    for query, is_divided in (({}, True), ({"colors": "vertices"}, True), ({"colors": "faces"}, False)):
+        header = client.get(f"{path}/model.ply", params=query).content.partition(b"end_header")[0]
+        assert (b"source_vertex" in header) == is_divided
+    problem(client.get(f"{path}/model.ply", params={"colors": "edges"}), 422, "invalid_request")
+
+
+def test_objects_of_3mf_are_closed_unless_the_request_says_otherwise(
+    client: httpx.Client, finished_job: Callable[..., str]
+) -> None:
+    path = finished_job()
+    for query, is_closed in (({}, True), ({"capped": "true"}, True), ({"capped": "false"}, False)):
+        data = client.get(f"{path}/model.3mf", params={"segments": 3, **query}).content
+        scene = trimesh.load(io.BytesIO(data), file_type="3mf")
+        assert [part.is_watertight for part in scene.geometry.values()] == [is_closed] * 3
 
 
 def test_the_preview_shows_the_segments(client: httpx.Client, finished_job: Callable[..., str]) -> None:

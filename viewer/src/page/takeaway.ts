@@ -95,7 +95,7 @@ export class TakeAway {
 /** Return the download of a model; its title in the list is a name, a comma and a description. */
 function modelDownload({ name, title, extension, path }: (typeof lists.formats)[number]): Download {
   const [short, about] = title.split(", ");
-  const kind = stem(path) === "model" ? "" : `-${stem(path)}`;
+  const kind = path === `model${extension}` ? "" : `-${stem(path)}`;
   return { id: name, title: short!, about: capitalized(about ?? ""), path, ending: `${kind}${extension}` };
 }
 

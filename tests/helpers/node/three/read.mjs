@@ -1,6 +1,6 @@
 // Prints, for each of the files named in the JSON list on standard input, what the readers of three.js find in it:
-// {"path": [{"name": string, "corners": [x, y, z, ...], "colors": [hex, ...] | null}, ...]}, a part for every mesh and
-// every copy of one, with morph targets and skins as they are before anything moves,
+// {"path": [{"name": string, "corners": [x, y, z, ...], "colors": [hex, ...] | null, "material": hex | null}, ...]}, a
+// part for every mesh and every copy of one, with morph targets and skins as they are before anything moves,
 // and for GLB files what glTF Transform finds in the property table: {"path": {"names": [...], "ids": {mesh: [...]}}}.
 
 import fs from "node:fs";
@@ -10,6 +10,7 @@ import { DOMParser } from "linkedom";
 import { Color, Matrix4, SRGBColorSpace, Vector3 } from "three";
 import { ThreeMFLoader } from "three/addons/loaders/3MFLoader.js";
 import { GLTFLoader } from "three/addons/loaders/GLTFLoader.js";
+import { MTLLoader } from "three/addons/loaders/MTLLoader.js";
 import { OBJLoader } from "three/addons/loaders/OBJLoader.js";
 import { PLYLoader } from "three/addons/loaders/PLYLoader.js";
 import { STLLoader } from "three/addons/loaders/STLLoader.js";
@@ -21,11 +22,18 @@ const io = new NodeIO().registerExtensions([EXTMeshFeatures, EXTStructuralMetada
 const geometryOnly = (geometry) => [{ name: "", ...soup(geometry, (i) => new Vector3().fromBufferAttribute(geometry.attributes.position, i)) }];
 const readers = {
   glb: async (data) => parts((await new GLTFLoader().parseAsync(data, "")).scene),
-  obj: (data) => parts(new OBJLoader().parse(new TextDecoder().decode(data))),
+  obj: (data, path) => parts(withMaterials(path).parse(new TextDecoder().decode(data))),
   "3mf": (data) => parts(new ThreeMFLoader().parse(data)),
   ply: (data) => geometryOnly(new PLYLoader().parse(data)),
   stl: (data) => geometryOnly(new STLLoader().parse(data)),
 };
+
+/** A loader with the materials of the .mtl file beside, if there is one. */
+function withMaterials(path) {
+  const beside = path.replace(/\.obj$/, ".mtl");
+  const loader = new OBJLoader();
+  return fs.existsSync(beside) ? loader.setMaterials(new MTLLoader().parse(fs.readFileSync(beside, "utf8"), "")) : loader;
+}
 
 function parts(root) {
   const found = [];
@@ -35,7 +43,8 @@ function parts(root) {
     const name = object.geometry.userData.name ?? object.userData.name ?? object.name;
     for (const matrix of places(object)) {
       const place = (i) => object.getVertexPosition(i, new Vector3()).applyMatrix4(matrix);
-      found.push({ name, ...soup(object.geometry, place) });
+      const material = object.material.color?.getHex(SRGBColorSpace) ?? null;
+      found.push({ name, material, ...soup(object.geometry, place) });
     }
   });
   return found;
@@ -86,7 +95,7 @@ for (const path of JSON.parse(fs.readFileSync(0, "utf8"))) {
   const file = fs.readFileSync(path);
   const data = file.buffer.slice(file.byteOffset, file.byteOffset + file.byteLength);
   const kind = path.slice(path.lastIndexOf(".") + 1);
-  answer.parts[path] = await readers[kind](data);
+  answer.parts[path] = await readers[kind](data, path);
   if (kind === "glb") answer.features[path] = await features(data);
 }
 process.stdout.write(JSON.stringify(answer));

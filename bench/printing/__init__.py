@@ -1,0 +1,1 @@
+"""Parts for printing, as a slicer sees them."""

@@ -1,0 +1,63 @@
+"""The materials of a segmented OBJ file, alone and in an archive with the file."""
+
+import zipfile
+from typing import BinaryIO
+
+from segcore.hierarchy import Hierarchy
+from segcore.io.archive import FAST, member
+from segcore.io.converting import requested
+from segcore.io.names import SegmentNames, group_names
+from segcore.io.obj.writer import LIBRARY, write_obj
+from segcore.io.palette import segment_colors
+from segcore.mesh import Mesh
+
+
+def write_mtl(
+    target: BinaryIO, hierarchy: Hierarchy, segments: int | None = None, *, names: SegmentNames | None = None
+) -> None:
+    """Write the MTL file of :func:`segcore.io.obj.writer.write_obj`: a material with the colour of each segment.
+
+    Colours are in sRGB, as most programs read them.
+
+    Raises
+    ------
+    InvalidParameters
+        If ``segments`` is not in 1..max_segments.
+    """
+    count = len(hierarchy.segment_nodes(segments))
+    target.write(b"# written by Cleave: the colours of the segments\n")
+    for name, color in zip(group_names(names, count), segment_colors(count).tolist(), strict=True):
+        red, green, blue = (f"{channel:.4f}" for channel in color)
+        target.write(f"newmtl {name}\nKd {red} {green} {blue}\nKs 0 0 0\nillum 1\n".encode())
+
+
+def write_obj_archive(
+    target: BinaryIO,
+    mesh: Mesh,
+    hierarchy: Hierarchy,
+    segments: int | None = None,
+    *,
+    names: SegmentNames | None = None,
+    unit: str | None = None,
+    up: str | None = None,
+) -> None:
+    """Write a ZIP archive with ``model.obj`` and ``model.mtl``.
+
+    Parameters
+    ----------
+    target : a binary file; needs ``write`` and ``flush`` only.
+    names : names of segments by label.
+    unit, up : as of :func:`segcore.io.obj.writer.write_obj`.
+
+    Raises
+    ------
+    InvalidParameters
+        If ``segments`` is not in 1..max_segments, or the unit or the axis of the mesh is not known.
+    """
+    hierarchy.segment_nodes(segments)  # refuses a wrong level before anything is written
+    mesh = requested(mesh, unit, up)
+    with zipfile.ZipFile(target, "w", compresslevel=FAST) as archive:
+        with archive.open(member("model.obj", compressed=True), "w", force_zip64=True) as file:
+            write_obj(file, mesh, hierarchy, segments, names=names)  # type: ignore[arg-type]
+        with archive.open(member(LIBRARY, compressed=True), "w") as file:
+            write_mtl(file, hierarchy, segments, names=names)  # type: ignore[arg-type]

@@ -1,0 +1,31 @@
+"""The printing command on a small mesh."""
+
+from pathlib import Path
+
+import pytest
+
+from bench.__main__ import main
+from helpers.creatures import creature
+from helpers.printing.slicers import needs_slicer
+from segcore.io import write_mesh
+
+
+@needs_slicer
+def test_every_mesh_has_a_line(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    write_mesh(tmp_path / "creature.off", creature(subdivisions=3))
+    assert main(["printing", str(tmp_path / "creature.off"), "--segments", "6"]) == 0
+    assert capsys.readouterr().out.splitlines()[2:] == ["| creature.off | 1280 | 6 | 6 of 6 | 6 of 6 |"]
+
+
+def test_a_missing_slicer_is_named(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    write_mesh(tmp_path / "creature.off", creature(subdivisions=3))
+    monkeypatch.setenv("PATH", str(tmp_path))
+    assert main(["printing", str(tmp_path / "creature.off")]) == 2
+    assert "install the Debian package prusa-slicer" in capsys.readouterr().err
+
+
+def test_a_file_that_cannot_be_read_is_named(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    assert main(["printing", str(tmp_path / "nothing.off")]) == 2
+    assert "nothing.off" in capsys.readouterr().err
