@@ -14,11 +14,20 @@ def say(text: str) -> None:
     """Print text at once. If the standard output is a pipe that has been closed, as ``head`` does, print nothing."""
     try:
         print(text, flush=True)
-    except BrokenPipeError:
-        # The work goes on. Otherwise the interpreter would complain when it writes the rest at its end.
-        nowhere = os.open(os.devnull, os.O_WRONLY)
-        os.dup2(nowhere, sys.stdout.fileno())
-        os.close(nowhere)
+    except BrokenPipeError:  # the work goes on
+        forget_output()
+
+
+def forget_output() -> None:
+    """Write nothing more to the standard output; otherwise the interpreter would complain about the rest at its end."""
+    nowhere = os.open(os.devnull, os.O_WRONLY)
+    os.dup2(nowhere, sys.stdout.fileno())
+    os.close(nowhere)
+
+
+def say_beside(text: str) -> None:
+    """Print text on the standard error, because the standard output carries data."""
+    print(text, file=sys.stderr, flush=True)
 
 
 class ProgressBar:

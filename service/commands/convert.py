@@ -7,14 +7,18 @@ from segcore.io import with_coordinates
 from segcore.io.result import read_result
 from segcore.levels import Fineness
 from service.commands.arguments import add_coordinates, add_level
-from service.commands.console import say
-from service.commands.outputs import add_outputs, check_outputs, output_options, write_model
+from service.commands.outputs import STANDARD, add_outputs, check_outputs, output_options, standard_input, write_model
 from service.commands.summary import level_summary
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     parser.description = "Write the segmentation of a .cleave file in other formats, with any number of segments."
-    parser.add_argument("result", type=Path, metavar="MESH.cleave", help="a file that cleave segment --result wrote")
+    parser.add_argument(
+        "result",
+        type=Path,
+        metavar="MESH.cleave",
+        help="a file that cleave segment --result wrote; - for the standard input",
+    )
     add_coordinates(parser)
     add_level(parser, "the automatic one")
     add_outputs(parser, required=True)
@@ -32,14 +36,15 @@ def run(choices: argparse.Namespace) -> None:
         If a file cannot be read or written.
     """
     fineness, outputs = Fineness(choices.segments, choices.granularity), choices.output
-    check_outputs(outputs)
-    result = read_result(choices.result)
+    tell = check_outputs(outputs)
+    result = read_result(standard_input(choices.result))
     mesh = with_coordinates(result.mesh, choices.unit, choices.up)
     segments = fineness.segments_of(result.hierarchy)
     options = output_options(choices, choices.source)
     for path in outputs:
         for note in write_model(path, mesh, result.hierarchy, segments, options):
-            say(note)
-    say(level_summary(result.hierarchy, segments, fineness))
+            tell(note)
+    tell(level_summary(result.hierarchy, segments, fineness))
     for path in outputs:
-        say(f"wrote {path}")
+        if path != STANDARD:
+            tell(f"wrote {path}")

@@ -9,11 +9,17 @@ import segcore
 from segcore.report import MeshReport, mesh_report
 from service.commands.arguments import add_coordinates
 from service.commands.console import say
+from service.commands.outputs import standard_input
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     parser.description = "Report what a mesh file contains: components, borders, and defects that segmentation repairs."
-    parser.add_argument("mesh", type=Path, metavar="MESH", help="the mesh file, or a folder or ZIP archive with one")
+    parser.add_argument(
+        "mesh",
+        type=Path,
+        metavar="MESH",
+        help="the mesh file, or a folder or ZIP archive with one; - for the standard input",
+    )
     add_coordinates(parser)
     parser.add_argument("--json", action="store_true", help="print the report as JSON")
 
@@ -29,7 +35,9 @@ def run(choices: argparse.Namespace) -> None:
         If the file cannot be read.
     """
     report = mesh_report(
-        segcore.read_mesh(choices.mesh, appearance=True, neighbours=True, unit=choices.unit, up=choices.up)
+        segcore.read_mesh(
+            standard_input(choices.mesh), appearance=True, neighbours=True, unit=choices.unit, up=choices.up
+        )
     )
     if choices.json:
         say(json.dumps(asdict(report), indent=2, allow_nan=False))

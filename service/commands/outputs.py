@@ -1,6 +1,8 @@
 """Output files of the commands: their arguments, and files that are written completely or not at all."""
 
 import argparse
+import io
+import sys
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from pathlib import Path
@@ -12,8 +14,10 @@ from segcore.io import Layout, Original, PartFormat
 from segcore.io.ply.writer import PlyColors
 from segcore.io.writing import WRITERS, Writer, writer_for
 from segcore.mesh import Mesh
+from service.commands.console import forget_output, say, say_beside
 from worker.jobs.objects.durable import replace_file
 
+STANDARD = Path("-")  # the standard input or output
 _EXTENSIONS = [writer.extension for writer in WRITERS.values()]
 
 
@@ -27,8 +31,10 @@ def add_outputs(parser: argparse.ArgumentParser, required: bool = False) -> None
         required=required,
         default=None if required else [],
         metavar="FILE",
-        help=f"output file, in the format of its extension: {' '.join(_EXTENSIONS)}; can be repeated",
+        help=f"output file, in the format of its extension: {' '.join(_EXTENSIONS)}; can be repeated; - for the "
+        "standard output, with --to",
     )
+    parser.add_argument("--to", choices=list(WRITERS), metavar="FORMAT", help="the format of -o -, such as glb")
     parser.add_argument("--all-levels", action="store_true", help="GLB: every number of segments in one file")
     parser.add_argument(
         "--features", action="store_true", help="GLB: the hierarchy as EXT_structural_metadata, with EXT_mesh_features"
@@ -78,6 +84,17 @@ class OutputOptions:
     values: dict[str, object]  # by their names in ``Writer.options``
     original: Original | None  # the file that the mesh was read from, if it is known
     keeps_all: bool
+    standard_format: str | None = None  # of the standard output
+
+    def writer_of(self, path: Path) -> Writer:
+        """Return the writer for an output.
+
+        Raises
+        ------
+        UnsupportedFormat
+            If no format has the extension of the file.
+        """
+        return WRITERS[str(self.standard_format)] if path == STANDARD else writer_for(path.name)
 
     def of(self, writer: Writer) -> dict[str, object]:
         """Return those that a format has."""
@@ -98,7 +115,7 @@ def output_options(choices: argparse.Namespace, source: Path | None) -> OutputOp
     Raises
     ------
     InvalidParameters
-        If that file is to be kept and is not known.
+        If that file is to be kept and is not known, or the format of the standard output is not given.
     """
     if choices.keep and source is None:
         raise InvalidParameters("To keep everything of the input, name its file with --source.")
@@ -112,20 +129,28 @@ def output_options(choices: argparse.Namespace, source: Path | None) -> OutputOp
         "part_format": choices.parts,
         "colors": choices.colors,
     }
-    return OutputOptions(values, Original(source, neighbours=True) if source else None, choices.keep == "all")
+    if STANDARD in choices.output and choices.to is None:
+        raise InvalidParameters("The standard output has no extension: name its format, such as --to glb.")
+    original = Original(source, neighbours=True) if source else None
+    return OutputOptions(values, original, choices.keep == "all", choices.to)
 
 
-def check_outputs(paths: Sequence[Path]) -> None:
-    """Check the folders of the outputs before a long computation.
+def check_outputs(paths: Sequence[Path]) -> Callable[[str], None]:
+    """Check the outputs before a long computation, and return the function that prints messages beside them.
 
     Raises
     ------
+    InvalidParameters
+        If two of them are the standard output.
     NotADirectoryError
         If a folder does not exist.
     """
+    if paths.count(STANDARD) > 1:
+        raise InvalidParameters("Two outputs are the standard output: write one of them to a file.")
     for path in paths:
         if not path.parent.is_dir():
             raise NotADirectoryError(20, "There is no such folder", str(path.parent))
+    return say_beside if STANDARD in paths else say
 
 
 def write_model(
@@ -143,9 +168,9 @@ def write_model(
     ------
     UnsupportedFormat, InvalidParameters, OSError
     """
-    writer = writer_for(path.name)
+    writer = options.writer_of(path)
     chosen = options.of(writer)
-    if writer.companion:
+    if writer.companion and path != STANDARD:
         beside = path.with_suffix(WRITERS[writer.companion].extension)
         write_model(beside, mesh, hierarchy, segments, options)
         chosen["library"] = beside.name
@@ -155,15 +180,37 @@ def write_model(
 
 
 def write_file(path: Path, write: Callable[[BinaryIO], object]) -> None:
-    """Write a file completely or not at all; anything but a regular file, such as a pipe, is written directly."""
-    if path.exists() and not path.is_file():
+    """Write a file completely or not at all; anything but a regular file, such as a pipe, is written directly.
+
+    If the standard output is a pipe that has been closed, the rest is not written.
+    """
+    if path == STANDARD:
+        _write_standard(write)
+    elif path.exists() and not path.is_file():
         with path.open("wb") as target:
             write(target)
     else:
         replace_file(path.resolve(), write)
 
 
+def _write_standard(write: Callable[[BinaryIO], object]) -> None:
+    content = io.BytesIO()
+    write(content)
+    try:
+        sys.stdout.buffer.write(content.getbuffer())
+        sys.stdout.buffer.flush()
+    except BrokenPipeError:
+        forget_output()
+
+
+def standard_input(path: Path) -> Path | BinaryIO:
+    """Return the file to read: the whole standard input for -, else the path."""
+    return io.BytesIO(sys.stdin.buffer.read()) if path == STANDARD else path
+
+
 def _output(text: str) -> Path:
+    if text == str(STANDARD):
+        return STANDARD
     if Path(text).suffix.lower() not in _EXTENSIONS:
         raise argparse.ArgumentTypeError(f"{text!r} must end in one of {' '.join(_EXTENSIONS)}")
     return Path(text)

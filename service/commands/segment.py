@@ -14,14 +14,28 @@ from segcore.io.result import write_result
 from segcore.levels import Fineness
 from segcore.report import StructureCounts, structure_counts, structure_note
 from service.commands.arguments import add_coordinates, add_level, add_parameters, add_structure
-from service.commands.console import ProgressBar, say
-from service.commands.outputs import add_outputs, check_outputs, output_options, write_file, write_model
-from service.commands.summary import level_summary
+from service.commands.console import ProgressBar
+from service.commands.outputs import (
+    STANDARD,
+    OutputOptions,
+    add_outputs,
+    check_outputs,
+    output_options,
+    standard_input,
+    write_file,
+    write_model,
+)
+from service.commands.summary import level_summary, part_lines
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     parser.description = "Segment one mesh and write the outputs; without outputs, only a summary is printed."
-    parser.add_argument("mesh", type=Path, metavar="MESH", help="the mesh file, or a folder or ZIP archive with one")
+    parser.add_argument(
+        "mesh",
+        type=Path,
+        metavar="MESH",
+        help="the mesh file, or a folder or ZIP archive with one; - for the standard input",
+    )
     add_coordinates(parser)
     add_level(parser, "chosen by the mesh")
     parser.add_argument("--max-segments", type=int, metavar="N", help="end of the hierarchy (64, or K, or bodies)")
@@ -47,24 +61,30 @@ def run(choices: argparse.Namespace) -> None:
     fineness = Fineness(choices.segments, choices.granularity)
     parameters = _parameters(choices)
     outputs = [*choices.output, *filter(None, (choices.labels, choices.hierarchy, choices.result))]
-    check_outputs(outputs)
+    tell = check_outputs(outputs)
+    options = output_options(choices, None if choices.mesh == STANDARD else choices.mesh)
     with ProgressBar(sys.stderr) as bar:
         bar("prepare", 0.0)
         segcore.warm_up()
         bar("read", 0.0)
-        mesh = segcore.read_mesh(choices.mesh, appearance=True, neighbours=True, unit=choices.unit, up=choices.up)
+        source = standard_input(choices.mesh)
+        mesh = segcore.read_mesh(source, appearance=True, neighbours=True, unit=choices.unit, up=choices.up)
         surface = segcore.build_surface(mesh)
         hierarchy = segcore.segment(mesh, parameters, bar, surface)
         segments = fineness.segments_of(hierarchy)
-        notes = _write(choices, mesh, hierarchy, segments)
-    say(f"{choices.mesh.name}: {len(mesh.faces)} faces, {len(mesh.vertices)} vertices")
+        notes = _write(choices, options, mesh, hierarchy, segments)
+    name = "standard input" if choices.mesh == STANDARD else choices.mesh.name
+    tell(f"{name}: {len(mesh.faces)} faces, {len(mesh.vertices)} vertices")
     for note in (*mesh.notes, *notes):
-        say(note)
-    say(level_summary(hierarchy, segments, fineness))
+        tell(note)
+    tell(level_summary(hierarchy, segments, fineness))
+    for line in part_lines(hierarchy, segments):
+        tell(line)
     for line in _structure_lines(structure_counts(mesh, surface), parameters):
-        say(line)
+        tell(line)
     for path in outputs:
-        say(f"wrote {path}")
+        if path != STANDARD:
+            tell(f"wrote {path}")
 
 
 def _parameters(choices: argparse.Namespace) -> segcore.SegmentationParameters:
@@ -88,9 +108,10 @@ def _structure_lines(counts: StructureCounts, parameters: segcore.SegmentationPa
     return ([f"structure of the file: {counts.in_words()}"] if counts.has_parts else []) + ([note] if note else [])
 
 
-def _write(choices: argparse.Namespace, mesh: segcore.Mesh, hierarchy: segcore.Hierarchy, segments: int) -> list[str]:
+def _write(
+    choices: argparse.Namespace, options: OutputOptions, mesh: segcore.Mesh, hierarchy: segcore.Hierarchy, segments: int
+) -> list[str]:
     """Write all outputs; return notes on what could not be kept of the input."""
-    options = output_options(choices, choices.mesh)
     notes = [note for path in choices.output for note in write_model(path, mesh, hierarchy, segments, options)]
     document = hierarchy_document(hierarchy)
     writers: list[tuple[Path | None, Callable[[BinaryIO], object]]] = [

@@ -89,14 +89,14 @@ def test_the_summary_has_the_structure_of_the_file_and_says_if_it_fills_the_hier
     path.write_text(TWO_SQUARES)
     counts = "structure of the file: 2 shells, 2 groups, 1 material"
     assert main(["segment", str(path)]) == 0
-    assert capsys.readouterr().out.splitlines()[2:] == [counts]
+    assert capsys.readouterr().out.splitlines()[4:] == [counts]
     labels = tmp_path / "labels.seg"
     for given in (["--structure", "groups"], ["--set", "structure=groups"]):
         assert main(["segment", str(path), "--max-segments", "2", *given, "--labels", str(labels)]) == 0
         lines = capsys.readouterr().out.splitlines()
         assert lines[1].startswith("2 segments, chosen automatically; ")
-        assert lines[2] == counts
-        assert lines[3].startswith("The hierarchy ends with the 2 groups of the file")
+        assert lines[4] == counts
+        assert lines[5].startswith("The hierarchy ends with the 2 groups of the file")
         assert labels.read_text().split() in (["0", "0", "1", "1"], ["1", "1", "0", "0"])
 
 
