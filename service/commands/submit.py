@@ -26,7 +26,8 @@ class SomeFailed(Exception):  # noqa: N818
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     parser.description = (
-        "Submit mesh files to a service and save their results. A second run resumes an interrupted one. If the "
+        "Submit mesh files to a service, with the files in their folders that they refer to (materials, buffers, "
+        "pictures), and save their results. A second run resumes an interrupted one. If the "
         "service requires an API key, set it in the environment variable CLEAVE_API_KEY."
     )
     parser.epilog = "exit status: 0 all done, 1 some files failed, 2 nothing was tried, 130 interrupted"

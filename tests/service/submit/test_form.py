@@ -20,7 +20,7 @@ def test_a_form_does_not_depend_on_its_chunks(store: JobStore, step: int) -> Non
     content = b"\r\n--" + bytes(range(256)) + f"\r\n--{BOUNDARY[:-1]}\r\n".encode() * 3
     body = form(part("parameters", b'{"seed": 1}'), part("mesh", content, '; filename="hand.OFF"'))
     with store.spool.begin_upload() as upload:
-        reader = FormReader(BOUNDARY.encode(), lambda: upload, 10_000)
+        reader = FormReader(BOUNDARY.encode(), lambda: upload, 10_000, 1)
         for start in range(0, len(body), step):
             reader.feed(body[start : start + step])
         result = reader.finish()
@@ -40,7 +40,7 @@ def test_a_form_does_not_depend_on_its_chunks(store: JobStore, step: int) -> Non
 )
 def test_arbitrary_bytes_are_a_form_or_a_problem(store: JobStore, pieces: list[bytes]) -> None:
     with store.spool.begin_upload() as upload:
-        reader = FormReader(BOUNDARY.encode(), lambda: upload, 10_000)
+        reader = FormReader(BOUNDARY.encode(), lambda: upload, 10_000, 1)
         with suppress(Problem):
             for piece in [form(part("mesh", b"abc"))[:40], *pieces]:
                 reader.feed(piece)
