@@ -1,6 +1,7 @@
 /** Client for the parts of the HTTP API that the page uses. */
 
 import { ApiError, type Problem } from "./problems";
+import type { Model } from "./sets";
 
 export type Status = "queued" | "running" | "succeeded" | "failed" | "canceled";
 
@@ -101,9 +102,9 @@ export async function request(path: string, options: RequestInit = {}): Promise<
   return answer;
 }
 
-/** Upload a mesh; ``onSent`` receives the fraction of bytes sent. */
+/** Upload a mesh and the files that belong to it; ``onSent`` receives the fraction of bytes sent. */
 export function submit(
-  file: File,
+  model: Model,
   parameters: Readonly<Record<string, unknown>>,
   signal: AbortSignal,
   onSent: (share: number) => void,
@@ -111,7 +112,7 @@ export function submit(
   return new Promise((resolve, reject) => {
     const form = new FormData();
     form.append("parameters", JSON.stringify(parameters));
-    form.append("mesh", file, file.name);
+    for (const { path, file } of model.files) form.append("mesh", file, path);
     const exchange = new XMLHttpRequest();
     exchange.open("POST", "v1/jobs");
     for (const [name, value] of Object.entries(headers())) exchange.setRequestHeader(name, value);

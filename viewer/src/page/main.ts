@@ -12,6 +12,7 @@ import { ParameterDrawer, type Run } from "./parameters";
 import { PartsPanel } from "./parts";
 import { explain, problemOf, type Problem, type Remedy } from "./problems";
 import { Session } from "./session";
+import type { Model } from "./sets";
 import { Start } from "./start";
 import { TakeAway } from "./takeaway";
 import { bytes, plural, stem } from "./text";
@@ -23,7 +24,7 @@ const SAVE_PAUSE_MS = 250; // browsers limit how often a page may change its URL
 class Page {
   readonly #viewer = byId<CleaveViewer>("viewer");
   readonly #start = new Start({
-    onFinished: (job, file) => this.#finished(job, file),
+    onFinished: (job, model) => this.#finished(job, model),
     onRemedy: (remedy) => this.#applyRemedy(remedy),
     onLeave: () => this.#leave(),
   });
@@ -38,8 +39,8 @@ class Page {
   readonly #beside = new Beside(this.#viewer, () => this.#save());
   #session: Session | null = null;
   #job: Job | null = null;
-  /** The mesh file, if it was uploaded from this page. */
-  #file: File | null = null;
+  /** The files of the mesh, if they were uploaded from this page. */
+  #model: Model | null = null;
   #opening: Address | null = null;
   #next: { segments: number | null; isBeside: boolean } = { segments: null, isBeside: false };
   #view: View | null = null;
@@ -112,8 +113,8 @@ class Page {
     }
   }
 
-  #finished(job: Job, file: File | null): void {
-    this.#file = file ?? this.#file;
+  #finished(job: Job, model: Model | null): void {
+    this.#model = model ?? this.#model;
     if (this.#next.isBeside && this.#job !== null) {
       this.#start.show("none");
       this.#showWork(true);
@@ -129,7 +130,7 @@ class Page {
 
   #chosen(job: Job, isBeside: boolean): void {
     if (isBeside) return this.#beside.open(job);
-    this.#file = null;
+    this.#model = null;
     location.hash = `job=${job.id}`;
   }
 
@@ -223,12 +224,12 @@ class Page {
 
   async #run(run: Run): Promise<void> {
     this.#next = { segments: run.segments, isBeside: run.isBeside };
-    if (this.#file === null) {
+    if (this.#model === null) {
       toast("Choose the mesh file again to run it with other parameters.");
       this.#start.parameters = run.parameters;
       this.#start.choose();
     } else {
-      await this.#start.send(this.#file, run.parameters);
+      await this.#start.send(this.#model, run.parameters);
     }
   }
 
@@ -268,7 +269,7 @@ class Page {
     clearTimeout(this.#saving);
     this.#session = null;
     this.#job = null;
-    this.#file = null;
+    this.#model = null;
     this.#beside.close();
     this.#viewer.removeAttribute("src");
     document.title = "Cleave";
