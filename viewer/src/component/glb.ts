@@ -9,6 +9,8 @@ export interface Model {
   readonly limitReached: boolean | null;
   /** (3 V) xyz of every vertex. */
   readonly positions: Float32Array;
+  /** (3 V) unit normal of every vertex; null if the file has none. */
+  readonly normals: Float32Array | null;
   /** (3 F) vertices of every face, sorted by leaf. */
   readonly index: Uint32Array;
   /** (L) tree node of every leaf. */
@@ -25,7 +27,7 @@ export class InvalidModel extends Error {}
 interface GltfDocument {
   nodes: { mesh?: number; children?: number[]; extras: Record<string, number | null> }[];
   scenes: { extras: Record<string, unknown> }[];
-  meshes: { primitives: { attributes: { POSITION: number }; indices: number; material: number }[] }[];
+  meshes: { primitives: { attributes: { POSITION: number; NORMAL?: number }; indices: number; material: number }[] }[];
   materials: { pbrMetallicRoughness: { baseColorFactor: number[] } }[];
   accessors: { bufferView: number; byteOffset?: number; count: number }[];
   bufferViews: { byteOffset?: number; byteLength: number }[];
@@ -63,14 +65,18 @@ function modelOf(document: GltfDocument, data: ArrayBuffer, binary: number): Mod
   const starts = primitives.map(({ indices }) => (at(document.accessors, indices).byteOffset ?? 0) / (3 * WORD));
   const order = leaves.map((_, i) => i).sort((a, b) => at(starts, a) - at(starts, b));
   const indexView = at(document.bufferViews, at(document.accessors, at(primitives, 0).indices).bufferView);
-  const positionAccessor = at(document.accessors, at(primitives, 0).attributes.POSITION);
-  const positionView = at(document.bufferViews, positionAccessor.bufferView);
+  const vectors = (accessor: number) => {
+    const { bufferView, count } = at(document.accessors, accessor);
+    return new Float32Array(data, binary + (at(document.bufferViews, bufferView).byteOffset ?? 0), 3 * count);
+  };
+  const { POSITION, NORMAL } = at(primitives, 0).attributes;
   const { automatic_segments: automatic, limit_reached: limit } = extras;
   return {
     tree: new PartTree(isSplits(extras) ? nodesOfSplits(extras, document) : document.nodes.map((_, id) => treeNode(document, id))),
     automaticSegments: typeof automatic === "number" ? automatic : leaves.length,
     limitReached: typeof limit === "boolean" ? limit : null,
-    positions: new Float32Array(data, binary + (positionView.byteOffset ?? 0), 3 * positionAccessor.count),
+    positions: vectors(POSITION),
+    normals: NORMAL === undefined ? null : vectors(NORMAL),
     index: new Uint32Array(data, binary + (indexView.byteOffset ?? 0), indexView.byteLength / WORD),
     leafNodes: order.map((i) => at(leaves, i).id),
     leafStart: [...order.map((i) => at(starts, i)), indexView.byteLength / (3 * WORD)],

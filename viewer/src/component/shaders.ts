@@ -42,7 +42,7 @@ void main() {
 }
 `;
 
-/** Smooth normals across soft edges, flat normals at creases; the lights are fixed to the camera. */
+/** The normals of the vertices, turned to the camera, or of the face if they are zero; the lights are fixed to the camera. */
 export const SURFACE_FRAGMENT = /* glsl */ `
 precision highp float;
 uniform float fadeIn;
@@ -60,9 +60,9 @@ vec3 toScreen(vec3 c) { return pow(clamp(c, 0.0, 1.0), vec3(1.0 / 2.2)); }
 void main() {
   vec3 towards = normalize(-seenFrom);
   vec3 flatNormal = normalize(cross(dFdx(seenFrom), dFdy(seenFrom)));
-  vec3 rounded = normalize(smoothNormal);
-  rounded *= sign(dot(rounded, flatNormal) + 1e-6);
-  vec3 n = normalize(mix(flatNormal, rounded, smoothstep(0.76, 0.84, dot(flatNormal, rounded))));
+  float length2 = dot(smoothNormal, smoothNormal);
+  vec3 n = length2 > 0.0 ? smoothNormal * inversesqrt(length2) : flatNormal;
+  n *= sign(dot(n, flatNormal) + 1e-6);
   float key = max(dot(n, normalize(vec3(0.38, 0.72, 0.58))), 0.0);
   float fill = max(dot(n, normalize(vec3(-0.75, 0.1, 0.5))), 0.0);
   float up = 0.5 + 0.5 * n.y;

@@ -13,7 +13,7 @@ export interface Job {
   readonly queue_position: number | null;
   readonly created_at: string;
   readonly finished_at: string | null;
-  readonly input: { readonly file_name: string | null; readonly size_bytes: number };
+  readonly input: { readonly file_name: string | null; readonly format: string | null; readonly size_bytes: number };
   readonly parameters: Readonly<Record<string, unknown>>;
   readonly mesh: { readonly faces: number; readonly vertices: number; readonly report: Report | null } | null;
   readonly max_segments: number | null;
@@ -23,9 +23,18 @@ export interface Job {
 }
 
 export interface Report {
+  /** Opposite corners of the bounding box. */
+  readonly lower: readonly [number, number, number];
+  readonly upper: readonly [number, number, number];
+  /** Of the coordinates, such as "millimeter"; null if it is not known, missing in jobs of earlier versions. */
+  readonly unit?: string | null;
+  /** The axis that points up in pictures; missing in jobs of earlier versions. */
+  readonly shown_up?: Axis;
   /** The number of parts for every value of the parameter ``structure``; null in jobs of earlier versions. */
   readonly structure: Structure | null;
 }
+
+export type Axis = "y" | "z";
 
 export interface Structure {
   readonly shells: number;

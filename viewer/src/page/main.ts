@@ -1,8 +1,9 @@
 /** The page: connects the viewer with the panels, the dialogs and the URL. */
 
 import { CleaveViewer, type LoadDetail, type View } from "../component/element";
+import { about, usualUp } from "./about";
 import { readAddress, readState, writeAddress, type Address } from "./address";
-import { getJob, headers, jobPath, type Job, type Structure } from "./api";
+import { getJob, headers, jobPath, type Job } from "./api";
 import { Beside } from "./beside";
 import { announce, byId, openDialog, toast } from "./dom";
 import { hasEnded } from "./follow";
@@ -15,7 +16,7 @@ import { Session } from "./session";
 import type { Model } from "./sets";
 import { Start } from "./start";
 import { TakeAway } from "./takeaway";
-import { bytes, plural, stem } from "./text";
+import { plural, stem } from "./text";
 import { listenToTheme } from "./theme";
 import { Tools } from "./tools";
 
@@ -152,11 +153,10 @@ class Page {
   #loaded(detail: LoadDetail): void {
     const job = this.#job!;
     const name = job.input.file_name ?? "mesh";
-    this.#session = new Session(this.#viewer.tree!, detail, () => this.#changed());
+    this.#session = new Session(this.#viewer.tree!, detail, usualUp(job), () => this.#changed());
     this.#viewer.setAttribute("label", name);
     byId("title").textContent = name;
-    const structure = structureOf(job.mesh?.report?.structure ?? null);
-    byId("about").textContent = [plural(detail.faces, "face"), bytes(job.input.size_bytes), ...structure].join(" · ");
+    byId("about").textContent = about(job, detail.faces);
     document.title = `${stem(name)} – Cleave`;
     this.#start.show("none");
     this.#showWork(true);
@@ -173,7 +173,7 @@ class Page {
     const address = this.#opening;
     this.#opening = null;
     if (address !== null) {
-      const { work, modes } = readState(address, tree);
+      const { work, modes } = readState(address, this.#session);
       this.#view = address.view;
       this.#session.restore(work, modes);
       if (address.beside !== null) void this.#openBeside(address.beside);
@@ -282,14 +282,6 @@ class Page {
     byId("work").hidden = !isShown;
     for (const element of document.querySelectorAll<HTMLElement>(".with-result")) element.hidden = !isShown;
   }
-}
-
-/** Return the counts of the structure of a file, such as "96 shells"; none if it is of one part. */
-function structureOf(structure: Structure | null): string[] {
-  const { shells, groups, materials } = structure ?? { shells: 0, groups: 0, materials: 0 };
-  if (Math.max(shells, groups, materials) <= 1) return [];
-  const counts: [number, string][] = [[shells, "shell"], [groups, "group"], [materials, "material"]];
-  return counts.filter(([number]) => number > 0).map(([number, one]) => plural(number, one));
 }
 
 await customElements.whenDefined("cleave-viewer");

@@ -27,6 +27,7 @@ class Row {
   readonly #bar = h("progress", { max: 1, value: 0 });
   readonly #state = h("span", {}, "Waiting");
   readonly #open: HTMLButtonElement;
+  #isRefused = false;
   job: Job | null = null;
   end: End | null = null;
 
@@ -71,6 +72,16 @@ class Row {
     announce(`${this.model.name}: ${text}`);
   }
 
+  /** Finish without a result, for a reason that another try does not change. */
+  refuse(text: string): void {
+    this.#isRefused = true;
+    this.finish("failed", text);
+  }
+
+  get canBeTried(): boolean {
+    return !this.#isRefused && (this.end === "failed" || this.end === "stopped");
+  }
+
   again(): void {
     this.end = this.job = null;
     this.#bar.hidden = false;
@@ -103,7 +114,7 @@ export class Several {
     byId("several-list").append(...rows.map(({ item }) => item));
     for (const row of rows) {
       if (row.model.bytes <= mostBytes) this.#waiting.push(row);
-      else row.finish("failed", `Too large: ${bytes(row.model.bytes)}. This server accepts at most ${bytes(mostBytes)}.`);
+      else row.refuse(`Too large: ${bytes(row.model.bytes)}. This server accepts at most ${bytes(mostBytes)}.`);
     }
     announce(`${plural(models.length, "mesh", "meshes")}, each becomes a job.`);
     this.#begin();
@@ -157,7 +168,7 @@ export class Several {
 
   /** Upload again what failed. */
   #again(): void {
-    for (const row of this.#rows.filter(({ end }) => end === "failed" || end === "stopped")) {
+    for (const row of this.#rows.filter(({ canBeTried }) => canBeTried)) {
       row.again();
       this.#waiting.push(row);
     }
@@ -189,7 +200,7 @@ export class Several {
     byId("several-summary").textContent = text;
     byId("several-stop").hidden = left === 0;
     byId("several-close").hidden = left > 0;
-    byId("several-again").hidden = left > 0 || failed === 0;
+    byId("several-again").hidden = left > 0 || !this.#rows.some(({ canBeTried }) => canBeTried);
   }
 }
 
