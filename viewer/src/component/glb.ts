@@ -17,6 +17,8 @@ export interface Model {
   readonly leafNodes: readonly number[];
   /** (L + 1) leaf i has the faces leafStart[i] to leafStart[i + 1] - 1. */
   readonly leafStart: readonly number[];
+  /** (16) matrix by columns from these positions to the scene of the file. */
+  readonly placement: readonly number[];
   /** sRGB colour of every label, in 0..1. */
   readonly palette: readonly (readonly [number, number, number])[];
 }
@@ -24,8 +26,17 @@ export interface Model {
 /** The data is not a GLB file of the service; the message names the fault. */
 export class InvalidModel extends Error {}
 
+interface GltfNode {
+  mesh?: number;
+  children?: number[];
+  translation?: number[];
+  rotation?: number[];
+  scale?: number[];
+  extras: Record<string, number | null>;
+}
+
 interface GltfDocument {
-  nodes: { mesh?: number; children?: number[]; extras: Record<string, number | null> }[];
+  nodes: GltfNode[];
   scenes: { extras: Record<string, unknown> }[];
   meshes: { primitives: { attributes: { POSITION: number; NORMAL?: number }; indices: number; material: number }[] }[];
   materials: { pbrMetallicRoughness: { baseColorFactor: number[] } }[];
@@ -80,6 +91,7 @@ function modelOf(document: GltfDocument, data: ArrayBuffer, binary: number): Mod
     index: new Uint32Array(data, binary + (indexView.byteOffset ?? 0), indexView.byteLength / WORD),
     leafNodes: order.map((i) => at(leaves, i).id),
     leafStart: [...order.map((i) => at(starts, i)), indexView.byteLength / (3 * WORD)],
+    placement: matrixOf(at(document.nodes, 0)),
     palette: document.materials.map((material) => srgb(material.pbrMetallicRoughness.baseColorFactor)),
   };
 }
@@ -137,6 +149,17 @@ function treeNode(document: GltfDocument, id: number): TreeNode {
     cutValue: extras["cut_value"] ?? null,
     step: children === undefined ? null : Math.min(...children),
   };
+}
+
+/** Return the matrix of a node, by columns. */
+function matrixOf({ translation: t = [0, 0, 0], rotation: q = [0, 0, 0, 1], scale: s = [1, 1, 1] }: GltfNode): number[] {
+  const [x, y, z, w] = q as [number, number, number, number];
+  const columns = [
+    [1 - 2 * (y * y + z * z), 2 * (x * y + z * w), 2 * (x * z - y * w)],
+    [2 * (x * y - z * w), 1 - 2 * (x * x + z * z), 2 * (y * z + x * w)],
+    [2 * (x * z + y * w), 2 * (y * z - x * w), 1 - 2 * (x * x + y * y)],
+  ];
+  return [...columns.flatMap((column, k) => [...column.map((value) => value * s[k]!), 0]), ...t, 1];
 }
 
 /** Convert a linear colour of glTF to sRGB (IEC 61966-2-1). */

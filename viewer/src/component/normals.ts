@@ -3,6 +3,8 @@
 import { forAdjacentCorners, next } from "./adjacency";
 import type { Model } from "./glb";
 
+type Triangles = Pick<Model, "positions" | "normals" | "index">;
+
 export interface CornerNormals {
   /** (3 F) group of every corner; the corners of a group share a vertex and a normal. */
   readonly group: Uint32Array;
@@ -23,7 +25,7 @@ const CREASE = Math.cos((35 * Math.PI) / 180);
  * @param welded (3 F) vertices of the corners, equal for equal positions
  */
 export async function cornerNormals(
-  model: Model,
+  model: Triangles,
   welded: Uint32Array,
   yieldToEventLoop: () => Promise<void>,
 ): Promise<CornerNormals> {
@@ -46,7 +48,7 @@ export async function cornerNormals(
 }
 
 /** Return (3 F) unit face normals; NaN for a face without area, so that its edges are creases and not concave. */
-export function faceNormals({ positions: p, index }: Model): Float32Array {
+export function faceNormals({ positions: p, index }: Triangles): Float32Array {
   const normals = new Float32Array(index.length);
   for (let i = 0; i < index.length; i += 3) {
     const a = 3 * index[i]!;
@@ -79,7 +81,7 @@ function join(parent: Int32Array, a: number, b: number): void {
 }
 
 /** Number the groups of corners, and return the sums of their normals. */
-function summed(model: Model, faces: Float32Array, parent: Int32Array): CornerNormals {
+function summed(model: Triangles, faces: Float32Array, parent: Int32Array): CornerNormals {
   const group = new Uint32Array(parent.length);
   let count = 0;
   for (let corner = 0; corner < parent.length; corner++) {
@@ -102,7 +104,7 @@ function summed(model: Model, faces: Float32Array, parent: Int32Array): CornerNo
 }
 
 /** Write area times angle of the corners of a face; return false if it has no area. */
-function cornerWeights({ positions: p, index }: Model, i: number, weights: Float32Array): boolean {
+function cornerWeights({ positions: p, index }: Triangles, i: number, weights: Float32Array): boolean {
   const a = 3 * index[i]!;
   const b = 3 * index[i + 1]!;
   const c = 3 * index[i + 2]!;

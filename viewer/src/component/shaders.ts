@@ -19,6 +19,7 @@ ${LEAF}
 `;
 
 export const SURFACE_VERTEX = /* glsl */ `${HEAD}
+uniform float veil;
 in vec3 position;
 in vec4 normalAndLeaf;
 in float concavity;
@@ -38,17 +39,24 @@ void main() {
   base = color.rgb;
   emphasis = moved.w;
   gl_Position = projectionMatrix * seen;
+  if (veil >= 0.0) gl_Position.z -= 0.0004 * gl_Position.w;
   if (color.a < 0.5) ${HIDDEN}
 }
 `;
 
-/** The normals of the vertices, turned to the camera, or of the face if they are zero; the lights are fixed to the camera. */
+/**
+ * The opaque surface, or a veil of it above the original materials if ``veil``, its opacity, is not negative.
+ *
+ * The normals are those of the vertices, turned to the camera, or of the face if they are zero; the lights are fixed to the
+ * camera.
+ */
 export const SURFACE_FRAGMENT = /* glsl */ `
 precision highp float;
 uniform float fadeIn;
 uniform vec3 sky;
 uniform vec4 concaveInk;
 uniform bool isBentShown;
+uniform float veil;
 in vec3 seenFrom;
 in float bent;
 in vec3 smoothNormal;
@@ -76,7 +84,11 @@ void main() {
   vec3 light = vec3(0.36) + 0.24 * up + 0.50 * key + 0.12 * fill + 0.08 * facing;
   vec3 lit = surface * light + vec3(0.06) * gloss + 0.10 * pow(1.0 - facing, 3.0) * toLinear(sky);
   lit = mix(lit, lit * 1.12 + 0.05, clamp(emphasis, 0.0, 1.0));
-  color = vec4(toScreen(lit), 1.0) * fadeIn;
+  float opacity = veil < 0.0 ? 1.0 : veil;
+  if (veil >= 0.0 && isBentShown) opacity = max(opacity, 0.9 * smoothstep(0.0, 1.0, bent));
+  if (veil >= 0.0 && emphasis > 0.0) opacity = max(opacity + 0.15, 0.35);
+  if (veil >= 0.0 && emphasis < 0.0) opacity = 0.75;
+  color = vec4(toScreen(lit), 1.0) * opacity * fadeIn;
 }
 `;
 

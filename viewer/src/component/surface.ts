@@ -53,7 +53,7 @@ export async function buildSurface(model: Model, yieldToEventLoop: () => Promise
 }
 
 /** Return the first vertex at the position of each vertex; null if the faces share their vertices already. */
-function weld(positions: Float32Array, faces: number): Uint32Array | null {
+export function weld(positions: Float32Array, faces: number): Uint32Array | null {
   const count = positions.length / 3;
   if (count < 0.6 * faces) return null;
   const bits = new Uint32Array(positions.buffer, positions.byteOffset, positions.length);

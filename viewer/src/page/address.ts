@@ -2,7 +2,7 @@
 
 import type { View } from "../component/element";
 import type { Axis } from "./api";
-import type { Modes, Session, Work } from "./session";
+import { LOOKS, type Modes, type Session, type Work } from "./session";
 
 export interface Address {
   readonly job: string | null;
@@ -37,6 +37,7 @@ export function readState({ values }: Address, { tree, firstModes }: Session): {
       concavity: show.has("concavity"),
       lines: !show.has("nolines"),
       up: axisNamed(values.get("up")) ?? firstModes.up,
+      look: LOOKS.find((look) => look === values.get("look")) ?? firstModes.look,
     },
   };
 }
@@ -53,6 +54,7 @@ export function writeAddress(job: string, session: Session, view: View | null, b
   const show = [modes.wireframe && "wires", modes.concavity && "concavity", !modes.lines && "nolines"].filter(Boolean);
   if (show.length > 0) values.set("show", show.join("."));
   if (modes.up !== session.firstModes.up) values.set("up", modes.up);
+  if (modes.look !== session.firstModes.look) values.set("look", modes.look);
   for (const [id, name] of work.names) values.set(`n${id}`, name);
   if (view !== null) values.set("view", writeView(view));
   if (beside !== null) values.set("beside", beside);

@@ -146,6 +146,8 @@ class Page {
     this.#viewer.requestHeaders = headers();
     if (this.#opening?.view) this.#viewer.clear();
     if (this.#opening?.view) this.#viewer.view = this.#opening.view;
+    this.#viewer.setAttribute("look", "parts"); // until the state of the page is restored
+    this.#viewer.setAttribute("original-src", `${source}&keep=all`);
     this.#viewer.removeAttribute("src");
     this.#viewer.setAttribute("src", source);
   }
@@ -209,7 +211,7 @@ class Page {
     this.#level.update();
     this.#parts.update();
     this.#tools.update();
-    this.#beside.upAxis = this.#session.modes.up;
+    this.#beside.show(this.#session.modes);
     this.#save();
   }
 

@@ -1,7 +1,7 @@
 /** The editing state of a result (cut, hidden parts, names) with undo, and its display modes. */
 
 import type { Axis } from "./api";
-import type { Cut, LoadDetail, PartTree } from "../component/element";
+import type { Cut, LoadDetail, Look, PartTree } from "../component/element";
 
 /** The state that undo restores. */
 export interface Work {
@@ -17,7 +17,10 @@ export interface Modes {
   readonly concavity: boolean;
   readonly lines: boolean;
   readonly up: Axis;
+  readonly look: Look;
 }
+
+export const LOOKS: readonly Look[] = ["parts", "original", "both"];
 
 const FIRST_MODES: Modes = {
   selected: [],
@@ -26,6 +29,7 @@ const FIRST_MODES: Modes = {
   concavity: false,
   lines: true,
   up: "y",
+  look: "parts",
 };
 
 const MOST_STEPS = 200;
