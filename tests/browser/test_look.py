@@ -48,7 +48,9 @@ def test_each_flat_face_has_one_shade(visit: Visit) -> None:
     show(visit, "prism.off", mesh_bytes(prism(8), "off"))
     groups = shades(visit)
     assert 3 <= len(groups) <= 6
-    assert max(group[-1] - group[0] for group in groups) < 40  # the eye is near: it sees each point from another side
+    assert (
+        max(group[-1] - group[0] for group in groups) < 40
+    )  # the camera is near, so the light of a face is not quite the same everywhere
 
 
 def test_round_faces_have_no_steps_of_shade(visit: Visit) -> None:

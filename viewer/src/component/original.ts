@@ -51,16 +51,27 @@ export async function readOriginal(
       leaf: part === undefined ? -1 : (leafOfLabel.get(part) ?? -1),
     });
   });
-  if (pieces.length === 0) throw new Error("It has no faces.");
+  if (pieces.every(({ leaf }) => leaf < 0)) throw new Error("It is not divided by part.");
   await round(pieces, yieldToEventLoop);
   return new Original(pieces);
 }
 
-/** Return the part in the extras of a primitive. The loader shares geometries, so theirs may be those of another one. */
-function partOf(parser: GLTFParser, object: Object3D): number | undefined {
-  const { meshes, primitives } = parser.associations.get(object) ?? {};
-  const json = parser.json as { meshes?: { primitives: { extras?: { part?: number } }[] }[] };
-  return json.meshes?.[meshes ?? -1]?.primitives[primitives ?? -1]?.extras?.part;
+interface Json {
+  readonly nodes?: readonly { mesh?: number }[];
+  readonly meshes?: readonly { primitives: readonly { extras?: { part?: number } }[] }[];
+}
+
+/**
+ * Return the part in the extras of a primitive. The loader shares geometries, so theirs may be those of another one, and
+ * it knows only the nodes of instanced meshes, which are in the order of the primitives.
+ */
+function partOf({ associations, json }: GLTFParser, object: Object3D): number | undefined {
+  const own = associations.get(object);
+  const node = own?.nodes ?? associations.get(object.parent!)?.nodes;
+  const { nodes = [], meshes = [] } = json as Json;
+  const mesh = own?.meshes ?? nodes[node ?? -1]?.mesh;
+  const primitive = own?.primitives ?? (own?.nodes === undefined ? object.parent!.children.indexOf(object) : 0);
+  return meshes[mesh ?? -1]?.primitives[primitive]?.extras?.part;
 }
 
 /** Return the surroundings that light the original materials. */
