@@ -9,7 +9,7 @@ and pictures (``draw``, ``write_png``).
 """
 
 from segcore.io.converting import with_coordinates
-from segcore.io.file_sets import is_hidden, is_mesh_name, name_in_set
+from segcore.io.file_sets import is_hidden, is_mesh_name, model_in_folder, name_in_set
 from segcore.io.formats import FORMATS, Format, declared_format
 from segcore.io.gltf.writer import Layout, write_glb
 from segcore.io.keeping import Original, PartFormat, write_kept, write_kept_parts
@@ -48,6 +48,7 @@ __all__ = [
     "is_hidden",
     "is_mesh_name",
     "labels_document",
+    "model_in_folder",
     "name_in_set",
     "neighbours_of",
     "read_mesh",

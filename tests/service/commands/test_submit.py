@@ -135,7 +135,7 @@ def test_the_files_that_a_model_refers_to_are_sent_with_it(url: str, tmp_path: P
     (tmp_path / "scene.gltf").write_text(json.dumps(asset.document))
     for binary in (asset.binary, asset.binary + b"\0"):
         (tmp_path / "data" / "a b.bin").write_bytes(binary)
-        assert submit(url, [tmp_path / "scene.gltf"], tmp_path / "out", "--results", "seg") == 0
+        assert submit(url, [tmp_path], tmp_path / "out", "--results", "seg") == 0
         (tmp_path / "out" / "scene.seg").unlink()
     with Client(url) as client:
         assert len(list(client.jobs())) == 2  # another buffer is another job
