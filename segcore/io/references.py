@@ -6,6 +6,7 @@ import posixpath
 import re
 import zlib
 from collections.abc import Callable, Iterator
+from itertools import chain
 from pathlib import Path, PurePosixPath
 from typing import TypeAlias
 from urllib.parse import unquote
@@ -17,6 +18,11 @@ from segcore.io.source import GZIP_MAGIC
 Locate: TypeAlias = Callable[[str], Path | None]  # the file at an address, or None if the set does not have it
 
 _CHUNK = 2**20  # bytes that are searched at a time
+_MOST_REFERENCES = (
+    1000  # of a file; set by hand, more than models have, so that a hostile file is not searched for hours
+)
+_MOST_WORDS = 16  # of a line that may begin the name at its end
+_MOST_LIBRARY_BYTES = 16 * 2**20  # that are searched; materials have a kilobyte each
 _LONGEST = 4096  # bytes of an address with its keyword; longer ones are not found
 _URI = re.compile(rb'"uri"\s{0,64}:\s{0,64}("(?!data:)(?:[^"\\\x00-\x1f]|\\.){1,2048}")')
 _LIBRARY = re.compile(rb"(?:(?<=[\r\n])|\A)[ \t]*mtllib[ \t]+([^\r\n]{1,2048})(?=[\r\n])")
@@ -53,12 +59,13 @@ def referenced_files(model: Path, name: str, locate: Locate, limits: ReadLimits 
         return _located(map(_addresses_of_uri, _found(_URI, model, most)), locate)
     if extension != ".obj":
         return {}
-    libraries = _located(map(_addresses_in_line, _found(_LIBRARY, model, most)), locate)
+    lines = (_names_in_line(line) for line in _found(_LIBRARY, model, most))
+    libraries = _located(chain.from_iterable(lines), locate)
     found = dict(libraries)
     for address, library in libraries.items():
         folder = PurePosixPath(address).parent
-        lines = map(_addresses_in_line, _found(_PICTURE, library, most))
-        found |= _located(([str(folder / one) for one in line] for line in lines), locate)
+        pictures = map(_addresses_in_line, _found(_PICTURE, library, min(most, _MOST_LIBRARY_BYTES)))
+        found |= _located(([str(folder / one) for one in names] for names in pictures), locate)
     return found
 
 
@@ -100,17 +107,30 @@ def _addresses_of_uri(literal: bytes) -> list[str]:
 
 def _addresses_in_line(line: bytes) -> list[str]:
     """What may be the name at the end of a line: names may have blanks, and options may stand before them."""
-    words = line.decode("utf-8", "replace").strip().replace("\\", "/").split()
-    text = " ".join(words)
-    names = [line.decode("utf-8", "replace").strip().replace("\\", "/")]
-    while words:
-        names.append(text)
-        text = text[len(words.pop(0)) :].lstrip()
-    return names
+    text = line.decode("utf-8", "replace").strip().replace("\\", "/")
+    words = text.split()
+    return [text, *(" ".join(words[first:]) for first in range(min(len(words), _MOST_WORDS)))]
+
+
+def _names_in_line(line: bytes) -> list[list[str]]:
+    """What may be the names in a line: one name, which may have blanks, or several without blanks."""
+    at_the_end = _addresses_in_line(line)
+    return [at_the_end, *([word] for word in at_the_end[0].split()[:_MOST_WORDS])]
 
 
 def _found(pattern: re.Pattern[bytes], file: Path, most_bytes: int) -> Iterator[bytes]:
-    """Yield the first group of each match, in pieces that overlap; a match may be found twice."""
+    """Yield the first group of the matches, each text once."""
+    seen = set[bytes]()
+    for text in _matches(pattern, file, most_bytes):
+        if text not in seen:
+            seen.add(text)
+            yield text
+        if len(seen) == _MOST_REFERENCES:
+            return
+
+
+def _matches(pattern: re.Pattern[bytes], file: Path, most_bytes: int) -> Iterator[bytes]:
+    """Yield the first group of each match, in pieces that overlap."""
     rest = b""
     for chunk in _pieces(file, most_bytes):
         text = rest + chunk

@@ -2,6 +2,7 @@
 
 import gzip
 import json
+import time
 from pathlib import Path
 
 import pytest
@@ -47,9 +48,15 @@ def test_pictures_are_relative_to_the_material_library(tmp_path: Path) -> None:
 
 def test_several_libraries_and_names_with_blanks_are_found(tmp_path: Path) -> None:
     folder = folder_of(
-        tmp_path, {"a.obj": b"mtllib one.mtl two.mtl\r\nmtllib my parts.mtl", "my parts.mtl": b"", "two.mtl": b""}
+        tmp_path,
+        {
+            "a.obj": b"mtllib one.mtl two.mtl\r\nmtllib my parts.mtl",
+            "my parts.mtl": b"",
+            "two.mtl": b"",
+            "one.mtl": b"",
+        },
     )
-    assert named(folder / "a.obj") == {"my parts.mtl", "two.mtl"}
+    assert named(folder / "a.obj") == {"my parts.mtl", "one.mtl", "two.mtl"}
 
 
 def test_a_gltf_file_refers_to_its_buffers_and_images(tmp_path: Path) -> None:
@@ -100,3 +107,13 @@ def test_a_reference_is_found_at_the_border_of_two_pieces(tmp_path: Path, at: in
 def test_other_formats_refer_to_nothing(tmp_path: Path) -> None:
     folder = folder_of(tmp_path, {"a.stl": b"solid\nmtllib parts.mtl\n", "parts.mtl": b""})
     assert named(folder / "a.stl") == set()
+
+
+def test_a_file_with_very_many_references_is_searched_in_part(tmp_path: Path) -> None:
+    lines = "".join(f"mtllib {'x ' * 8}{number}.mtl\n" for number in range(2000))
+    folder = folder_of(
+        tmp_path, {"a.obj": lines.encode(), "5.mtl": b"map_Kd a.png\n" * 10_000, "a.png": b"", "1500.mtl": b""}
+    )
+    began_at = time.monotonic()
+    assert named(folder / "a.obj") == {"5.mtl", "a.png"}
+    assert time.monotonic() - began_at < 10

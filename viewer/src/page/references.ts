@@ -4,6 +4,7 @@ const URI = /"uri"\s{0,64}:\s{0,64}("(?!data:)(?:[^"\\]|\\.){1,2048}")/g;
 const LIBRARY = /^[ \t]*mtllib[ \t]+([^\r\n]{1,2048})(?=[\r\n])/gm;
 const PICTURE = /^[ \t]*(?:map_\w+|bump|disp|decal|refl|norm)[ \t]+([^\r\n]{1,2048})(?=[\r\n])/gim;
 const PIECE = 4 * 1024 * 1024; // characters that are searched at a time
+const MOST_WORDS = 16; // of a line that may begin a name
 const LONGEST = 4096; // characters of a reference; longer ones are not found
 
 /**
@@ -12,7 +13,7 @@ const LONGEST = 4096; // characters of a reference; longer ones are not found
  */
 export async function referencesOf(file: Blob, name: string): Promise<string[][]> {
   if (/\.gl(tf|b)$/i.test(name)) return (await matches(file, URI)).map((text) => [decoded(text)]);
-  if (/\.obj$/i.test(name)) return (await matches(file, LIBRARY)).map(namesAtTheEnd);
+  if (/\.obj$/i.test(name)) return (await matches(file, LIBRARY)).flatMap(namesIn);
   if (/\.mtl$/i.test(name)) return (await matches(file, PICTURE)).map(namesAtTheEnd);
   return [];
 }
@@ -52,7 +53,13 @@ async function matches(file: Blob, pattern: RegExp): Promise<string[]> {
 
 function namesAtTheEnd(line: string): string[] {
   const words = line.trim().split(/\s+/);
-  return [line.trim(), ...words.map((_, i) => words.slice(i).join(" "))];
+  return [line.trim(), ...words.slice(0, MOST_WORDS).map((_, i) => words.slice(i).join(" "))];
+}
+
+/** Return what may be the names in a line: one name, which may have blanks, or several without blanks. */
+function namesIn(line: string): string[][] {
+  const words = line.trim().split(/\s+/);
+  return [namesAtTheEnd(line), ...words.slice(0, MOST_WORDS).map((word) => [word])];
 }
 
 /** Return the address in a JSON text, without its percent escapes; empty if the text is damaged. */
