@@ -1,38 +1,54 @@
 /** Pairs of corners of faces that share an edge. */
 
-const FREE = -1; // states of a slot in the hash table of corners
-const PAIRED = -2;
+const NONE = -1;
 
 /**
  * Visit every edge that two faces share, as one corner of each face. Corner i stands for the edge to the next corner of
  * its face. If more than two faces share an edge, they are paired in the order of the corners.
+ *
+ * Corners that wait for their pair are in a list at one end of their edge: at the one with fewer faces, so that the lists
+ * are short even if a vertex has very many.
  */
 export function forAdjacentCorners(
   welded: Uint32Array,
   isWanted: Uint8Array | null,
   visit: (a: number, b: number) => void,
 ): void {
-  let count = 0;
-  for (let i = 0; i < welded.length; i++) if (isWanted === null || (isWanted[i] && isWanted[next(i)])) count++;
-  const size = 2 ** Math.ceil(Math.log2(2 * count + 1));
-  const table = new Int32Array(size).fill(FREE);
+  const degree = degrees(welded);
+  const first = new Int32Array(degree.length).fill(NONE); // of the list of each vertex
+  const following = new Int32Array(welded.length);
   for (let i = 0; i < welded.length; i++) {
     if (isWanted !== null && !(isWanted[i] && isWanted[next(i)])) continue;
     const from = welded[i]!;
     const to = welded[next(i)]!;
-    let slot = (Math.imul(Math.min(from, to), 0x9e3779b1) ^ Math.imul(Math.max(from, to), 0x85ebca6b)) & (size - 1);
-    for (; table[slot] !== FREE; slot = (slot + 1) & (size - 1)) {
-      const other = table[slot]!;
-      if (other === PAIRED) continue;
-      const a = welded[other]!;
-      const b = welded[next(other)]!;
-      if ((a !== to || b !== from) && (a !== from || b !== to)) continue;
-      visit(other, i);
-      table[slot] = PAIRED;
-      break;
+    if (from === to) continue; // of a face without area
+    const isAtFrom = degree[from]! < degree[to]! || (degree[from] === degree[to] && from < to);
+    const place = isAtFrom ? from : to;
+    const other = isAtFrom ? to : from;
+    let before = NONE;
+    let corner = first[place]!;
+    while (corner !== NONE && welded[corner] !== other && welded[next(corner)] !== other) {
+      before = corner;
+      corner = following[corner]!;
     }
-    if (table[slot] === FREE) table[slot] = i;
+    if (corner === NONE) {
+      following[i] = first[place]!;
+      first[place] = i;
+    } else {
+      if (before === NONE) first[place] = following[corner]!;
+      else following[before] = following[corner]!;
+      visit(corner, i);
+    }
   }
+}
+
+/** Return the number of corners at each vertex. */
+function degrees(welded: Uint32Array): Uint32Array {
+  let last = 0;
+  for (let i = 0; i < welded.length; i++) if (welded[i]! > last) last = welded[i]!;
+  const result = new Uint32Array(last + 1);
+  for (let i = 0; i < welded.length; i++) result[welded[i]!]!++;
+  return result;
 }
 
 /** Return the next corner of the face. */
