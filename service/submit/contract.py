@@ -17,6 +17,7 @@ SUBMISSION_PROBLEMS = (
     "too_large",
     "unsupported_media_type",
     "invalid_mesh",
+    "invalid_file_set",
     "invalid_parameters",
     "invalid_request",
     "queue_full",

@@ -183,4 +183,4 @@ def _listed(names: Sequence[str]) -> str:
 
 
 def _refuse(sentence: str) -> NoReturn:
-    raise Problem("malformed_request", sentence)
+    raise Problem("invalid_file_set", sentence)

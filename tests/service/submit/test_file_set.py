@@ -95,7 +95,7 @@ def test_a_set_is_segmented_like_any_mesh(client: httpx.Client, store: JobStore,
 def test_a_set_that_is_not_one_model_is_refused_and_leaves_nothing(
     client: httpx.Client, settings: Settings, files: Files, sentence: str
 ) -> None:
-    assert sentence in str(problem(post(client, files), 400, "malformed_request")["detail"])
+    assert sentence in str(problem(post(client, files), 422, "invalid_file_set")["detail"])
     assert traces(settings.data_dir) == []
 
 
@@ -134,4 +134,4 @@ def test_a_shared_file_belongs_to_each_model_of_a_batch_within_the_limits(settin
 
 def test_a_batch_without_a_mesh_names_its_files(client: httpx.Client) -> None:
     for answer in (post(client, OBJ_SET[1:], "/v1/batches"), post_zip(client, zip_of(dict(OBJ_SET[1:])))):
-        assert "a.mtl" in str(problem(answer, 400, "malformed_request")["detail"])
+        assert "a.mtl" in str(problem(answer, 422, "invalid_file_set")["detail"])

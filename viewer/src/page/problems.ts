@@ -43,6 +43,7 @@ const KNOWN: Record<string, [title: string, next: string, remedy: Remedy]> = {
   invalid_mesh: ["This file cannot be read as a mesh", "Export it again from the program that created it, then choose it here.", "choose"],
   unsupported_format: ["Cleave does not read this format", `Convert the file to ${FORMATS}.`, "choose"],
   unsupported_media_type: ["Cleave does not read this format", `Convert the file to ${FORMATS}.`, "choose"],
+  invalid_file_set: ["These files are not one mesh", "Choose one mesh and the files that belong to it.", "choose"],
   no_mesh: ["There is no mesh among these files", `Choose a mesh: ${FORMATS}, with the files that belong to it.`, "choose"],
   too_many_files: ["These are too many files", "Choose fewer at a time.", "choose"],
   unreadable: ["The files cannot be read", "They may have been moved or changed. Choose them again.", "choose"],
