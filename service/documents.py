@@ -122,6 +122,7 @@ class BatchDocument(BaseModel):
     created_at: datetime
     counts: dict[str, int] = Field(description="Jobs by status.", examples=[{"succeeded": 98, "running": 2}])
     jobs: list[BatchedJob] = Field(description="In the order of the request.")
+    left_out: list[str] = Field(description="Files of the request that are no meshes, and to which none refers.")
     links: BatchLinks
 
 

@@ -136,5 +136,6 @@ def describe_batch(context: Context, batch: Batch) -> BatchDocument:
             )
             for job_id, one in zip(batch.job_ids, documents, strict=True)
         ],
+        left_out=batch.left_out,
         links=BatchLinks(self=path, results=f"{path}/results.zip"),
     )

@@ -49,6 +49,7 @@ _CODES: dict[str, tuple[int, str]] = {
     "unsupported_media_type": (415, "The format of the body is not supported: see GET /v1/formats."),
     "range_not_satisfiable": (416, "The range lies outside the result."),
     "invalid_mesh": (422, "The mesh file is empty: send one with faces."),
+    "invalid_file_set": (422, "The files are not one mesh with the files that belong to it; detail names them."),
     "input_changed": (
         422,
         "The file is read in another way than when it was segmented: submit it again.",

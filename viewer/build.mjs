@@ -13,18 +13,30 @@ async function built() {
     // The page imports the component's own file, so that a browser loads three.js once.
     entryPoints: { "cleave-viewer": "src/component/element.ts", page: "src/page/main.ts" },
     splitting: true,
-    chunkNames: "viewer",
+    chunkNames: "[name]-[hash]",
     format: "esm",
     target: "es2022",
     legalComments: "none",
     banner: { js: "/* Cleave, MIT. Contains three.js, copyright three.js authors, MIT. */" },
   });
   const styles = await build({ ...common, entryPoints: ["src/page/page.css"] });
-  const files = new Map();
-  for (const { path, contents } of [...scripts.outputFiles, ...styles.outputFiles])
-    files.set(path.split("/").at(-1), Buffer.from(contents));
+  const files = withPlainNames([...scripts.outputFiles, ...styles.outputFiles]);
   for (const name of await readdir("static")) files.set(name, await readFile(join("static", name)));
   return files;
+}
+
+/** Return contents by name; the scripts that several share are called viewer.js, viewer-2.js, ..., the largest first. */
+function withPlainNames(outputs) {
+  const nameOf = ({ path }) => path.split("/").at(-1);
+  const shared = outputs.filter((output) => nameOf(output).startsWith("chunk-")).sort((a, b) => b.contents.length - a.contents.length);
+  const renamed = new Map(shared.map((output, i) => [nameOf(output), i === 0 ? "viewer.js" : `viewer-${i + 1}.js`]));
+  for (const name of outputs.map(nameOf)) if (/^original-\w+\.js$/.test(name)) renamed.set(name, "original.js");
+  return new Map(
+    outputs.map((output) => {
+      const text = [...renamed].reduce((text, [from, to]) => text.replaceAll(from, to), Buffer.from(output.contents).toString());
+      return [renamed.get(nameOf(output)) ?? nameOf(output), Buffer.from(text)];
+    }),
+  );
 }
 
 const files = await built();

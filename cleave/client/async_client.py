@@ -9,7 +9,16 @@ from typing import Any
 import httpx
 
 from cleave.client import flows
-from cleave.client.connection import CHUNK_BYTES, Connection, Mesh, async_chunks, partial_path, submission_of, texts
+from cleave.client.connection import (
+    CHUNK_BYTES,
+    Companions,
+    Connection,
+    Mesh,
+    async_chunks,
+    partial_path,
+    submission_of,
+    texts,
+)
 from cleave.client.documents import Job, Segmentation, Status
 from cleave.client.flows import Call, Flow, Value
 
@@ -46,6 +55,7 @@ class AsyncClient:
         self,
         mesh: Mesh,
         *,
+        companions: Companions = (),
         parameters: Mapping[str, object] | None = None,
         format: str | None = None,  # noqa: A002
         unit: str | None = None,
@@ -58,11 +68,14 @@ class AsyncClient:
 
         Parameters
         ----------
+        companions : files that the mesh file refers to, such as materials, buffers and pictures; a list of paths, or a
+            mapping from their paths relative to the mesh file. The server opens no others.
         unit, up : the unit of the coordinates, such as ``mm``, and the axis that points up, ``y`` or ``z``, if the file
             does not name them.
         """
         submission = submission_of(
             mesh,
+            companions=companions,
             parameters=parameters,
             format=format,
             unit=unit,
@@ -77,6 +90,7 @@ class AsyncClient:
         self,
         mesh: Mesh,
         *,
+        companions: Companions = (),
         segments: int | None = None,
         granularity: float | None = None,
         parameters: Mapping[str, object] | None = None,
@@ -88,11 +102,12 @@ class AsyncClient:
 
         Parameters
         ----------
+        companions : files that the mesh file refers to, as in :meth:`submit`.
         segments : number of segments; None for the automatic number.
         granularity : 0 (coarse) to 1 (fine), in place of a number of segments.
         unit, up : as of ``submit``.
         """
-        submission = submission_of(mesh, parameters=parameters, format=format, unit=unit, up=up)
+        submission = submission_of(mesh, companions=companions, parameters=parameters, format=format, unit=unit, up=up)
         return await self._run(flows.segment(submission, flows.level_of(segments, granularity)))
 
     async def job(self, job_id: str, *, wait_s: float = 0.0) -> Job:

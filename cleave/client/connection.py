@@ -2,7 +2,7 @@
 
 import asyncio
 import os
-from collections.abc import AsyncIterator, Iterator, Mapping
+from collections.abc import AsyncIterator, Iterator, Mapping, Sequence
 from pathlib import Path
 from typing import Any, TypeAlias
 
@@ -12,6 +12,9 @@ from cleave.client.errors import ClientError, ServerUnreachable
 from cleave.client.flows import Call, Submission, refusal
 
 Mesh: TypeAlias = str | os.PathLike[str] | bytes  # a path, or the bytes of a file
+
+# Files that belong to a mesh file; a mapping has them by their paths relative to it.
+Companions: TypeAlias = Sequence[str | os.PathLike[str]] | Mapping[str, str | os.PathLike[str]]
 
 CHUNK_BYTES = 256 * 1024  # of streamed files; set by hand
 _RETRIED = (429, 502, 503, 504)  # the server, or a proxy in front of it, is busy or restarts
@@ -30,8 +33,8 @@ class Connection:
 
     def request(self, client: httpx.Client | httpx.AsyncClient, call: Call, content: Any) -> httpx.Request:
         headers = dict(call.headers)
-        if isinstance(call.body, Path):
-            headers["Content-Length"] = str(call.body.stat().st_size)
+        if call.body:
+            headers["Content-Length"] = str(sum(map(_size, call.body)))
         return client.build_request(
             call.method,
             call.path,
@@ -67,11 +70,13 @@ def submission_of(
     webhook: str | None = None,
     idempotency_key: str | None = None,
     recompute: bool = False,
+    companions: Companions = (),
 ) -> Submission:
     source = mesh if isinstance(mesh, bytes) else Path(mesh)
     key = {} if idempotency_key is None else {"idempotency_key": idempotency_key}
     return Submission(
         mesh=source,
+        companions=_named(source, companions),
         format=format,
         unit=unit,
         up=up,
@@ -82,24 +87,48 @@ def submission_of(
     )
 
 
-def chunks(body: Path | bytes | None) -> bytes | Iterator[bytes] | None:
-    return _read(body) if isinstance(body, Path) else body
+def _named(mesh: Path | bytes, companions: Companions) -> dict[str, Path]:
+    """The companions by their paths relative to the mesh, those of other folders by their names."""
+    if isinstance(mesh, bytes):
+        if companions:
+            raise ValueError("Companions belong to a mesh file: give its path in place of its bytes.")
+        return {}
+    folder = mesh.absolute().parent
+    if not isinstance(companions, Mapping):
+        paths = [Path(path).absolute() for path in companions]
+        companions = {
+            path.relative_to(folder).as_posix() if path.is_relative_to(folder) else path.name: path for path in paths
+        }
+    return {name: Path(path) for name, path in companions.items()}
 
 
-def _read(path: Path) -> Iterator[bytes]:
-    with path.open("rb") as file:
-        while chunk := file.read(CHUNK_BYTES):
-            yield chunk
+def chunks(body: Sequence[Path | bytes]) -> Iterator[bytes] | None:
+    return _read(body) if body else None
 
 
-def async_chunks(body: Path | bytes | None) -> bytes | AsyncIterator[bytes] | None:
-    return _read_async(body) if isinstance(body, Path) else body
+def _read(body: Sequence[Path | bytes]) -> Iterator[bytes]:
+    for piece in body:
+        if isinstance(piece, bytes):
+            if piece:
+                yield piece
+            continue
+        with piece.open("rb") as file:
+            while chunk := file.read(CHUNK_BYTES):
+                yield chunk
 
 
-async def _read_async(path: Path) -> AsyncIterator[bytes]:
-    with path.open("rb") as file:
-        while chunk := await asyncio.to_thread(file.read, CHUNK_BYTES):
-            yield chunk
+def async_chunks(body: Sequence[Path | bytes]) -> AsyncIterator[bytes] | None:
+    return _read_async(body) if body else None
+
+
+async def _read_async(body: Sequence[Path | bytes]) -> AsyncIterator[bytes]:
+    chunks = _read(body)
+    while chunk := await asyncio.to_thread(next, chunks, b""):
+        yield chunk
+
+
+def _size(piece: Path | bytes) -> int:
+    return len(piece) if isinstance(piece, bytes) else piece.stat().st_size
 
 
 def partial_path(target: str | os.PathLike[str]) -> Path:

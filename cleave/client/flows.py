@@ -2,7 +2,7 @@
 
 import json
 import secrets
-from collections.abc import Generator, Mapping
+from collections.abc import Generator, Mapping, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any, TypeAlias, TypeVar
@@ -12,6 +12,7 @@ import numpy as np
 
 from cleave.client.documents import Job, Segmentation, job_from
 from cleave.client.errors import JobEnded, RequestRefused
+from cleave.client.multipart import form_of
 
 POLL_S = 20.0  # of one long poll: well below the 60 s after which nginx, by default, ends a request
 _PAGE = 100  # jobs; the server allows up to 200
@@ -27,7 +28,7 @@ class Call:
     path: str
     params: Mapping[str, str] = field(default_factory=dict)
     headers: Mapping[str, str] = field(default_factory=dict)
-    body: Path | bytes | None = None
+    body: Sequence[Path | bytes] = ()  # its pieces, files and bytes
     wait_s: float = 0.0  # for which the server was asked to hold back the response
 
 
@@ -39,6 +40,7 @@ class Submission:
     """A mesh and the options of its job."""
 
     mesh: Path | bytes
+    companions: Mapping[str, Path] = field(default_factory=dict)  # by their paths relative to the mesh
     file_name: str | None = None
     format: str | None = None
     unit: str | None = None
@@ -59,17 +61,20 @@ class Submission:
             "webhook": self.webhook,
             **(level or {}),
         }
+        content_type, body = "application/octet-stream", [self.mesh]
+        if self.companions:
+            content_type, body = form_of({name or "mesh": self.mesh, **self.companions}, self.idempotency_key)
         return Call(
             method="POST",
             path="/v1/jobs",
             params={key: value for key, value in params.items() if value is not None},
             headers={
-                "Content-Type": "application/octet-stream",
+                "Content-Type": content_type,
                 "Idempotency-Key": self.idempotency_key,
                 **({"Prefer": f"wait={wait_s:.0f}"} if wait_s else {}),
                 **({"Cache-Control": "no-cache"} if self.recompute else {}),
             },
-            body=self.mesh,
+            body=body,
             wait_s=wait_s,
         )
 

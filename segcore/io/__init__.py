@@ -1,13 +1,15 @@
 """Read meshes and write segmentations; no other package knows a file format.
 
 Everything that the service, the worker and the command line use is exported here: the formats that can be read
-(``FORMATS``, ``read_mesh``, ``ReadLimits``), the formats of segmentations (``WRITERS``, ``writer_for`` and their
-functions by name), the input with everything that it has, divided by part (``write_kept``, ``write_kept_parts``), plain
+(``FORMATS``, ``read_mesh``, ``ReadLimits``), the files that belong to a mesh file (``neighbours_of``,
+``referenced_files``), the formats of segmentations (``WRITERS``, ``writer_for`` and their functions by name), the input
+with everything that it has, divided by part (``write_kept``, ``write_kept_parts``), plain
 meshes (``write_mesh``), labels and the hierarchy as JSON values, ``.cleave`` files (``write_result``, ``read_result``)
 and pictures (``draw``, ``write_png``).
 """
 
 from segcore.io.converting import with_coordinates
+from segcore.io.file_sets import is_hidden, is_mesh_name, model_in_folder, name_in_set
 from segcore.io.formats import FORMATS, Format, declared_format
 from segcore.io.gltf.writer import Layout, write_glb
 from segcore.io.keeping import Original, PartFormat, write_kept, write_kept_parts
@@ -21,6 +23,7 @@ from segcore.io.parts.writer import write_parts
 from segcore.io.picture import draw, write_png
 from segcore.io.ply.writer import PlyColors, write_ply
 from segcore.io.reading import read_mesh
+from segcore.io.references import neighbours_of, referenced_files
 from segcore.io.result import Segmentation, read_result, write_result
 from segcore.io.threemf.writer import write_3mf
 from segcore.io.writing import WRITE_OPTIONS, WRITERS, WriteOption, Writer, writer_for
@@ -42,9 +45,15 @@ __all__ = [
     "declared_format",
     "draw",
     "hierarchy_document",
+    "is_hidden",
+    "is_mesh_name",
     "labels_document",
+    "model_in_folder",
+    "name_in_set",
+    "neighbours_of",
     "read_mesh",
     "read_result",
+    "referenced_files",
     "runs_document",
     "with_coordinates",
     "write_3mf",

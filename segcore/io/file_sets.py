@@ -46,11 +46,8 @@ class ZipCompanions:
         self._folder = posixpath.dirname(model.replace("\\", "/"))
 
     def read(self, uri: str) -> bytes | None:
-        path = _relative_path(uri)
-        name = posixpath.normpath(posixpath.join(self._folder, path)) if path else ".."
-        if name.split("/")[0] == ".." or name not in self._members:
-            return None
-        return self._members.read(name)
+        name = name_in_set(self._folder, uri)
+        return None if name is None or name not in self._members else self._members.read(name)
 
 
 class FolderCompanions:
@@ -61,14 +58,17 @@ class FolderCompanions:
         self._limits = limits
 
     def read(self, uri: str) -> bytes | None:
+        file = self.path(uri)
+        return None if file is None else read_source(file, self._limits)
+
+    def path(self, uri: str) -> Path | None:
+        """Return the file at an address, without links; None if there is none in the folder."""
         path = _relative_path(uri)
         try:
             file = (self._folder / path).resolve()
-            if not path or not file.is_relative_to(self._folder) or not file.is_file():
-                return None
+            return file if path and file.is_relative_to(self._folder) and file.is_file() else None
         except (OSError, ValueError, RuntimeError):  # too long, with a zero byte, or a circle of links
             return None
-        return read_source(file, self._limits)
 
 
 class ModelInArchive(NamedTuple):
@@ -130,10 +130,20 @@ def model_in_folder(path: Path) -> Path:
 def is_mesh_name(name: str) -> bool:
     """Whether a file has the extension of a mesh format, and is not hidden or added by an operating system."""
     path = PurePosixPath(normal_name(name))
-    if any(part.startswith(".") or part in _OF_SYSTEMS for part in path.parts):
-        return False
     extension = PurePosixPath(path.stem).suffix if path.suffix == ".gz" else path.suffix
-    return any(extension in form.extensions for form in FORMATS.values())
+    return not is_hidden(name) and any(extension in form.extensions for form in FORMATS.values())
+
+
+def is_hidden(name: str) -> bool:
+    """Whether a file or one of its folders is hidden or added by an operating system, so that it is left out."""
+    return any(part.startswith(".") or part in _OF_SYSTEMS for part in PurePosixPath(normal_name(name)).parts)
+
+
+def name_in_set(folder: str, uri: str) -> str | None:
+    """Return the name of a file in a set by its address relative to a folder of the set; None if it is not inside."""
+    path = _relative_path(uri)
+    name = posixpath.normpath(posixpath.join(folder, path)) if path else ".."
+    return None if name.split("/")[0] == ".." else name
 
 
 def _relative_path(uri: str) -> str:

@@ -3,14 +3,16 @@
 import hashlib
 import json
 import threading
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
+from functools import partial
 from pathlib import Path
 from typing import Any
 
 from cleave.client import Client
 from cleave.client.documents import Job
 from cleave.client.errors import ClientError, JobEnded, RequestRefused
+from segcore.io import neighbours_of
 from service.commands.console import ProgressBoard
 from service.commands.server_results import RESULTS, save_result
 
@@ -41,10 +43,13 @@ class Submission:
     def level(self) -> dict[str, object]:
         return {"segments": self.segments, "granularity": self.granularity}
 
-    def idempotency_key(self) -> str:
+    def idempotency_key(self, companions: Mapping[str, Path]) -> str:
+        """Return a key that is derived from the parameters and the files."""
         digest = hashlib.sha256(json.dumps(sorted(self.parameters.items())).encode())
-        with self.path.open("rb") as file:
-            digest.update(hashlib.file_digest(file, "sha256").digest())
+        for name, path in [("", self.path), *sorted(companions.items())]:
+            digest.update(name.encode("utf-8", "surrogateescape"))
+            with path.open("rb") as file:
+                digest.update(hashlib.file_digest(file, "sha256").digest())
         digest.update(self.path.suffix.lower().encode())
         digest.update("".join(f"&{said}" for said in (self.unit, self.up) if said).encode())
         return f"cleave-submit-{digest.hexdigest()}"
@@ -83,14 +88,16 @@ def _finished_job(client: Client, submission: Submission, board: ProgressBoard, 
 
 
 def _submitted_job(client: Client, submission: Submission) -> Job:
+    companions = neighbours_of(submission.path)
+    key = None if submission.again else submission.idempotency_key(companions)
     options: dict[str, Any] = {"parameters": submission.parameters, "unit": submission.unit, "up": submission.up}
-    key = None if submission.again else submission.idempotency_key()
+    submit = partial(client.submit, submission.path, companions=companions, **options)
     try:
-        return client.submit(submission.path, idempotency_key=key, recompute=submission.again, **options)
+        return submit(idempotency_key=key, recompute=submission.again)
     except RequestRefused as refusal:
         if refusal.code != "idempotency_key_spent":
             raise
-        return client.submit(submission.path, **options)  # the first job was deleted
+        return submit()  # the first job was deleted
 
 
 def _level_name(job: Job, submission: Submission) -> str:

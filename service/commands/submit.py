@@ -9,6 +9,7 @@ from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
 
 from cleave.client import Client
+from segcore.io import model_in_folder
 from service.commands.arguments import add_coordinates, add_level, add_parameters, add_structure
 from service.commands.console import ProgressBoard, say
 from service.commands.server_results import DEFAULT_RESULTS, RESULTS, result_names
@@ -26,11 +27,12 @@ class SomeFailed(Exception):  # noqa: N818
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     parser.description = (
-        "Submit mesh files to a service and save their results. A second run resumes an interrupted one. If the "
+        "Submit mesh files to a service, with the files in their folders that they refer to (materials, buffers, "
+        "pictures), and save their results. A second run resumes an interrupted one. If the "
         "service requires an API key, set it in the environment variable CLEAVE_API_KEY."
     )
     parser.epilog = "exit status: 0 all done, 1 some files failed, 2 nothing was tried, 130 interrupted"
-    parser.add_argument("files", type=Path, nargs="+", metavar="FILE", help="mesh files")
+    parser.add_argument("files", type=Path, nargs="+", metavar="FILE", help="mesh files, or folders with one")
     parser.add_argument("--server", default=_DEFAULT_SERVER, metavar="URL", help="of the service (%(default)s)")
     add_coordinates(parser)
     add_level(parser, "chosen by each mesh")
@@ -60,6 +62,8 @@ def run(choices: argparse.Namespace) -> int:
     ------
     OSError
         If a file cannot be read, or a result cannot be written.
+    UnsupportedFormat
+        If a folder does not have exactly one mesh.
     """
     try:
         say(_submit_files(choices, os.environ.get("CLEAVE_API_KEY")))
@@ -94,10 +98,11 @@ def _submit_files(choices: argparse.Namespace, api_key: str | None) -> str:
 
 
 def _submissions(choices: argparse.Namespace) -> list[Submission]:
-    names = _result_names(choices.files)
-    parameters = dict(choices.parameters) | ({"structure": choices.structure} if choices.structure else {})
     for path in choices.files:
         path.stat()  # raises OSError before anything is sent
+    files = [model_in_folder(path) for path in choices.files]
+    names = _result_names(files)
+    parameters = dict(choices.parameters) | ({"structure": choices.structure} if choices.structure else {})
     return [
         Submission(
             path,
@@ -112,7 +117,7 @@ def _submissions(choices: argparse.Namespace) -> list[Submission]:
             again=choices.again,
             open_parts=choices.open,
         )
-        for path, name in zip(choices.files, names, strict=True)
+        for path, name in zip(files, names, strict=True)
     ]
 
 

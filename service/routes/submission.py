@@ -31,7 +31,8 @@ router = APIRouter(prefix="/v1/jobs", tags=["jobs"])
 async def create_job(request: Request, context: ContextOf, caller: CallerOf, options: JobOptionsOf) -> Response:
     """Submit a mesh.
 
-    The body is the mesh file itself, or a form with the field `mesh`. The job is stored before the response is sent.
+    The body is the mesh file itself, or a form with it in the field `mesh`. The files that it refers to, such as
+    materials, are further fields of that name. The job is stored before the response is sent.
     With `Prefer: wait=10` the response is sent when the job has ended, and contains its labels.
     """
     submission = await submit_mesh(request, context, caller, options)

@@ -17,6 +17,7 @@ SUBMISSION_PROBLEMS = (
     "too_large",
     "unsupported_media_type",
     "invalid_mesh",
+    "invalid_file_set",
     "invalid_parameters",
     "invalid_request",
     "queue_full",
@@ -35,6 +36,9 @@ _PARAMETERS_IN_QUERY = {
 }
 
 
+_FILES = {"type": "array", "minItems": 1, "items": _MESH}
+
+
 def _form(mesh: dict[str, Any]) -> dict[str, Any]:
     return {
         "schema": {
@@ -51,13 +55,14 @@ JOB_BODY: dict[str, Any] = {
     "parameters": [_PARAMETERS_IN_QUERY],
     "requestBody": {
         "required": True,
-        "description": "The mesh file, optionally compressed with gzip, or a form that contains it. A ZIP archive may "
-        "contain one mesh and the files that it refers to.",
+        "description": "The mesh file, optionally compressed with gzip, or a form that contains it. A ZIP archive, or "
+        "the fields `mesh` of a form, may be one mesh and the files that it refers to, such as materials and pictures; "
+        "the names of the fields are then their paths in the set.",
         "content": {
             **{form.media_types[0]: {"schema": _MESH} for form in FORMATS.values()},
             "application/zip": {"schema": _MESH},
             "application/octet-stream": {"schema": _MESH},
-            FORM_TYPE: _form(_MESH),
+            FORM_TYPE: _form(_FILES),
         },
     },
 }
@@ -65,8 +70,10 @@ BATCH_BODY: dict[str, Any] = {
     "parameters": [_PARAMETERS_IN_QUERY],
     "requestBody": {
         "required": True,
+        "description": "Mesh files, in a form or a ZIP archive. Other files belong to the meshes that refer to "
+        "them; `left_out` in the response lists the others.",
         "content": {
-            FORM_TYPE: _form({"type": "array", "minItems": 1, "items": _MESH}),
+            FORM_TYPE: _form(_FILES),
             ZIP: {"schema": {"type": "string", "format": "binary", "description": "A ZIP archive of mesh files."}},
             JSON: {"schema": ref(BatchJobs)},
         },

@@ -11,7 +11,8 @@ from service.problems import Problem
 from worker.jobs.store.upload import MeshUpload
 
 MAX_PARAMETERS_BYTES = 16 * 1024
-MAX_ENVELOPE_BYTES = 64 * 1024  # of boundaries and headers per mesh; set by hand
+MAX_ENVELOPE_BYTES = 64 * 1024  # of boundaries and headers, and
+MAX_FILE_ENVELOPE_BYTES = 2 * 1024  # for each file; set by hand
 
 
 @dataclass(frozen=True, slots=True)
@@ -19,7 +20,8 @@ class ReceivedMesh:
     """An uploaded mesh that is not yet accepted."""
 
     upload: MeshUpload
-    file_name: str | None  # as given by the client, unchecked
+    file_name: str | None  # as given by the client, unchecked; of a set of files that of its mesh
+    is_set: bool = False  # a ZIP archive of a mesh and the files that belong to it, made by the service
 
 
 @dataclass(slots=True)
@@ -28,17 +30,18 @@ class Form:
 
     meshes: list[ReceivedMesh] = field(default_factory=list)
     parameters: bytearray = field(default_factory=bytearray)  # JSON text
+    left_out: list[str] = field(default_factory=list)  # the names of files that are no part of a mesh
 
 
 class FormReader:
     """A parser of one form, fed with the chunks of its body."""
 
     def __init__(
-        self, boundary: bytes, begin_upload: Callable[[], MeshUpload], max_mesh_bytes: int, max_meshes: int = 1
+        self, boundary: bytes, begin_upload: Callable[[], MeshUpload], max_mesh_bytes: int, max_files: int
     ) -> None:
         self._begin_upload = begin_upload
         self._max_mesh_bytes = max_mesh_bytes
-        self._max_meshes = max_meshes
+        self._max_files = max_files
         self._form = Form()
         self._field = ""
         self._seen: set[str] = set()
@@ -107,10 +110,8 @@ class FormReader:
         self._seen.add(self._field)
 
     def _begin_mesh(self, file_name: bytes | None) -> None:
-        if len(self._form.meshes) == self._max_meshes:
-            if self._max_meshes == 1:
-                _refuse("The form has two fields mesh: send one job per request, or many to /v1/batches.")
-            raise Problem("too_large", f"A batch has at most {self._max_meshes} jobs: send the rest in another one.")
+        if len(self._form.meshes) == self._max_files:
+            raise Problem("too_large", f"The form has more than {self._max_files} files: send fewer at a time.")
         name = None if file_name is None else file_name.decode("utf-8", "replace")
         self._form.meshes.append(ReceivedMesh(self._begin_upload(), name))
 

@@ -82,7 +82,7 @@ def _new_job(context: Context, caller: Caller, mesh: ReceivedMesh, wanted: JobRe
         id=_job_id(context, caller, wanted.idempotency_key),
         sha256=upload.sha256,
         size_bytes=upload.size_bytes,
-        mesh_format=wanted.mesh_format or mesh_format(name),
+        mesh_format=None if mesh.is_set else wanted.mesh_format or mesh_format(name),
         unit=wanted.unit,
         up=wanted.up,
         parameters=asdict(wanted.parameters),

@@ -15,8 +15,10 @@ from segcore.io import declared_format
 from segcore.parameters import SegmentationParameters
 from service.problems import Problem
 from service.submit.body import body_chunks, declared_length, media_type
+from service.submit.file_set import MOST_FILES, one_model
 from service.submit.form import (
     MAX_ENVELOPE_BYTES,
+    MAX_FILE_ENVELOPE_BYTES,
     MAX_PARAMETERS_BYTES,
     Form,
     FormReader,
@@ -33,7 +35,9 @@ _MAX_LABEL_LENGTH = 255  # characters, as of a file name
 
 
 async def receive_mesh(request: Request, settings: Settings, begin_upload: Callable[[], MeshUpload]) -> Form:
-    """Stream one mesh into an upload: the field ``mesh`` of a form, or the whole body of any other request.
+    """Stream one mesh into an upload: the fields ``mesh`` of a form, or the whole body of any other request.
+
+    Several fields are one mesh and the files that belong to it.
 
     Raises
     ------
@@ -42,7 +46,9 @@ async def receive_mesh(request: Request, settings: Settings, begin_upload: Calla
         is read, an undeclared one while it is read.
     """
     if media_type(request) == FORM_TYPE:
-        return await receive_form(request, settings, begin_upload, settings.max_upload_bytes)
+        form = await receive_form(request, settings, begin_upload, settings.max_upload_bytes, MOST_FILES)
+        form.meshes = [await run_in_threadpool(one_model, form.meshes, begin_upload, settings.max_upload_bytes)]
+        return form
     if declared_length(request) > settings.max_upload_bytes:
         refuse_size(settings.max_upload_bytes)
     upload = begin_upload()
@@ -56,11 +62,11 @@ async def receive_form(
     settings: Settings,
     begin_upload: Callable[[], MeshUpload],
     max_body_bytes: int,
-    max_meshes: int = 1,
+    max_files: int,
 ) -> Form:
     """Stream the fields ``mesh`` of a form into uploads; ``max_body_bytes`` does not count boundaries and headers."""
-    reader = FormReader(_boundary(request), begin_upload, settings.max_upload_bytes, max_meshes)
-    limit = max_body_bytes + MAX_PARAMETERS_BYTES + MAX_ENVELOPE_BYTES * max_meshes
+    reader = FormReader(_boundary(request), begin_upload, settings.max_upload_bytes, max_files)
+    limit = max_body_bytes + MAX_PARAMETERS_BYTES + MAX_ENVELOPE_BYTES + MAX_FILE_ENVELOPE_BYTES * max_files
     if declared_length(request) > limit:
         refuse_size(settings.max_upload_bytes)
     received = 0

@@ -7,6 +7,7 @@ from collections.abc import Callable, Iterator
 from pathlib import Path, PurePosixPath
 
 from cleave.settings import Settings
+from segcore.io import is_hidden
 from service.problems import Problem
 from service.submit.form import ReceivedMesh, write_capped
 from worker.jobs.store.upload import MeshUpload
@@ -18,8 +19,10 @@ _ENTRY_BYTES = 1024  # of the central directory per member, with a name of usual
 _SPARE_ENTRIES = 1024  # for folders and files that operating systems add; set by hand
 
 
-def extract(path: Path, settings: Settings, begin_upload: Callable[[], MeshUpload]) -> list[ReceivedMesh]:
-    """Write the meshes of an archive to uploads, in the order of the archive.
+def extract(
+    path: Path, settings: Settings, begin_upload: Callable[[], MeshUpload], max_files: int
+) -> list[ReceivedMesh]:
+    """Write the files of an archive to uploads, in the order of the archive.
 
     Raises
     ------
@@ -27,27 +30,27 @@ def extract(path: Path, settings: Settings, begin_upload: Callable[[], MeshUploa
         If the file is not a readable ZIP archive, contains no files, or exceeds a limit, compressed or not.
     """
     _check_directory(path, settings)
-    meshes: list[ReceivedMesh] = []
+    files: list[ReceivedMesh] = []
     left = settings.max_batch_bytes
     try:
         with zipfile.ZipFile(path) as archive:
             for member in _members(archive):
-                if len(meshes) == settings.max_batch_jobs:
-                    raise Problem("too_large", f"A batch has at most {settings.max_batch_jobs} jobs.")
+                if len(files) == max_files:
+                    raise Problem("too_large", f"The archive has more than {max_files} files: send fewer at a time.")
                 upload = begin_upload()
                 with archive.open(member) as source:
                     while chunk := source.read(_CHUNK_BYTES):
                         write_capped(upload, chunk, min(settings.max_upload_bytes, left))
                 upload.close()
                 left -= upload.size_bytes
-                meshes.append(ReceivedMesh(upload, member.filename))
+                files.append(ReceivedMesh(upload, member.filename))
     except (zipfile.BadZipFile, NotImplementedError, RuntimeError, EOFError, ValueError) as error:
         raise Problem(
             "malformed_request", "The archive is damaged, encrypted or not a ZIP archive: create it again."
         ) from error
-    if not meshes:
+    if not files:
         raise Problem("malformed_request", "The archive contains no files: add the meshes to it.")
-    return meshes
+    return files
 
 
 def _members(archive: zipfile.ZipFile) -> Iterator[zipfile.ZipInfo]:
@@ -55,7 +58,7 @@ def _members(archive: zipfile.ZipFile) -> Iterator[zipfile.ZipInfo]:
     for member in archive.infolist():
         parts = PurePosixPath(member.filename).parts
         is_folder = not parts or member.filename.endswith("/")  # ``is_dir`` fails if the name is empty
-        if not is_folder and not any(part.startswith(".") or part == "__MACOSX" for part in parts):
+        if not is_folder and not is_hidden(member.filename):
             yield member
 
 

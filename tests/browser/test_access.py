@@ -1,8 +1,12 @@
 """Accessibility of the page: keyboard, screen readers, touch, phones and the dark theme."""
 
+from pathlib import Path
+from typing import Any
+
 import pytest
 
 from helpers.browser.visit import NewVisit, Visit
+from helpers.files.samples import OBJ
 
 PHONE = {"viewport": {"width": 390, "height": 844}, "has_touch": True, "is_mobile": True}
 RULES = ["wcag2a", "wcag2aa", "wcag21a", "wcag21aa", "wcag22aa", "best-practice"]
@@ -36,6 +40,23 @@ def test_axe_finds_no_violation_in_the_dialogs_or_with_an_error(visit: Visit, jo
     visit.page.wait_for_selector("#problem:not([hidden])")
     assert violations(visit, axe) == []
     visit.faults = [fault for fault in visit.faults if "404" not in fault]
+
+
+@pytest.mark.parametrize("options", [{"color_scheme": "light"}, {"color_scheme": "dark", **PHONE}])
+def test_axe_finds_no_violation_in_the_list_of_several_meshes(
+    new_visit: NewVisit, axe: str, tmp_path: Path, options: dict[str, Any]
+) -> None:
+    visit = new_visit(**options)
+    visit.open()
+    for name, data in {"bad.off": b"OFF\n1", "square.obj": OBJ, "notes.txt": b"x"}.items():
+        (tmp_path / name).write_bytes(data)
+    visit.drop_paths(*sorted(tmp_path.iterdir()))
+    visit.page.wait_for_selector("#several:not([hidden])")
+    assert violations(visit, axe) == []
+    visit.page.wait_for_selector("#several-close:not([hidden])")
+    visit.page.locator(".toast").wait_for(state="detached")
+    assert violations(visit, axe) == []
+    assert visit.page.evaluate("document.documentElement.scrollWidth <= innerWidth")
 
 
 def test_axe_finds_no_violation_on_a_phone(new_visit: NewVisit, job: str, axe: str) -> None:

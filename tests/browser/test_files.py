@@ -9,7 +9,7 @@ import pytest
 
 from helpers.installation import Installation
 
-SCRIPTS = ("cleave-viewer.js", "page.js", "viewer.js")
+SCRIPTS = ("cleave-viewer.js", "page.js", "viewer.js", "viewer-2.js", "original.js")
 
 
 def test_the_scripts_are_small() -> None:

@@ -12,8 +12,11 @@ import cleave.client
 import cleave.documents
 import cleave.errors
 from cleave.client import AsyncClient, Client
+from cleave.client.documents import Job
 from cleave.client.errors import JobEnded, RequestRefused, ServerUnreachable
+from helpers.files.written import mesh_bytes
 from helpers.jobs import sphere
+from segcore.shapes import burr
 
 
 @pytest.fixture
@@ -32,6 +35,29 @@ def test_a_mesh_becomes_labels_in_one_call(url: str, mesh: Path) -> None:
         automatic = client.labels(parts.job)
         assert automatic.segments == parts.job.automatic_segments
         assert client.segment(mesh.read_bytes(), format="off").segments == automatic.segments
+
+
+def test_the_files_of_a_model_are_sent_with_it(url: str, tmp_path: Path) -> None:
+    (tmp_path / "ball.obj").write_bytes(mesh_bytes(burr(2).mesh, "obj"))
+    (tmp_path / 'a "b".mtl').write_text("newmtl red\n")
+    (tmp_path / "images").mkdir()
+    (tmp_path / "images" / "empty.png").write_bytes(b"")
+    files = [tmp_path / 'a "b".mtl', tmp_path / "images" / "empty.png"]
+    by_name = {'a "b".mtl': files[0], "images/empty.png": files[1]}
+
+    async def job_of_async_client() -> Job:
+        async with AsyncClient(url) as client:
+            return await client.submit(tmp_path / "ball.obj", companions=by_name, recompute=True)
+
+    with Client(url) as client:
+        job = client.submit(tmp_path / "ball.obj", companions=files)
+        assert client.wait(job.id).status == "succeeded"
+        assert job.file_name == "ball.obj"
+        other = asyncio.run(job_of_async_client())
+        hashes = {one.document["input"]["sha256"] for one in (job, other)}
+        assert len(hashes) == 1
+        with pytest.raises(ValueError, match="give its path"):
+            client.submit(b"OFF", companions=files)
 
 
 def test_a_granularity_can_replace_a_number_of_segments(url: str, mesh: Path) -> None:

@@ -10,6 +10,8 @@ import httpx
 import pytest
 
 from helpers.files.hostile import hostile_files
+from helpers.files.hostile_sets import Files, hostile_sets
+from helpers.files.samples import OBJ
 from helpers.installation import LoggingInstallation
 from helpers.jobs import sphere
 from helpers.waiting import wait_until
@@ -47,22 +49,24 @@ def test_hostile_files_affect_only_their_jobs(tmp_path: Path, target: socket.soc
     secret, notes = tmp_path / "secret", tmp_path / "notes"
     secret.write_text("not to be read")
     with AuditedInstallation(notes) as installation:
-        submit(installation, "warm.off", sphere(12))
+        submit(installation, [("warm.off", sphere(12))])
         wait_until(lambda: ended(installation))
         (service,) = installation.children("service.host.http_server")
         before = memory_bytes(service, "VmRSS")
+        where = f"http://127.0.0.1:{target.getsockname()[1]}", str(secret)
+        sets = [([(name, content)], codes) for name, content, codes in hostile_files(*where)]
         expected = {
-            submit(installation, name, content): (name, codes)
-            for name, content, codes in hostile_files(f"http://127.0.0.1:{target.getsockname()[1]}", str(secret))
+            submit(installation, files): ([(name, content[:80]) for name, content in files], codes)
+            for files, codes in [*sets, *hostile_sets(*where)]
         }
         check_invalid_requests(installation)
         wait_until(lambda: ended(installation), within_s=120)
-        found = {name: code_of(installation, path) for path, (name, _) in expected.items()}
-        assert not {name: found[name] for name, codes in expected.values() if found[name] not in codes}
+        found = {path: code_of(installation, path) for path in expected}
+        assert not [(files, found[path]) for path, (files, codes) in expected.items() if found[path] not in codes]
         assert installation.children("service.host.http_server") == [service]
         assert memory_bytes(service, "VmHWM") - before < GROWTH_BYTES
         assert max(work_horse_bytes(installation)) < MEMORY_BYTES
-        assert code_of(installation, submit(installation, "fine.off", sphere(12)), wait=True) is None
+        assert code_of(installation, submit(installation, [("fine.off", sphere(12))]), wait=True) is None
         assert unexpected_events(notes, installation.data_dir) == LISTENING
         logged = notes.read_text(errors="replace")
         assert f"socket.connect\t{installation.data_dir}/queue/queue.sock" in logged  # the log works
@@ -73,16 +77,16 @@ def test_hostile_files_affect_only_their_jobs(tmp_path: Path, target: socket.soc
     assert sorted(path.name for path in tmp_path.iterdir()) == ["notes", "secret"]
 
 
-def submit(installation: LoggingInstallation, name: str, content: bytes) -> str:
-    """Submit a file under a name that is sent unchanged, and return the path of its job."""
+def submit(installation: LoggingInstallation, files: Files) -> str:
+    """Submit the files of a model under names that are sent unchanged, and return the path of its job."""
     answer = httpx.post(
         f"{installation.url}/v1/jobs",
-        files={"mesh": (name, content)},
+        files=[("mesh", file) for file in files],
         data={"parameters": '{"max_segments": 4}'},
         headers={"Cache-Control": "no-cache"},
         timeout=60,
     )
-    assert answer.status_code in (200, 202), (name, answer.text)  # 200: the job has ended already
+    assert answer.status_code in (200, 202), (files[0], answer.text)  # 200: the job has ended already
     assert "PWNED" not in answer.headers["Location"]
     return str(answer.headers["Location"])
 
@@ -92,13 +96,16 @@ def check_invalid_requests(installation: LoggingInstallation) -> None:
     jobs = f"{installation.url}/v1/jobs"
     too_large = httpx.post(jobs, content=bytes(2**23), headers={"Content-Type": "model/stl"}, timeout=60)
     assert too_large.status_code == 413
+    for name in ("../t.mtl", "/tmp/PWNED", "x/../../t.mtl", "C:/t.mtl"):
+        outside = httpx.post(jobs, files=[("mesh", ("a.obj", OBJ)), ("mesh", (name, b"x"))], timeout=60)
+        assert outside.status_code == 422, outside.text
     for parameters in ("[" * 50_000, '{"seed": 1e999, "\\ud800": NaN}'):
         refused = httpx.post(jobs, files={"mesh": b"x"}, data={"parameters": parameters}, timeout=60)
         assert 400 <= refused.status_code < 500, refused.text
 
 
 def ended(installation: LoggingInstallation) -> bool:
-    jobs = installation.get("/v1/jobs?limit=100").json()["jobs"]
+    jobs = installation.get("/v1/jobs?limit=200").json()["jobs"]
     return all(job["finished_at"] for job in jobs)
 
 

@@ -2,6 +2,7 @@
 
 import base64
 from collections.abc import Callable
+from pathlib import Path
 from typing import Any
 from urllib.parse import parse_qs, urlsplit
 
@@ -66,6 +67,13 @@ class Visit:
 
     def drop(self, name: str, content: bytes) -> None:
         self.page.evaluate(_DROP, [name, base64.b64encode(content).decode()])
+
+    def drop_paths(self, *paths: Path) -> None:
+        """Drop files and folders of the disk, as from a file manager."""
+        session = self.page.context.new_cdp_session(self.page)
+        data = {"items": [], "files": [str(path) for path in paths], "dragOperationsMask": 1}
+        for kind in ("dragEnter", "dragOver", "drop"):
+            session.send("Input.dispatchDragEvent", {"type": kind, "x": 200, "y": 300, "data": data})
 
     def set_range(self, name: str, value: int) -> None:
         """Move a slider and release it."""

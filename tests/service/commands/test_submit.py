@@ -9,7 +9,7 @@ import pytest
 import trimesh
 
 from cleave.client import Client
-from helpers.files.samples import TWO_SQUARES
+from helpers.files.samples import TWO_SQUARES, gltf_square
 from helpers.jobs import sphere
 from service.commands.main import main
 
@@ -125,3 +125,17 @@ def test_parts_for_printing_are_closed_unless_they_are_to_be_open(
     with zipfile.ZipFile(tmp_path / "ball10.zip") as archive:
         parts += [trimesh.load(io.BytesIO(archive.read(f"segment_{k}.stl")), file_type="stl") for k in range(3)]
     assert [part.is_watertight for part in parts] == [is_closed] * 6
+
+
+def test_the_files_that_a_model_refers_to_are_sent_with_it(url: str, tmp_path: Path) -> None:
+    asset = gltf_square()
+    asset.document["buffers"] = [{"byteLength": len(asset.binary), "uri": "data/a%20b.bin"}]
+    (tmp_path / "data").mkdir(exist_ok=True)
+    (tmp_path / "data" / "a b.bin").write_bytes(asset.binary)
+    (tmp_path / "scene.gltf").write_text(json.dumps(asset.document))
+    for binary in (asset.binary, asset.binary + b"\0"):
+        (tmp_path / "data" / "a b.bin").write_bytes(binary)
+        assert submit(url, [tmp_path], tmp_path / "out", "--results", "seg") == 0
+        (tmp_path / "out" / "scene.seg").unlink()
+    with Client(url) as client:
+        assert len(list(client.jobs())) == 2  # another buffer is another job

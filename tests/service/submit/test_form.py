@@ -20,7 +20,7 @@ def test_a_form_does_not_depend_on_its_chunks(store: JobStore, step: int) -> Non
     content = b"\r\n--" + bytes(range(256)) + f"\r\n--{BOUNDARY[:-1]}\r\n".encode() * 3
     body = form(part("parameters", b'{"seed": 1}'), part("mesh", content, '; filename="hand.OFF"'))
     with store.spool.begin_upload() as upload:
-        reader = FormReader(BOUNDARY.encode(), lambda: upload, 10_000)
+        reader = FormReader(BOUNDARY.encode(), lambda: upload, 10_000, 1)
         for start in range(0, len(body), step):
             reader.feed(body[start : start + step])
         result = reader.finish()
@@ -40,7 +40,7 @@ def test_a_form_does_not_depend_on_its_chunks(store: JobStore, step: int) -> Non
 )
 def test_arbitrary_bytes_are_a_form_or_a_problem(store: JobStore, pieces: list[bytes]) -> None:
     with store.spool.begin_upload() as upload:
-        reader = FormReader(BOUNDARY.encode(), lambda: upload, 10_000)
+        reader = FormReader(BOUNDARY.encode(), lambda: upload, 10_000, 1)
         with suppress(Problem):
             for piece in [form(part("mesh", b"abc"))[:40], *pieces]:
                 reader.feed(piece)
@@ -54,7 +54,7 @@ def test_arbitrary_bytes_are_a_form_or_a_problem(store: JobStore, pieces: list[b
         (form(), "malformed_request"),
         (form(part("parameters", b"{}")), "malformed_request"),
         (form(part("file", b"abc")), "malformed_request"),
-        (form(part("mesh", b"abc"), part("mesh", b"abc")), "malformed_request"),
+        (form(part("mesh", b"abc"), part("mesh", b"abc")), "invalid_file_set"),
         (b"\x00" * 1000, "malformed_request"),
         (f"--{BOUNDARY}\r\n\r\nabc\r\n--{BOUNDARY}--\r\n".encode(), "malformed_request"),
         (form(part("mesh", b"")), "invalid_mesh"),
@@ -90,5 +90,5 @@ def test_a_body_in_another_format_is_refused(
 
 def test_a_form_with_two_meshes_is_refused_with_a_hint_at_batches(client: httpx.Client) -> None:
     files = [("mesh", ("a.off", b"abc")), ("mesh", ("b.off", b"abc"))]
-    body = problem(client.post("/v1/jobs", files=files), 400, "malformed_request")
+    body = problem(client.post("/v1/jobs", files=files), 422, "invalid_file_set")
     assert "/v1/batches" in str(body["detail"])

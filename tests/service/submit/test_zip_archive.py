@@ -61,8 +61,9 @@ def test_an_archive_that_cannot_be_used_is_refused_and_leaves_nothing(
 
 
 def test_a_name_in_an_archive_is_never_a_path(client: httpx.Client, tmp_path: Path, settings: Settings) -> None:
-    names = ["../../escape.off", "/escape.off", "C:\\escape.off", "..\\escape.off"]
-    answer = post_zip(client, zip_of({f"{name}{number}": b"abc" for number, name in enumerate(names)}))
+    names = ["../../escape", "/escape", "C:\\escape", "..\\escape"]
+    answer = post_zip(client, zip_of({f"{name}{number}.off": b"abc" for number, name in enumerate(names)}))
     assert answer.status_code == 202
+    assert len(answer.json()["jobs"]) == 2  # names that begin with a dot count as hidden
     assert list(tmp_path.rglob("*escape*")) == []
     assert {file.name[:5] for file in (settings.data_dir / "jobs").rglob("*") if file.is_file()} == {"mesh-", "job.j"}

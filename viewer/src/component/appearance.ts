@@ -58,13 +58,29 @@ export class Appearance {
     this.texture.needsUpdate = true;
   }
 
+  /** Return the offset of a leaf and whether it is hidden, as they were shown last. */
+  stateOf(leaf: number): { offset: readonly [number, number, number]; isHidden: boolean } {
+    const [, , , opacity] = this.#read(leaf, 0);
+    const [x, y, z] = this.#read(leaf, 1);
+    return { offset: [x!, y!, z!], isHidden: opacity! < 0.5 };
+  }
+
   dispose(): void {
     this.texture.dispose();
   }
 
   #write(leaf: number, row: number, values: readonly number[]): void {
+    this.#values.set(values, this.#place(leaf, row));
+  }
+
+  #read(leaf: number, row: number): Float32Array {
+    const place = this.#place(leaf, row);
+    return this.#values.subarray(place, place + 4);
+  }
+
+  #place(leaf: number, row: number): number {
     const line = ROWS * Math.floor(leaf / this.columns) + row;
-    this.#values.set(values, 4 * (line * this.columns + (leaf % this.columns)));
+    return 4 * (line * this.columns + (leaf % this.columns));
   }
 
   /** Return the offset of every part: the splits of each step move their sides apart, coarse steps first. */

@@ -1,6 +1,7 @@
 /** Concavity of the surface at every drawn vertex. */
 
 import type { Model } from "./glb";
+import { normalize } from "./normals";
 import type { Surface } from "./surface";
 
 const LEAST = 1.2; // curvature times the radius of the model; less is not shown
@@ -12,10 +13,11 @@ const FULL = 6;
  */
 export function vertexConcavity(model: Model, surface: Surface): Uint8Array {
   const { welded } = surface;
+  const normals = vertexNormals(model, welded);
   const count = model.positions.length / 3;
   const least = new Float32Array(count);
   forEdges(welded, (a, b) => {
-    const curvature = surface.orientation * curvatureAlong(model.positions, surface.vertexNormals, a, b);
+    const curvature = surface.orientation * curvatureAlong(model.positions, normals, a, b);
     if (curvature < least[a]!) least[a] = curvature;
     if (curvature < least[b]!) least[b] = curvature;
   });
@@ -34,6 +36,22 @@ export function vertexConcavity(model: Model, surface: Surface): Uint8Array {
     result[surface.index[corner]!] = 255 * Math.min(Math.max((bent - LEAST) / (FULL - LEAST), 0), 1);
   }
   return result;
+}
+
+/** Return (3 V) unit normals of the welded vertices: area-weighted sums over all their faces. */
+function vertexNormals({ positions: p, index }: Model, welded: Uint32Array): Float32Array {
+  const normals = new Float32Array(p.length);
+  for (let i = 0; i < index.length; i += 3) {
+    const a = 3 * index[i]!;
+    const b = 3 * index[i + 1]!;
+    const c = 3 * index[i + 2]!;
+    const [ux, uy, uz] = [p[b]! - p[a]!, p[b + 1]! - p[a + 1]!, p[b + 2]! - p[a + 2]!];
+    const [vx, vy, vz] = [p[c]! - p[a]!, p[c + 1]! - p[a + 1]!, p[c + 2]! - p[a + 2]!];
+    const normal = [uy * vz - uz * vy, uz * vx - ux * vz, ux * vy - uy * vx];
+    for (let k = 0; k < 9; k++) normals[3 * welded[i + ((k / 3) | 0)]! + (k % 3)]! += normal[k % 3]!;
+  }
+  normalize(normals);
+  return normals;
 }
 
 function forEdges(welded: Uint32Array, visit: (a: number, b: number) => void): void {

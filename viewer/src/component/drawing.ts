@@ -10,6 +10,8 @@ import {
   InstancedBufferAttribute,
   InstancedBufferGeometry,
   Mesh,
+  NormalBlending,
+  type Object3D,
   OneFactor,
   OneMinusSrcAlphaFactor,
   RawShaderMaterial,
@@ -22,6 +24,8 @@ import { Appearance } from "./appearance";
 import { vertexConcavity } from "./concavity";
 import { borderLines, concaveLines, type SurfaceLines } from "./edges";
 import type { Model } from "./glb";
+import type { Look } from "./look";
+import type { Original } from "./original";
 import {
   LINE_FRAGMENT,
   LINE_VERTEX,
@@ -43,6 +47,8 @@ export interface Inks {
   readonly sky: readonly [number, number, number];
 }
 
+const VEIL: Record<Look, number> = { parts: -1, original: 0, both: 0.45 }; // opacity; set by hand
+const CLEAR = [0, 0, 0, 0] as const;
 const HALF_LINE = 0.75; // CSS pixels
 const GROWTH = 0.6; // of the radius at explode = 1
 
@@ -59,6 +65,8 @@ export class Drawing {
   #wires: Mesh | null = null;
   #borders: Mesh | null = null;
   #concave: Mesh | null = null;
+  #original: Original | null = null;
+  #look: Look = "parts";
   #inks: Inks;
   #size = { width: 1, height: 1, ratio: 1 };
 
@@ -73,6 +81,7 @@ export class Drawing {
       sky: { value: new Vector3() },
       concaveInk: { value: new Vector4() },
       isBentShown: { value: false },
+      veil: { value: VEIL.parts },
     });
     this.#pickMaterial = this.#material(PICK_VERTEX, PICK_FRAGMENT, {});
     this.#surfaceMesh = new Mesh(this.#geometry, this.#surfaceMaterial);
@@ -95,12 +104,42 @@ export class Drawing {
     this.group.position.set(...centre).multiplyScalar(-scale);
   }
 
+  get original(): Original | null {
+    return this.#original;
+  }
+
+  /** Take over the objects that the looks ``original`` and ``both`` show. */
+  set original(original: Original | null) {
+    this.#original = original;
+    if (original !== null) this.group.add(original.group);
+    this.look = this.#look;
+  }
+
+  /** Choose what is shown; ``original`` and ``both`` need the original. */
+  set look(look: Look) {
+    this.#look = look;
+    const isVeil = look !== "parts";
+    if (this.#original !== null) this.#original.group.visible = isVeil;
+    this.#surfaceMaterial.uniforms["veil"]!.value = VEIL[look];
+    this.#surfaceMaterial.transparent = isVeil;
+    if (isVeil) blendAsInk(this.#surfaceMaterial);
+    else this.#surfaceMaterial.blending = NormalBlending;
+    this.#surfaceMaterial.depthWrite = !isVeil;
+    this.#surfaceMesh.renderOrder = isVeil ? 1 : 0; // above all materials of the original
+    this.applyInks(this.#inks);
+  }
+
+  /** Update what depends on the state of the parts. */
+  update(): void {
+    this.#original?.show(this.appearance);
+  }
+
   applyInks(inks: Inks): void {
     this.#inks = inks;
     (this.#surfaceMaterial.uniforms["sky"]!.value as Vector3).fromArray([...inks.sky]);
     setInk(this.#surfaceMesh, "concaveInk", inks.concave);
     setInk(this.#wires, "ink", inks.wire);
-    setInk(this.#borders, "ink", inks.line);
+    setInk(this.#borders, "ink", this.#look === "original" ? CLEAR : inks.line);
     setInk(this.#borders, "selectedInk", inks.selected);
     setInk(this.#concave, "ink", inks.concave);
   }
@@ -119,7 +158,7 @@ export class Drawing {
       const material = this.#material(WIRE_VERTEX, PLAIN_FRAGMENT, { ink: { value: new Vector4() } }, true);
       material.wireframe = true;
       this.#wires = new Mesh(this.#geometry, material);
-      this.#add(this.#wires, 1);
+      this.#add(this.#wires, 2);
     }
     if (this.#wires !== null) this.#wires.visible = isShown;
   }
@@ -127,7 +166,7 @@ export class Drawing {
   set borders(isShown: boolean) {
     if (isShown && this.#borders === null) {
       this.#borders = this.#lineMesh(borderLines(this.#model, this.#surface));
-      this.#add(this.#borders, 3);
+      this.#add(this.#borders, 4);
     }
     if (this.#borders !== null) this.#borders.visible = isShown;
   }
@@ -138,14 +177,14 @@ export class Drawing {
       const bent = vertexConcavity(this.#model, this.#surface);
       this.#geometry.setAttribute("concavity", new BufferAttribute(bent, 1, true));
       this.#concave = this.#lineMesh(concaveLines(this.#model, this.#surface));
-      this.#add(this.#concave, 2);
+      this.#add(this.#concave, 3);
     }
     if (this.#concave !== null) this.#concave.visible = isShown;
   }
 
   /** Call ``draw`` while the surface is drawn with leaf numbers as colours, for picking. */
   withPickMaterial(draw: () => void): void {
-    const others = [this.#wires, this.#borders, this.#concave].filter((mesh) => mesh?.visible === true) as Mesh[];
+    const others = [this.#wires, this.#borders, this.#concave, this.#original?.group].filter((one) => one?.visible) as Object3D[];
     for (const mesh of others) mesh.visible = false;
     this.#surfaceMesh.material = this.#pickMaterial;
     draw();
@@ -155,6 +194,7 @@ export class Drawing {
 
   dispose(): void {
     this.appearance.dispose();
+    this.#original?.dispose();
     this.#geometry.dispose();
     for (const mesh of [this.#borders, this.#concave]) mesh?.geometry.dispose();
     for (const material of this.#materials) material.dispose();
@@ -203,14 +243,17 @@ export class Drawing {
       depthWrite: !isInk,
       transparent: isInk,
     });
-    if (isInk) {
-      material.blending = CustomBlending;
-      material.blendSrc = OneFactor;
-      material.blendDst = OneMinusSrcAlphaFactor;
-    }
+    if (isInk) blendAsInk(material);
     this.#materials.push(material);
     return material;
   }
+}
+
+/** Blend colours that are multiplied with their opacity. */
+function blendAsInk(material: RawShaderMaterial): void {
+  material.blending = CustomBlending;
+  material.blendSrc = OneFactor;
+  material.blendDst = OneMinusSrcAlphaFactor;
 }
 
 function surfaceGeometry(surface: Surface): BufferGeometry {

@@ -1,6 +1,8 @@
 /** Line segments on the surface: borders of leaves and concave edges. */
 
+import { forAdjacentCorners, next } from "./adjacency";
 import type { Model } from "./glb";
+import { faceNormals } from "./normals";
 import type { Surface } from "./surface";
 
 /** N line segments: ``ends`` (6 N) xyz, ``leaves`` (2 N) own and adjacent leaf, ``strength`` (N) opacity in 0..1. */
@@ -14,8 +16,6 @@ const LEAST_ANGLE = (15 * Math.PI) / 180; // smaller angles are not drawn
 const LEAST_COSINE = Math.cos(LEAST_ANGLE);
 const FULL_ANGLE = (60 * Math.PI) / 180;
 const MOST_LINES = 60_000;
-const FREE = -1; // states of a slot in the hash table of corners
-const PAIRED = -2;
 
 /** Return the edges between two leaves, once for each side. */
 export function borderLines(model: Model, surface: Surface): SurfaceLines {
@@ -47,42 +47,6 @@ export function concaveLines(model: Model, surface: Surface): SurfaceLines {
   );
 }
 
-/**
- * Visit every edge that two faces share, as one corner of each face. Corner i stands for the edge to the next corner of
- * its face. If more than two faces share an edge, they are paired in the order of the corners.
- */
-function forAdjacentCorners(
-  welded: Uint32Array,
-  isWanted: Uint8Array | null,
-  visit: (a: number, b: number) => void,
-): void {
-  let count = 0;
-  for (let i = 0; i < welded.length; i++) if (isWanted === null || (isWanted[i] && isWanted[next(i)])) count++;
-  const size = 2 ** Math.ceil(Math.log2(2 * count + 1));
-  const table = new Int32Array(size).fill(FREE);
-  for (let i = 0; i < welded.length; i++) {
-    if (isWanted !== null && !(isWanted[i] && isWanted[next(i)])) continue;
-    const from = welded[i]!;
-    const to = welded[next(i)]!;
-    let slot = (Math.imul(Math.min(from, to), 0x9e3779b1) ^ Math.imul(Math.max(from, to), 0x85ebca6b)) & (size - 1);
-    for (; table[slot] !== FREE; slot = (slot + 1) & (size - 1)) {
-      const other = table[slot]!;
-      if (other === PAIRED) continue;
-      const a = welded[other]!;
-      const b = welded[next(other)]!;
-      if ((a !== to || b !== from) && (a !== from || b !== to)) continue;
-      visit(other, i);
-      table[slot] = PAIRED;
-      break;
-    }
-    if (table[slot] === FREE) table[slot] = i;
-  }
-}
-
-function next(corner: number): number {
-  return corner % 3 === 2 ? corner - 2 : corner + 1;
-}
-
 /** Return the concave dihedral angle of the faces of two corners, in radians; 0 if the edge is convex. */
 function concaveAngle(
   { positions: p, index }: Model,
@@ -100,26 +64,6 @@ function concaveAngle(
   const above =
     n[i]! * (p[tip]! - p[base]!) + n[i + 1]! * (p[tip + 1]! - p[base + 1]!) + n[i + 2]! * (p[tip + 2]! - p[base + 2]!);
   return orientation * above > 0 ? Math.acos(Math.max(cosine, -1)) : 0;
-}
-
-/** Return (3 F) unit face normals; NaN for a face without area, so that its edges count as not concave. */
-function faceNormals({ positions: p, index }: Model): Float32Array {
-  const normals = new Float32Array(index.length);
-  for (let i = 0; i < index.length; i += 3) {
-    const a = 3 * index[i]!;
-    const b = 3 * index[i + 1]!;
-    const c = 3 * index[i + 2]!;
-    const [ux, uy, uz] = [p[b]! - p[a]!, p[b + 1]! - p[a + 1]!, p[b + 2]! - p[a + 2]!];
-    const [vx, vy, vz] = [p[c]! - p[a]!, p[c + 1]! - p[a + 1]!, p[c + 2]! - p[a + 2]!];
-    const x = uy * vz - uz * vy;
-    const y = uz * vx - ux * vz;
-    const z = ux * vy - uy * vx;
-    const length = Math.sqrt(x * x + y * y + z * z);
-    normals[i] = x / length;
-    normals[i + 1] = y / length;
-    normals[i + 2] = z / length;
-  }
-  return normals;
 }
 
 function leafLookup(model: Model): (corner: number) => number {

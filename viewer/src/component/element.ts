@@ -2,11 +2,12 @@
 
 import { Drawing, type Inks } from "./drawing";
 import { InvalidModel, parseModel, type Model } from "./glb";
+import { loadOriginal, lookNamed, NoOriginal, type Look } from "./look";
 import { FIRST_VIEW, Stage, type View } from "./stage";
 import { buildSurface } from "./surface";
 import type { Cut, PartTree } from "./tree";
 
-export type { Model, View };
+export type { Look, Model, View };
 export { type Cut, type PartTree, type TreeNode } from "./tree";
 
 export interface LoadDetail {
@@ -51,6 +52,7 @@ export class CleaveViewer extends HTMLElement {
     "concavity",
     "no-lines",
     "up",
+    "look",
     "theme",
     "label",
   ];
@@ -64,6 +66,7 @@ export class CleaveViewer extends HTMLElement {
   #model: Model | null = null;
   #drawing: Drawing | null = null;
   #loading: AbortController | null = null;
+  #loadingLook: AbortController | null = null;
   #cut: Cut = new Set();
   #hidden: ReadonlySet<number> = new Set();
   #selected: readonly number[] = [];
@@ -123,6 +126,8 @@ export class CleaveViewer extends HTMLElement {
       this.#applyTheme();
     } else if (name === "label") {
       this.#describe();
+    } else if (name === "look") {
+      void this.#applyLook();
     } else {
       this.#applyModes();
     }
@@ -237,6 +242,7 @@ export class CleaveViewer extends HTMLElement {
 
   /** Remove the model and free its memory. */
   clear(): void {
+    this.#loadingLook?.abort();
     this.#drawing?.dispose();
     this.#drawing = null;
     this.#model = null;
@@ -273,6 +279,7 @@ export class CleaveViewer extends HTMLElement {
     this.#stage.view = this.#firstView ?? FIRST_VIEW;
     this.#stage.show(this.#drawing);
     this.#applyModes();
+    void this.#applyLook();
     const detail = {
       maxSegments: model.tree.maxSegments,
       automaticSegments: model.automaticSegments,
@@ -294,6 +301,32 @@ export class CleaveViewer extends HTMLElement {
     this.#updateLeaves();
   }
 
+  /** Show the look of the attribute; the original is loaded when it is needed first. */
+  async #applyLook(): Promise<void> {
+    const [drawing, model, stage] = [this.#drawing, this.#model, this.#stage];
+    if (drawing === null || model === null || stage === null) return;
+    const look = lookNamed(this.getAttribute("look"));
+    this.#loadingLook?.abort();
+    if (look !== "parts" && drawing.original === null) {
+      const loading = (this.#loadingLook = new AbortController());
+      try {
+        const [source, { signal }] = [this.getAttribute("original-src"), loading];
+        const original = await loadOriginal(source, this.requestHeaders, model, signal, eventLoopYielder());
+        if (loading.signal.aborted || this.#drawing !== drawing) return original.dispose();
+        stage.light(original.surroundings);
+        drawing.original = original;
+      } catch (error) {
+        if (loading.signal.aborted) return;
+        if (!(error instanceof NoOriginal)) throw error;
+        this.#emit("cleave-look-error", { message: error.message });
+        return;
+      }
+    }
+    drawing.look = look;
+    this.#updateLeaves();
+    this.#emit("cleave-look", { look });
+  }
+
   #updateLeaves(): void {
     if (this.#drawing === null || this.#stage === null) return;
     const explode = Math.min(Math.max(Number(this.getAttribute("explode") ?? 0), 0), 1);
@@ -306,6 +339,7 @@ export class CleaveViewer extends HTMLElement {
       explode,
     });
     this.#drawing.explode = explode;
+    this.#drawing.update();
     this.#stage.reach = 1 + explode;
     this.#stage.changed();
     this.#describe();

@@ -9,12 +9,16 @@ export interface Model {
   readonly limitReached: boolean | null;
   /** (3 V) xyz of every vertex. */
   readonly positions: Float32Array;
+  /** (3 V) unit normal of every vertex; null if the file has none. */
+  readonly normals: Float32Array | null;
   /** (3 F) vertices of every face, sorted by leaf. */
   readonly index: Uint32Array;
   /** (L) tree node of every leaf. */
   readonly leafNodes: readonly number[];
   /** (L + 1) leaf i has the faces leafStart[i] to leafStart[i + 1] - 1. */
   readonly leafStart: readonly number[];
+  /** (16) matrix by columns from these positions to the scene of the file. */
+  readonly placement: readonly number[];
   /** sRGB colour of every label, in 0..1. */
   readonly palette: readonly (readonly [number, number, number])[];
 }
@@ -22,10 +26,19 @@ export interface Model {
 /** The data is not a GLB file of the service; the message names the fault. */
 export class InvalidModel extends Error {}
 
+interface GltfNode {
+  mesh?: number;
+  children?: number[];
+  translation?: number[];
+  rotation?: number[];
+  scale?: number[];
+  extras: Record<string, number | null>;
+}
+
 interface GltfDocument {
-  nodes: { mesh?: number; children?: number[]; extras: Record<string, number | null> }[];
+  nodes: GltfNode[];
   scenes: { extras: Record<string, unknown> }[];
-  meshes: { primitives: { attributes: { POSITION: number }; indices: number; material: number }[] }[];
+  meshes: { primitives: { attributes: { POSITION: number; NORMAL?: number }; indices: number; material: number }[] }[];
   materials: { pbrMetallicRoughness: { baseColorFactor: number[] } }[];
   accessors: { bufferView: number; byteOffset?: number; count: number }[];
   bufferViews: { byteOffset?: number; byteLength: number }[];
@@ -63,17 +76,22 @@ function modelOf(document: GltfDocument, data: ArrayBuffer, binary: number): Mod
   const starts = primitives.map(({ indices }) => (at(document.accessors, indices).byteOffset ?? 0) / (3 * WORD));
   const order = leaves.map((_, i) => i).sort((a, b) => at(starts, a) - at(starts, b));
   const indexView = at(document.bufferViews, at(document.accessors, at(primitives, 0).indices).bufferView);
-  const positionAccessor = at(document.accessors, at(primitives, 0).attributes.POSITION);
-  const positionView = at(document.bufferViews, positionAccessor.bufferView);
+  const vectors = (accessor: number) => {
+    const { bufferView, count } = at(document.accessors, accessor);
+    return new Float32Array(data, binary + (at(document.bufferViews, bufferView).byteOffset ?? 0), 3 * count);
+  };
+  const { POSITION, NORMAL } = at(primitives, 0).attributes;
   const { automatic_segments: automatic, limit_reached: limit } = extras;
   return {
     tree: new PartTree(isSplits(extras) ? nodesOfSplits(extras, document) : document.nodes.map((_, id) => treeNode(document, id))),
     automaticSegments: typeof automatic === "number" ? automatic : leaves.length,
     limitReached: typeof limit === "boolean" ? limit : null,
-    positions: new Float32Array(data, binary + (positionView.byteOffset ?? 0), 3 * positionAccessor.count),
+    positions: vectors(POSITION),
+    normals: NORMAL === undefined ? null : vectors(NORMAL),
     index: new Uint32Array(data, binary + (indexView.byteOffset ?? 0), indexView.byteLength / WORD),
     leafNodes: order.map((i) => at(leaves, i).id),
     leafStart: [...order.map((i) => at(starts, i)), indexView.byteLength / (3 * WORD)],
+    placement: matrixOf(at(document.nodes, 0)),
     palette: document.materials.map((material) => srgb(material.pbrMetallicRoughness.baseColorFactor)),
   };
 }
@@ -131,6 +149,17 @@ function treeNode(document: GltfDocument, id: number): TreeNode {
     cutValue: extras["cut_value"] ?? null,
     step: children === undefined ? null : Math.min(...children),
   };
+}
+
+/** Return the matrix of a node, by columns. */
+function matrixOf({ translation: t = [0, 0, 0], rotation: q = [0, 0, 0, 1], scale: s = [1, 1, 1] }: GltfNode): number[] {
+  const [x, y, z, w] = q as [number, number, number, number];
+  const columns = [
+    [1 - 2 * (y * y + z * z), 2 * (x * y + z * w), 2 * (x * z - y * w)],
+    [2 * (x * y - z * w), 1 - 2 * (x * x + z * z), 2 * (y * z + x * w)],
+    [2 * (x * z + y * w), 2 * (y * z - x * w), 1 - 2 * (x * x + y * y)],
+  ];
+  return [...columns.flatMap((column, k) => [...column.map((value) => value * s[k]!), 0]), ...t, 1];
 }
 
 /** Convert a linear colour of glTF to sRGB (IEC 61966-2-1). */

@@ -19,6 +19,7 @@ ${LEAF}
 `;
 
 export const SURFACE_VERTEX = /* glsl */ `${HEAD}
+uniform float veil;
 in vec3 position;
 in vec4 normalAndLeaf;
 in float concavity;
@@ -38,17 +39,24 @@ void main() {
   base = color.rgb;
   emphasis = moved.w;
   gl_Position = projectionMatrix * seen;
+  if (veil >= 0.0) gl_Position.z -= 0.0004 * gl_Position.w;
   if (color.a < 0.5) ${HIDDEN}
 }
 `;
 
-/** Smooth normals across soft edges, flat normals at creases; the lights are fixed to the camera. */
+/**
+ * The opaque surface, or a veil of it above the original materials if ``veil``, its opacity, is not negative.
+ *
+ * The normals are those of the vertices, turned to the camera, or of the face if they are zero; the lights are fixed to the
+ * camera.
+ */
 export const SURFACE_FRAGMENT = /* glsl */ `
 precision highp float;
 uniform float fadeIn;
 uniform vec3 sky;
 uniform vec4 concaveInk;
 uniform bool isBentShown;
+uniform float veil;
 in vec3 seenFrom;
 in float bent;
 in vec3 smoothNormal;
@@ -60,9 +68,9 @@ vec3 toScreen(vec3 c) { return pow(clamp(c, 0.0, 1.0), vec3(1.0 / 2.2)); }
 void main() {
   vec3 towards = normalize(-seenFrom);
   vec3 flatNormal = normalize(cross(dFdx(seenFrom), dFdy(seenFrom)));
-  vec3 rounded = normalize(smoothNormal);
-  rounded *= sign(dot(rounded, flatNormal) + 1e-6);
-  vec3 n = normalize(mix(flatNormal, rounded, smoothstep(0.76, 0.84, dot(flatNormal, rounded))));
+  float length2 = dot(smoothNormal, smoothNormal);
+  vec3 n = length2 > 0.0 ? smoothNormal * inversesqrt(length2) : flatNormal;
+  n *= sign(dot(n, flatNormal) + 1e-6);
   float key = max(dot(n, normalize(vec3(0.38, 0.72, 0.58))), 0.0);
   float fill = max(dot(n, normalize(vec3(-0.75, 0.1, 0.5))), 0.0);
   float up = 0.5 + 0.5 * n.y;
@@ -76,7 +84,11 @@ void main() {
   vec3 light = vec3(0.36) + 0.24 * up + 0.50 * key + 0.12 * fill + 0.08 * facing;
   vec3 lit = surface * light + vec3(0.06) * gloss + 0.10 * pow(1.0 - facing, 3.0) * toLinear(sky);
   lit = mix(lit, lit * 1.12 + 0.05, clamp(emphasis, 0.0, 1.0));
-  color = vec4(toScreen(lit), 1.0) * fadeIn;
+  float opacity = veil < 0.0 ? 1.0 : veil;
+  if (veil >= 0.0 && isBentShown) opacity = max(opacity, 0.9 * smoothstep(0.0, 1.0, bent));
+  if (veil >= 0.0 && emphasis > 0.0) opacity = max(opacity + 0.15, 0.35);
+  if (veil >= 0.0 && emphasis < 0.0) opacity = 0.75;
+  color = vec4(toScreen(lit), 1.0) * opacity * fadeIn;
 }
 `;
 

@@ -1,6 +1,7 @@
 /** The drawn buffers: every vertex belongs to one leaf, so that each leaf has its own colour and offset. */
 
 import type { Model } from "./glb";
+import { cornerNormals, type CornerNormals } from "./normals";
 
 export interface Surface {
   /** (3 W) xyz. */
@@ -11,15 +12,13 @@ export interface Surface {
   readonly index: Uint32Array;
   /** (3 F) the corners as welded vertices: equal for equal positions. */
   readonly welded: Uint32Array;
-  /** (3 V) unit normal of every welded vertex. */
-  readonly vertexNormals: Float32Array;
   /** (3 F) whether the vertex of the corner belongs to other leaves too. */
   readonly isShared: Uint8Array;
   /** (3 L) area-weighted centre of every leaf. */
   readonly leafCentre: Float64Array;
   /** (L) area of every leaf. */
   readonly leafArea: Float64Array;
-  /** -1 if the faces are inside out, else 1; ``vertexNormals`` are as in the file. */
+  /** -1 if the faces are inside out, else 1. */
   readonly orientation: number;
   readonly centre: readonly [number, number, number];
   readonly radius: number;
@@ -30,19 +29,20 @@ const UNIT = 32767;
 export async function buildSurface(model: Model, yieldToEventLoop: () => Promise<void>): Promise<Surface> {
   const { positions, index } = model;
   const representative = weld(positions, index.length / 3);
+  const welded = representative === null ? index : index.map((vertex) => representative[vertex]!);
   await yieldToEventLoop();
-  const { normals, leafCentre, leafArea, volume } = faceSums(model, representative);
-  normalize(normals);
+  const { leafCentre, leafArea, volume } = faceSums(model);
   await yieldToEventLoop();
-  const corners = splitByLeaf(model, representative);
+  const normals = await cornerNormals(model, welded, yieldToEventLoop);
+  await yieldToEventLoop();
+  const corners = splitByLeaf(model, welded, normals);
   await yieldToEventLoop();
   const { centre, radius } = bounds(positions, index);
   return {
     position: gather(positions, corners.source),
-    normalAndLeaf: encode(normals, corners.source, corners.leaf, representative),
+    normalAndLeaf: encode(normals.normals, corners.group, corners.leaf),
     index: corners.index,
-    welded: representative === null ? index : index.map((vertex) => representative[vertex]!),
-    vertexNormals: normals,
+    welded,
     isShared: corners.isShared,
     leafCentre,
     leafArea,
@@ -53,7 +53,7 @@ export async function buildSurface(model: Model, yieldToEventLoop: () => Promise
 }
 
 /** Return the first vertex at the position of each vertex; null if the faces share their vertices already. */
-function weld(positions: Float32Array, faces: number): Uint32Array | null {
+export function weld(positions: Float32Array, faces: number): Uint32Array | null {
   const count = positions.length / 3;
   if (count < 0.6 * faces) return null;
   const bits = new Uint32Array(positions.buffer, positions.byteOffset, positions.length);
@@ -93,11 +93,10 @@ function hash(a: number, b: number, c: number): number {
   return h ^ (h >>> 13);
 }
 
-/** Return area-weighted sums over the faces: vertex normals, leaf centres, leaf areas and the volume. */
-function faceSums(model: Model, representative: Uint32Array | null) {
+/** Return sums over the faces: leaf centres weighted with area, leaf areas and the volume. */
+function faceSums(model: Model) {
   const { positions: p, index, leafStart } = model;
   const leaves = leafStart.length - 1;
-  const normals = new Float32Array(p.length);
   const leafCentre = new Float64Array(3 * leaves);
   const leafArea = new Float64Array(leaves);
   const [ox, oy, oz] = [p[0] ?? 0, p[1] ?? 0, p[2] ?? 0];
@@ -126,54 +125,45 @@ function faceSums(model: Model, representative: Uint32Array | null) {
       cx += doubled * (p[a]! + p[b]! + p[c]!);
       cy += doubled * (p[a + 1]! + p[b + 1]! + p[c + 1]!);
       cz += doubled * (p[a + 2]! + p[b + 2]! + p[c + 2]!);
-      for (let k = 0; k < 3; k++) {
-        const vertex = index[i + k]!;
-        const v = 3 * (representative === null ? vertex : representative[vertex]!);
-        normals[v]! += nx;
-        normals[v + 1]! += ny;
-        normals[v + 2]! += nz;
-      }
     }
     const scale = total > 0 ? 1 / (3 * total) : 0;
     leafCentre.set([cx * scale, cy * scale, cz * scale], 3 * leaf);
     leafArea[leaf] = total / 2;
   }
-  return { normals, leafCentre, leafArea, volume };
+  return { leafCentre, leafArea, volume };
 }
 
-/** Create one vertex for every pair of a leaf and a vertex that it uses. */
-function splitByLeaf(model: Model, representative: Uint32Array | null) {
-  const { positions, index, leafStart } = model;
+/** Create one vertex for every pair of a leaf and a group of corners that it has. */
+function splitByLeaf(model: Model, welded: Uint32Array, { group, normals }: CornerNormals) {
+  const { index, leafStart } = model;
   const leaves = leafStart.length - 1;
-  const count = positions.length / 3;
-  const owner = new Int32Array(count).fill(-1);
-  const latest = new Int32Array(count);
-  const firstLeafAt = new Int32Array(count).fill(-1); // by welded vertex
-  const manyAt = new Uint8Array(count); // by welded vertex: whether several leaves meet
+  const owner = new Int32Array(normals.length / 3).fill(-1);
+  const latest = new Int32Array(normals.length / 3);
+  const firstLeafAt = new Int32Array(model.positions.length / 3).fill(-1); // by welded vertex
+  const manyAt = new Uint8Array(firstLeafAt.length); // by welded vertex: whether several leaves meet
   const result = new Uint32Array(index.length);
   const source: number[] = [];
+  const groups: number[] = [];
   const leafOf: number[] = [];
   for (let leaf = 0; leaf < leaves; leaf++) {
     for (let i = 3 * leafStart[leaf]!; i < 3 * leafStart[leaf + 1]!; i++) {
-      const vertex = index[i]!;
-      if (owner[vertex] !== leaf) {
-        owner[vertex] = leaf;
-        latest[vertex] = source.length;
-        source.push(vertex);
+      const own = group[i]!;
+      if (owner[own] !== leaf) {
+        owner[own] = leaf;
+        latest[own] = source.length;
+        source.push(index[i]!);
+        groups.push(own);
         leafOf.push(leaf);
-        const place = representative === null ? vertex : representative[vertex]!;
+        const place = welded[i]!;
         if (firstLeafAt[place] === -1) firstLeafAt[place] = leaf;
         else if (firstLeafAt[place] !== leaf) manyAt[place] = 1;
       }
-      result[i] = latest[vertex]!;
+      result[i] = latest[own]!;
     }
   }
   const isShared = new Uint8Array(index.length);
-  for (let i = 0; i < index.length; i++) {
-    const vertex = index[i]!;
-    isShared[i] = manyAt[representative === null ? vertex : representative[vertex]!]!;
-  }
-  return { index: result, source, leaf: leafOf, isShared };
+  for (let i = 0; i < index.length; i++) isShared[i] = manyAt[welded[i]!]!;
+  return { index: result, source, group: groups, leaf: leafOf, isShared };
 }
 
 function gather(positions: Float32Array, source: readonly number[]): Float32Array {
@@ -186,32 +176,15 @@ function gather(positions: Float32Array, source: readonly number[]): Float32Arra
   return result;
 }
 
-function encode(
-  normals: Float32Array,
-  source: readonly number[],
-  leaf: readonly number[],
-  representative: Uint32Array | null,
-): Int16Array {
-  const result = new Int16Array(4 * source.length);
-  source.forEach((vertex, i) => {
-    const v = 3 * (representative === null ? vertex : representative[vertex]!);
-    result[4 * i] = UNIT * normals[v]!;
-    result[4 * i + 1] = UNIT * normals[v + 1]!;
-    result[4 * i + 2] = UNIT * normals[v + 2]!;
+function encode(normals: Float32Array, groups: readonly number[], leaf: readonly number[]): Int16Array {
+  const result = new Int16Array(4 * groups.length);
+  groups.forEach((group, i) => {
+    result[4 * i] = UNIT * normals[3 * group]!;
+    result[4 * i + 1] = UNIT * normals[3 * group + 1]!;
+    result[4 * i + 2] = UNIT * normals[3 * group + 2]!;
     result[4 * i + 3] = leaf[i]!;
   });
   return result;
-}
-
-/** Normalize vectors in place; vectors of length 0 are kept. */
-function normalize(vectors: Float32Array): void {
-  for (let i = 0; i < vectors.length; i += 3) {
-    const length = Math.sqrt(vectors[i]! ** 2 + vectors[i + 1]! ** 2 + vectors[i + 2]! ** 2);
-    const scale = length > 0 ? 1 / length : 0;
-    vectors[i]! *= scale;
-    vectors[i + 1]! *= scale;
-    vectors[i + 2]! *= scale;
-  }
 }
 
 function bounds(p: Float32Array, index: Uint32Array) {

@@ -1,7 +1,8 @@
 /** Reads and writes the state of the page as the fragment of its URL, so that a link shows the same view. */
 
-import type { PartTree, View } from "../component/element";
-import { FIRST_MODES, type Modes, type Session, type Work } from "./session";
+import type { View } from "../component/element";
+import type { Axis } from "./api";
+import { LOOKS, type Modes, type Session, type Work } from "./session";
 
 export interface Address {
   readonly job: string | null;
@@ -17,7 +18,7 @@ export function readAddress(hash: string): Address {
 }
 
 /** Return the edits and the display modes that a fragment contains. */
-export function readState({ values }: Address, tree: PartTree): { work: Partial<Work>; modes: Partial<Modes> } {
+export function readState({ values }: Address, { tree, firstModes }: Session): { work: Partial<Work>; modes: Partial<Modes> } {
   const level = values.get("k");
   const splits = values.get("cut");
   const cut = splits !== null ? tree.cutOfSplits(integers(splits)) : level !== null ? tree.cutAt(Number(level) || 1) : null;
@@ -35,7 +36,8 @@ export function readState({ values }: Address, tree: PartTree): { work: Partial<
       wireframe: show.has("wires"),
       concavity: show.has("concavity"),
       lines: !show.has("nolines"),
-      up: values.get("up") === "z" ? "z" : "y",
+      up: axisNamed(values.get("up")) ?? firstModes.up,
+      look: LOOKS.find((look) => look === values.get("look")) ?? firstModes.look,
     },
   };
 }
@@ -51,7 +53,8 @@ export function writeAddress(job: string, session: Session, view: View | null, b
   if (modes.explode > 0) values.set("explode", modes.explode.toFixed(2));
   const show = [modes.wireframe && "wires", modes.concavity && "concavity", !modes.lines && "nolines"].filter(Boolean);
   if (show.length > 0) values.set("show", show.join("."));
-  if (modes.up !== FIRST_MODES.up) values.set("up", modes.up);
+  if (modes.up !== session.firstModes.up) values.set("up", modes.up);
+  if (modes.look !== session.firstModes.look) values.set("look", modes.look);
   for (const [id, name] of work.names) values.set(`n${id}`, name);
   if (view !== null) values.set("view", writeView(view));
   if (beside !== null) values.set("beside", beside);
@@ -67,6 +70,10 @@ function readView(text: string | null): View | null {
   const values = [azimuth, polar, distance, x, y, z];
   if (values.some((value) => value === undefined || !Number.isFinite(value)) || !(distance! > 0)) return null;
   return { azimuth: azimuth!, polar: polar!, distance: distance!, target: [x!, y!, z!] };
+}
+
+function axisNamed(text: string | null): Axis | null {
+  return text === "y" || text === "z" ? text : null;
 }
 
 function integers(text: string | null): number[] {

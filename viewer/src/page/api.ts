@@ -1,6 +1,7 @@
 /** Client for the parts of the HTTP API that the page uses. */
 
 import { ApiError, type Problem } from "./problems";
+import type { Model } from "./sets";
 
 export type Status = "queued" | "running" | "succeeded" | "failed" | "canceled";
 
@@ -12,7 +13,7 @@ export interface Job {
   readonly queue_position: number | null;
   readonly created_at: string;
   readonly finished_at: string | null;
-  readonly input: { readonly file_name: string | null; readonly size_bytes: number };
+  readonly input: { readonly file_name: string | null; readonly format: string | null; readonly size_bytes: number };
   readonly parameters: Readonly<Record<string, unknown>>;
   readonly mesh: { readonly faces: number; readonly vertices: number; readonly report: Report | null } | null;
   readonly max_segments: number | null;
@@ -22,9 +23,18 @@ export interface Job {
 }
 
 export interface Report {
+  /** Opposite corners of the bounding box. */
+  readonly lower: readonly [number, number, number];
+  readonly upper: readonly [number, number, number];
+  /** Of the coordinates, such as "millimeter"; null if it is not known, missing in jobs of earlier versions. */
+  readonly unit?: string | null;
+  /** The axis that points up in pictures; missing in jobs of earlier versions. */
+  readonly shown_up?: Axis;
   /** The number of parts for every value of the parameter ``structure``; null in jobs of earlier versions. */
   readonly structure: Structure | null;
 }
+
+export type Axis = "y" | "z";
 
 export interface Structure {
   readonly shells: number;
@@ -101,9 +111,9 @@ export async function request(path: string, options: RequestInit = {}): Promise<
   return answer;
 }
 
-/** Upload a mesh; ``onSent`` receives the fraction of bytes sent. */
+/** Upload a mesh and the files that belong to it; ``onSent`` receives the fraction of bytes sent. */
 export function submit(
-  file: File,
+  model: Model,
   parameters: Readonly<Record<string, unknown>>,
   signal: AbortSignal,
   onSent: (share: number) => void,
@@ -111,7 +121,7 @@ export function submit(
   return new Promise((resolve, reject) => {
     const form = new FormData();
     form.append("parameters", JSON.stringify(parameters));
-    form.append("mesh", file, file.name);
+    for (const { path, file } of model.files) form.append("mesh", file, path);
     const exchange = new XMLHttpRequest();
     exchange.open("POST", "v1/jobs");
     for (const [name, value] of Object.entries(headers())) exchange.setRequestHeader(name, value);

@@ -3,6 +3,7 @@
 import type { CleaveViewer, LoadDetail } from "../component/element";
 import { headers, jobPath, type Job } from "./api";
 import { byId } from "./dom";
+import type { Modes } from "./session";
 import { plural, stem } from "./text";
 
 export class Beside {
@@ -36,7 +37,9 @@ export class Beside {
     byId("beside-stage").append(this.viewer);
     this.viewer.requestHeaders = headers();
     this.viewer.setAttribute("label", `Second result: ${job.input.file_name ?? "mesh"}`);
-    this.viewer.setAttribute("src", jobPath(job.id, "/model.glb?levels=all"));
+    const source = jobPath(job.id, "/model.glb?levels=all");
+    this.viewer.setAttribute("original-src", `${source}&keep=all`);
+    this.viewer.setAttribute("src", source);
     this.#onChange();
   }
 
@@ -49,8 +52,10 @@ export class Beside {
     this.#onChange();
   }
 
-  set upAxis(axis: "y" | "z") {
-    this.viewer.setAttribute("up", axis);
+  /** Follow the display modes of the first result that concern the whole model. */
+  show({ up, look }: Modes): void {
+    this.viewer.setAttribute("up", up);
+    this.viewer.setAttribute("look", look);
   }
 
   #loaded({ maxSegments, automaticSegments }: LoadDetail): void {

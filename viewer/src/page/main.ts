@@ -1,8 +1,9 @@
 /** The page: connects the viewer with the panels, the dialogs and the URL. */
 
 import { CleaveViewer, type LoadDetail, type View } from "../component/element";
+import { about, usualUp } from "./about";
 import { readAddress, readState, writeAddress, type Address } from "./address";
-import { getJob, headers, jobPath, type Job, type Structure } from "./api";
+import { getJob, headers, jobPath, type Job } from "./api";
 import { Beside } from "./beside";
 import { announce, byId, openDialog, toast } from "./dom";
 import { hasEnded } from "./follow";
@@ -12,9 +13,10 @@ import { ParameterDrawer, type Run } from "./parameters";
 import { PartsPanel } from "./parts";
 import { explain, problemOf, type Problem, type Remedy } from "./problems";
 import { Session } from "./session";
+import type { Model } from "./sets";
 import { Start } from "./start";
 import { TakeAway } from "./takeaway";
-import { bytes, plural, stem } from "./text";
+import { plural, stem } from "./text";
 import { listenToTheme } from "./theme";
 import { Tools } from "./tools";
 
@@ -23,7 +25,7 @@ const SAVE_PAUSE_MS = 250; // browsers limit how often a page may change its URL
 class Page {
   readonly #viewer = byId<CleaveViewer>("viewer");
   readonly #start = new Start({
-    onFinished: (job, file) => this.#finished(job, file),
+    onFinished: (job, model) => this.#finished(job, model),
     onRemedy: (remedy) => this.#applyRemedy(remedy),
     onLeave: () => this.#leave(),
   });
@@ -38,8 +40,8 @@ class Page {
   readonly #beside = new Beside(this.#viewer, () => this.#save());
   #session: Session | null = null;
   #job: Job | null = null;
-  /** The mesh file, if it was uploaded from this page. */
-  #file: File | null = null;
+  /** The files of the mesh, if they were uploaded from this page. */
+  #model: Model | null = null;
   #opening: Address | null = null;
   #next: { segments: number | null; isBeside: boolean } = { segments: null, isBeside: false };
   #view: View | null = null;
@@ -112,8 +114,8 @@ class Page {
     }
   }
 
-  #finished(job: Job, file: File | null): void {
-    this.#file = file ?? this.#file;
+  #finished(job: Job, model: Model | null): void {
+    this.#model = model ?? this.#model;
     if (this.#next.isBeside && this.#job !== null) {
       this.#start.show("none");
       this.#showWork(true);
@@ -129,7 +131,7 @@ class Page {
 
   #chosen(job: Job, isBeside: boolean): void {
     if (isBeside) return this.#beside.open(job);
-    this.#file = null;
+    this.#model = null;
     location.hash = `job=${job.id}`;
   }
 
@@ -144,6 +146,8 @@ class Page {
     this.#viewer.requestHeaders = headers();
     if (this.#opening?.view) this.#viewer.clear();
     if (this.#opening?.view) this.#viewer.view = this.#opening.view;
+    this.#viewer.setAttribute("look", "parts"); // until the state of the page is restored
+    this.#viewer.setAttribute("original-src", `${source}&keep=all`);
     this.#viewer.removeAttribute("src");
     this.#viewer.setAttribute("src", source);
   }
@@ -151,11 +155,10 @@ class Page {
   #loaded(detail: LoadDetail): void {
     const job = this.#job!;
     const name = job.input.file_name ?? "mesh";
-    this.#session = new Session(this.#viewer.tree!, detail, () => this.#changed());
+    this.#session = new Session(this.#viewer.tree!, detail, usualUp(job), () => this.#changed());
     this.#viewer.setAttribute("label", name);
     byId("title").textContent = name;
-    const structure = structureOf(job.mesh?.report?.structure ?? null);
-    byId("about").textContent = [plural(detail.faces, "face"), bytes(job.input.size_bytes), ...structure].join(" · ");
+    byId("about").textContent = about(job, detail.faces);
     document.title = `${stem(name)} – Cleave`;
     this.#start.show("none");
     this.#showWork(true);
@@ -172,7 +175,7 @@ class Page {
     const address = this.#opening;
     this.#opening = null;
     if (address !== null) {
-      const { work, modes } = readState(address, tree);
+      const { work, modes } = readState(address, this.#session);
       this.#view = address.view;
       this.#session.restore(work, modes);
       if (address.beside !== null) void this.#openBeside(address.beside);
@@ -208,7 +211,7 @@ class Page {
     this.#level.update();
     this.#parts.update();
     this.#tools.update();
-    this.#beside.upAxis = this.#session.modes.up;
+    this.#beside.show(this.#session.modes);
     this.#save();
   }
 
@@ -223,12 +226,12 @@ class Page {
 
   async #run(run: Run): Promise<void> {
     this.#next = { segments: run.segments, isBeside: run.isBeside };
-    if (this.#file === null) {
+    if (this.#model === null) {
       toast("Choose the mesh file again to run it with other parameters.");
       this.#start.parameters = run.parameters;
       this.#start.choose();
     } else {
-      await this.#start.send(this.#file, run.parameters);
+      await this.#start.send(this.#model, run.parameters);
     }
   }
 
@@ -268,7 +271,7 @@ class Page {
     clearTimeout(this.#saving);
     this.#session = null;
     this.#job = null;
-    this.#file = null;
+    this.#model = null;
     this.#beside.close();
     this.#viewer.removeAttribute("src");
     document.title = "Cleave";
@@ -281,14 +284,6 @@ class Page {
     byId("work").hidden = !isShown;
     for (const element of document.querySelectorAll<HTMLElement>(".with-result")) element.hidden = !isShown;
   }
-}
-
-/** Return the counts of the structure of a file, such as "96 shells"; none if it is of one part. */
-function structureOf(structure: Structure | null): string[] {
-  const { shells, groups, materials } = structure ?? { shells: 0, groups: 0, materials: 0 };
-  if (Math.max(shells, groups, materials) <= 1) return [];
-  const counts: [number, string][] = [[shells, "shell"], [groups, "group"], [materials, "material"]];
-  return counts.filter(([number]) => number > 0).map(([number, one]) => plural(number, one));
 }
 
 await customElements.whenDefined("cleave-viewer");

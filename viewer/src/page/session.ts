@@ -1,6 +1,7 @@
 /** The editing state of a result (cut, hidden parts, names) with undo, and its display modes. */
 
-import type { Cut, LoadDetail, PartTree } from "../component/element";
+import type { Axis } from "./api";
+import type { Cut, LoadDetail, Look, PartTree } from "../component/element";
 
 /** The state that undo restores. */
 export interface Work {
@@ -15,16 +16,20 @@ export interface Modes {
   readonly wireframe: boolean;
   readonly concavity: boolean;
   readonly lines: boolean;
-  readonly up: "y" | "z";
+  readonly up: Axis;
+  readonly look: Look;
 }
 
-export const FIRST_MODES: Modes = {
+export const LOOKS: readonly Look[] = ["parts", "original", "both"];
+
+const FIRST_MODES: Modes = {
   selected: [],
   explode: 0,
   wireframe: false,
   concavity: false,
   lines: true,
   up: "y",
+  look: "parts",
 };
 
 const MOST_STEPS = 200;
@@ -34,17 +39,19 @@ export class Session {
   readonly automaticSegments: number;
   /** Whether the hierarchy ends at a limit although sensible cuts are left; null if that is not known. */
   readonly limitReached: boolean | null;
+  readonly firstModes: Modes;
   readonly #onChange: () => void;
   #work: Work;
-  #modes: Modes = FIRST_MODES;
+  #modes: Modes;
   #past: Work[] = [];
   #future: Work[] = [];
   #slidingFrom: Work | null = null;
 
-  constructor(tree: PartTree, { automaticSegments, limitReached }: LoadDetail, onChange: () => void) {
+  constructor(tree: PartTree, { automaticSegments, limitReached }: LoadDetail, up: Axis, onChange: () => void) {
     this.tree = tree;
     this.automaticSegments = automaticSegments;
     this.limitReached = limitReached;
+    this.firstModes = this.#modes = { ...FIRST_MODES, up };
     this.#onChange = onChange;
     this.#work = { cut: tree.cutAt(automaticSegments), hidden: new Set(), names: new Map() };
   }

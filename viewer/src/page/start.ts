@@ -1,16 +1,21 @@
 /** The start page: choosing a file or a sample, the upload, and the progress of the job. */
 
 import { apiKey, cancelJob, getBlob, getFormats, submit, type Job } from "./api";
-import { announce, byId, h, icon } from "./dom";
+import { announce, byId, h, toast } from "./dom";
+import { MOST_FILES, type Found } from "./files";
 import { follow, hasEnded } from "./follow";
+import { Intake } from "./intake";
 import lists from "./lists.json";
 import { ApiError, explain, problemOf, type Problem, type Remedy } from "./problems";
-import { bytes } from "./text";
+import { modelOfFile, sorted, type Model } from "./sets";
+import { Several } from "./several";
+import { openStages, showProgress, showStage } from "./stages";
+import { bytes, plural } from "./text";
 
 type Parameters = Readonly<Record<string, unknown>>;
 
 export interface StartEvents {
-  onFinished(job: Job, file: File | null): void;
+  onFinished(job: Job, model: Model | null): void;
   onRemedy(remedy: Remedy): void;
   /** Called if the user stops a job or goes back from an error. */
   onLeave(): void;
@@ -23,63 +28,58 @@ const SAMPLES: readonly [name: string, title: string][] = [
   ["stool", "Stool"],
 ];
 
-/** Titles of the stages of a job, in order. */
-const STAGES: readonly [stage: string, title: string][] = [
-  ["upload", "Sending the mesh"],
-  ["queued", "Waiting for a worker"],
-  ...lists.stages.map(({ name, title }): [string, string] => [name, title]),
-  ["show", "Drawing"],
-];
+const MOST_NAMED = 5; // files in a message
 const FORMATS = lists.inputFormats.map(({ title }) => title).join(", ");
 
 export class Start {
   readonly #events: StartEvents;
-  readonly #input = byId<HTMLInputElement>("file");
+  readonly #intake = new Intake({
+    onFiles: (found) => void this.#take(found),
+    onTooMany: () => this.fail({ code: "too_many_files", detail: `At most ${plural(MOST_FILES, "file")} are taken at a time.` }),
+  });
+  readonly #several = new Several({
+    onOpen: (job, model) => this.#events.onFinished(job, model),
+    onClose: () => this.#events.onLeave(),
+  });
   #running: AbortController | null = null;
   #job: Job | null = null;
-  #last: { file: File; parameters: Parameters } | null = null;
+  #last: { model: Model; parameters: Parameters } | null = null;
   #mostBytes = Infinity;
-  /** Parameters for the next file that is chosen. */
+  /** Parameters for the next files that are chosen. */
   parameters: Parameters = {};
 
   constructor(events: StartEvents) {
     this.#events = events;
-    this.#input.addEventListener("change", () => {
-      const file = this.#input.files?.[0];
-      this.#input.value = "";
-      if (file !== undefined) this.#take(file);
-    });
-    for (const button of document.querySelectorAll(".choose")) button.addEventListener("click", () => this.choose());
     byId("stop").addEventListener("click", () => void this.#stop());
     byId("remedy").addEventListener("click", () => this.#remedy());
     byId("back").addEventListener("click", () => this.#events.onLeave());
-    this.#listenToDrops();
     this.#fillSamples();
-    this.#input.accept = [...lists.inputFormats.flatMap(({ extensions }) => extensions), ".gz", ".zip"].join(",");
     byId("formats").textContent = FORMATS;
     void this.#loadLimits();
   }
 
   choose(): void {
-    this.#input.click();
+    this.#intake.choose();
   }
 
-  /** Show one of the cards of the start page, or none. */
-  show(what: "start" | "progress" | "problem" | "none"): void {
-    byId("welcome").hidden = what === "none";
-    for (const id of ["start", "progress", "problem"]) byId(id).hidden = id !== what;
+  /** Show one of the cards of the start page, or none; the list of several models takes the place of the start. */
+  show(what: "start" | "progress" | "several" | "problem" | "none"): void {
+    const shown = what === "start" && this.#several.isOpen ? "several" : what;
+    byId("welcome").hidden = shown === "none";
+    for (const id of ["start", "progress", "several", "problem"]) byId(id).hidden = id !== shown;
   }
 
-  /** Upload a file and follow its job. */
-  async send(file: File, parameters: Parameters): Promise<void> {
-    this.#last = { file, parameters };
-    if (file.size > this.#mostBytes) {
-      const detail = `${file.name} has ${bytes(file.size)}; this server accepts at most ${bytes(this.#mostBytes)}.`;
+  /** Upload a model and follow its job. */
+  async send(model: Model, parameters: Parameters): Promise<void> {
+    this.#last = { model, parameters };
+    if (model.bytes > this.#mostBytes) {
+      const with_ = model.files.length > 1 ? ` with its ${plural(model.files.length - 1, "file")}` : "";
+      const detail = `${model.name}${with_} has ${bytes(model.bytes)}; this server accepts at most ${bytes(this.#mostBytes)}.`;
       return this.fail({ code: "too_large", detail });
     }
-    await this.#run(file.name, file, (signal) => {
-      this.#stage("upload", 0);
-      return submit(file, parameters, signal, (sent) => this.#stage("upload", sent));
+    await this.#run(model.name, model, (signal) => {
+      showStage("upload", 0);
+      return submit(model, parameters, signal, (sent) => showStage("upload", sent));
     });
   }
 
@@ -103,24 +103,41 @@ export class Start {
     button.focus();
   }
 
-  #take(file: File): void {
-    const { parameters } = this;
-    this.parameters = {};
-    void this.send(file, parameters);
+  /** Sort files: one model is sent at once, several become a list; other files are named and left out. */
+  async #take(found: readonly Found[]): Promise<void> {
+    try {
+      const { models, leftOut } = await sorted(found);
+      if (models.length === 0) return this.fail({ code: "no_mesh", detail: named(leftOut) });
+      this.#send(models, leftOut.length === 0 ? "" : `Left out, because no mesh refers to them: ${named(leftOut)}`);
+    } catch {
+      this.fail({ code: "unreadable", detail: "The browser could not read the files." });
+    }
   }
 
-  async #run(name: string, file: File | null, begin: (signal: AbortSignal) => Promise<Job>): Promise<void> {
+  #send(models: readonly Model[], note: string): void {
+    const { parameters } = this;
+    this.parameters = {};
+    if (models.length === 1) void this.send(models[0]!, parameters);
+    else {
+      this.#running?.abort();
+      this.show("several");
+      this.#several.add(models, parameters, this.#mostBytes);
+    }
+    for (const id of ["progress-note", "several-note"]) byId(id).textContent = note;
+    if (note !== "") toast(note);
+  }
+
+  async #run(name: string, model: Model | null, begin: (signal: AbortSignal) => Promise<Job>): Promise<void> {
     this.#running?.abort();
     const running = (this.#running = new AbortController());
-    byId("progress-name").textContent = name;
-    this.#fillStages();
+    openStages(name);
     this.show("progress");
     try {
       this.#job = await begin(running.signal);
       const job = hasEnded(this.#job)
         ? this.#job
-        : await follow(this.#job.id, { onJob: (job) => this.#showProgress(job), onConnection: connection }, running.signal);
-      if (!running.signal.aborted) this.#ended(job, file);
+        : await follow(this.#job.id, { onJob: showProgress, onConnection: connection }, running.signal);
+      if (!running.signal.aborted) this.#ended(job, model);
     } catch (error) {
       if (!running.signal.aborted) this.fail(problemOf(error));
     } finally {
@@ -128,45 +145,13 @@ export class Start {
     }
   }
 
-  #ended(job: Job, file: File | null): void {
+  #ended(job: Job, model: Model | null): void {
     if (job.status === "succeeded") {
-      this.#stage("show", 1);
-      this.#events.onFinished(job, file);
+      showStage("show", 1);
+      this.#events.onFinished(job, model);
     } else {
       this.fail({ code: job.error?.code ?? job.status, detail: job.error?.message ?? "The job was stopped." });
     }
-  }
-
-  #showProgress(job: Job): void {
-    const waiting = job.status === "queued";
-    this.#stage(waiting ? "queued" : (job.stage ?? lists.stages[0]!.name), job.progress);
-    const place = waiting && (job.queue_position ?? 0) > 1 ? `, ${job.queue_position! - 1} ahead of it` : "";
-    byId("stages").querySelector("[data-stage=queued] span")!.textContent = `Waiting for a worker${place}`;
-  }
-
-  /** Mark the current stage; ``done`` is the completed fraction of the upload or of the job, 0..1. */
-  #stage(stage: string, done: number): void {
-    const at = Math.max(STAGES.findIndex(([name]) => name === stage), 0);
-    const bar = byId<HTMLProgressElement>("progress-bar");
-    // The upload takes the first third of the bar: upload and job both take seconds.
-    bar.value = stage === "upload" ? done / 3 : 1 / 3 + (2 / 3) * done;
-    byId("progress-share").textContent = `${Math.round(100 * bar.value)} %`;
-    [...byId("stages").children].forEach((item, i) => {
-      const state = i < at ? "done" : i === at ? "now" : "later";
-      if (item.getAttribute("data-state") === state) return;
-      item.setAttribute("data-state", state);
-      if (state === "now") item.setAttribute("aria-current", "step");
-      else item.removeAttribute("aria-current");
-      if (state === "now") announce(STAGES[i]![1]);
-    });
-  }
-
-  #fillStages(): void {
-    byId("stages").replaceChildren(
-      ...STAGES.map(([stage, title]) =>
-        h("li", { "data-stage": stage, "data-state": "later" }, icon("check"), h("span", {}, title)),
-      ),
-    );
   }
 
   async #stop(): Promise<void> {
@@ -181,7 +166,7 @@ export class Start {
     const remedy = byId<HTMLButtonElement>("remedy").dataset["remedy"] as Remedy;
     if (remedy === "choose") this.choose();
     else if (remedy === "key") this.#askForKey();
-    else if (remedy === "retry" && this.#last !== null) void this.send(this.#last.file, this.#last.parameters);
+    else if (remedy === "retry" && this.#last !== null) void this.send(this.#last.model, this.#last.parameters);
     else this.#events.onRemedy(remedy);
   }
 
@@ -190,26 +175,9 @@ export class Start {
     dialog.showModal();
     byId("key-form").onsubmit = () => {
       apiKey.set(byId<HTMLInputElement>("key").value.trim());
-      if (this.#last !== null) void this.send(this.#last.file, this.#last.parameters);
+      if (this.#last !== null) void this.send(this.#last.model, this.#last.parameters);
       else location.reload();
     };
-  }
-
-  #listenToDrops(): void {
-    let depth = 0;
-    const mark = (by: number) => {
-      depth = Math.max(depth + by, 0);
-      document.body.classList.toggle("is-dropping", depth > 0);
-    };
-    addEventListener("dragenter", () => mark(1));
-    addEventListener("dragleave", () => mark(-1));
-    addEventListener("dragover", (event) => event.preventDefault());
-    addEventListener("drop", (event) => {
-      event.preventDefault();
-      mark(-depth);
-      const file = event.dataTransfer?.files[0];
-      if (file !== undefined) this.#take(file);
-    });
   }
 
   #fillSamples(): void {
@@ -232,7 +200,7 @@ export class Start {
   async #sendSample(name: string): Promise<void> {
     try {
       const blob = await getBlob(`samples/${name}.ply`);
-      this.#take(new File([blob], `${name}.ply`));
+      this.#send([modelOfFile(new File([blob], `${name}.ply`))], "");
     } catch (error) {
       this.fail(problemOf(error));
     }
@@ -256,6 +224,11 @@ const REMEDIES: Record<Remedy, string> = {
   key: "Enter a key",
   jobs: "Open the list of jobs",
 };
+
+function named(paths: readonly string[]): string {
+  const shown = paths.slice(0, MOST_NAMED).join(", ");
+  return paths.length > MOST_NAMED ? `${shown} and ${paths.length - MOST_NAMED} more.` : shown === "" ? "There are no files." : `${shown}.`;
+}
 
 function connection(isThere: boolean): void {
   const note = byId("offline");

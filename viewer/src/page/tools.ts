@@ -1,8 +1,8 @@
 /** The toolbar of the 3D view, the actions on selected parts, and their keyboard shortcuts. */
 
-import type { CleaveViewer } from "../component/element";
-import { byId, openDialog } from "./dom";
-import type { Modes, Session } from "./session";
+import type { CleaveViewer, Look } from "../component/element";
+import { announce, byId, openDialog, toast } from "./dom";
+import { LOOKS, type Modes, type Session } from "./session";
 
 type Toggle = "wireframe" | "concavity" | "lines";
 
@@ -32,6 +32,7 @@ export class Tools {
     this.#explode.addEventListener("input", () =>
       this.#with((now) => now.setModes({ explode: this.#explode.valueAsNumber / 100 })),
     );
+    this.#listenToLook();
     this.#listenToName();
     viewer.addEventListener("keydown", (event) => this.#key(event));
     document.addEventListener("keydown", (event) => this.#undoKey(event));
@@ -45,6 +46,7 @@ export class Tools {
     byId<HTMLButtonElement>("redo").disabled = !session.canRedo;
     for (const name of ["wireframe", "concavity", "lines"] as const) press(name, modes[name]);
     press("up", modes.up === "z");
+    for (const choice of byId("look").querySelectorAll("input")) choice.checked = choice.value === modes.look;
     this.#explode.value = String(Math.round(100 * modes.explode));
     this.#explode.setAttribute("aria-valuetext", `${this.#explode.value} %`);
     applyModes(this.#viewer, modes);
@@ -74,6 +76,30 @@ export class Tools {
     this.#with((now) => now.modes.selected.length > 0 && now.isolate(now.modes.selected));
   }
 
+  #listenToLook(): void {
+    const choices = byId("look");
+    choices.addEventListener("change", (event) => this.#choose((event.target as HTMLInputElement).value as Look));
+    this.#viewer.addEventListener("cleave-look", () => choices.removeAttribute("aria-busy"));
+    this.#viewer.addEventListener("cleave-look-error", (event) => {
+      choices.removeAttribute("aria-busy");
+      toast(`The original look is not there. ${(event as CustomEvent<{ message: string }>).detail.message}`);
+      this.#choose("parts");
+    });
+  }
+
+  #choose(look: Look): void {
+    if (look !== "parts") byId("look").setAttribute("aria-busy", "true");
+    this.#with((now) => now.setModes({ look }));
+  }
+
+  #nextLook(): void {
+    this.#with((now) => {
+      const look = LOOKS[(LOOKS.indexOf(now.modes.look) + 1) % LOOKS.length]!;
+      this.#choose(look);
+      announce(`Look: ${look}.`);
+    });
+  }
+
   #listenToName(): void {
     const name = byId<HTMLInputElement>("part-name");
     const rename = () =>
@@ -101,6 +127,7 @@ export class Tools {
       w: () => byId("wireframe").click(),
       l: () => byId("lines").click(),
       c: () => byId("concavity").click(),
+      o: () => this.#nextLook(),
       ",": () => step(-1),
       ".": () => step(1),
       "?": () => openDialog(byId<HTMLDialogElement>("keys")),
@@ -127,6 +154,7 @@ export function applyModes(viewer: CleaveViewer, modes: Modes): void {
   viewer.toggleAttribute("concavity", modes.concavity);
   viewer.toggleAttribute("no-lines", !modes.lines);
   viewer.setAttribute("up", modes.up);
+  viewer.setAttribute("look", modes.look);
   viewer.setAttribute("explode", String(modes.explode));
 }
 

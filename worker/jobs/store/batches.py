@@ -1,6 +1,6 @@
 """Batches: jobs that were submitted together and are reported together."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from datetime import datetime
 
 from pydantic import TypeAdapter
@@ -15,6 +15,7 @@ class Batch:
     owner: str | None
     created_at: datetime  # UTC
     job_ids: list[str]  # in the order of submission
+    left_out: list[str] = field(default_factory=list)  # the names of files to which no mesh of the request refers
 
 
 _BATCH = TypeAdapter(Batch)

@@ -1,0 +1,58 @@
+/** The card with the progress of one job. */
+
+import type { Job } from "./api";
+import { announce, byId, h, icon } from "./dom";
+import lists from "./lists.json";
+
+/** Titles of the stages of a job, in order. */
+const STAGES: readonly [stage: string, title: string][] = [
+  ["upload", "Sending the mesh"],
+  ["queued", "Waiting for a worker"],
+  ...lists.stages.map(({ name, title }): [string, string] => [name, title]),
+  ["show", "Drawing"],
+];
+
+export function openStages(name: string): void {
+  byId("progress-name").textContent = name;
+  byId("stages").replaceChildren(
+    ...STAGES.map(([stage, title]) =>
+      h("li", { "data-stage": stage, "data-state": "later" }, icon("check"), h("span", {}, title)),
+    ),
+  );
+}
+
+/** Return the stage of a job that has not ended. */
+export function stageOf(job: Job): string {
+  return job.status === "queued" ? "queued" : (job.stage ?? lists.stages[0]!.name);
+}
+
+export function titleOf(stage: string): string {
+  return STAGES.find(([name]) => name === stage)?.[1] ?? stage;
+}
+
+/** Return the completed fraction of upload and job. The upload is the first third: upload and job both take seconds. */
+export function shareOf(stage: string, done: number): number {
+  return stage === "upload" ? done / 3 : 1 / 3 + (2 / 3) * done;
+}
+
+/** Mark the current stage; ``done`` is the completed fraction of the upload or of the job, 0..1. */
+export function showStage(stage: string, done: number): void {
+  const at = Math.max(STAGES.findIndex(([name]) => name === stage), 0);
+  const bar = byId<HTMLProgressElement>("progress-bar");
+  bar.value = shareOf(stage, done);
+  byId("progress-share").textContent = `${Math.round(100 * bar.value)} %`;
+  [...byId("stages").children].forEach((item, i) => {
+    const state = i < at ? "done" : i === at ? "now" : "later";
+    if (item.getAttribute("data-state") === state) return;
+    item.setAttribute("data-state", state);
+    if (state === "now") item.setAttribute("aria-current", "step");
+    else item.removeAttribute("aria-current");
+    if (state === "now") announce(STAGES[i]![1]);
+  });
+}
+
+export function showProgress(job: Job): void {
+  showStage(stageOf(job), job.progress);
+  const place = job.status === "queued" && (job.queue_position ?? 0) > 1 ? `, ${job.queue_position! - 1} ahead of it` : "";
+  byId("stages").querySelector("[data-stage=queued] span")!.textContent = `Waiting for a worker${place}`;
+}
