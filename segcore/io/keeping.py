@@ -22,9 +22,13 @@ from segcore.io.gltf.kept.writer import KeptDocument, write_kept_document
 from segcore.io.gltf.writer import write_glb
 from segcore.io.limits import ReadLimits
 from segcore.io.names import SegmentNames, file_stems, segment_names
+from segcore.io.obj.materials import material_files
+from segcore.io.obj.materials_writer import write_obj_archive
+from segcore.io.obj.writer import FaceMaterials
 from segcore.io.parts.writer import write_parts
 from segcore.io.reading import mesh_of_model, open_model
 from segcore.mesh import Mesh
+from segcore.structure import NO_ENTRY
 
 _GLB_DEFAULTS: dict[str, object] = {"features": False, "layout": "tree"}  # of write_glb
 PartFormat = Literal["stl", "obj", "glb"]
@@ -170,6 +174,56 @@ def write_parts_as(
     return write_kept_parts(target, keep or mesh, hierarchy, segments, mesh=mesh, names=names)
 
 
+def write_obj_archive_as(
+    target: BinaryIO,
+    mesh: Mesh,
+    hierarchy: Hierarchy,
+    segments: int | None = None,
+    *,
+    keep: Original | None = None,
+    names: SegmentNames | None = None,
+    unit: str | None = None,
+    up: str | None = None,
+) -> None:
+    """Write a ZIP archive with OBJ and MTL, by :func:`write_obj_archive`, or with the materials of an OBJ file.
+
+    With ``keep``, ``model.obj`` has an object for each segment, in which the faces have the materials of the input; its
+    MTL files and pictures are beside it, with unchanged bytes.
+
+    Parameters
+    ----------
+    keep : the OBJ file that the mesh was read from; None for the colours of the segments.
+
+    Raises
+    ------
+    InvalidParameters
+        If the mesh was read from another format.
+    CleaveError, OSError
+        As of :func:`write_obj_archive` and :func:`write_kept`.
+    """
+    if keep is None:
+        write_obj_archive(target, mesh, hierarchy, segments, names=names, unit=unit, up=up)
+        return
+    limits = keep.limits or ReadLimits()
+    model = open_model(keep.source, keep.format, limits, neighbours=keep.neighbours)
+    if model.format != "obj":
+        raise InvalidParameters(
+            f"An OBJ file keeps the materials of OBJ files, and this is {model.format}: choose GLB with keep=all."
+        )
+    original = mesh_of_model(model, limits, appearance=False)
+    _check_same(original, hierarchy, mesh)
+    structure, files = original.structure, material_files(model.data, model.companions)
+    of_face = None if structure is None else structure.material
+    materials = FaceMaterials(
+        np.full(len(mesh.faces), NO_ENTRY, dtype=np.int32) if of_face is None else of_face,
+        () if structure is None else structure.material_names,
+        [name for name in files if name.lower().endswith(".mtl")],
+    )
+    write_obj_archive(
+        target, mesh, hierarchy, segments, names=names, unit=unit, up=up, materials=materials, files=files
+    )
+
+
 def write_glb_as(
     target: BinaryIO,
     mesh: Mesh,
@@ -206,10 +260,7 @@ def _kept_document(
     mesh = mesh_of_model(model, limits, appearance=model.format not in ("obj", "glb", "gltf"))
     if segmented is not None:
         mesh = replace(mesh, coordinates=segmented.coordinates)
-    if len(mesh.faces) != len(hierarchy.face_leaf):
-        raise _other_file(f"the file has {len(mesh.faces)} faces, and {len(hierarchy.face_leaf)} were segmented")
-    if segmented is not None and not _are_equal(mesh, segmented):
-        raise _other_file("its faces are others than those that were segmented")
+    _check_same(mesh, hierarchy, segmented)
     if model.is_gltf:
         document = read_document(model.data, model.companions)
         check_members(document)
@@ -217,6 +268,14 @@ def _kept_document(
     if model.format == "obj":
         return document_of_obj(model.data, limits, model.companions, mesh.coordinates)
     return document_of_mesh(mesh, corner_tables(mesh), Materials())
+
+
+def _check_same(mesh: Mesh, hierarchy: Hierarchy, segmented: Mesh | None) -> None:
+    """Raise InvalidMesh if a mesh is not the one that was segmented."""
+    if len(mesh.faces) != len(hierarchy.face_leaf):
+        raise _other_file(f"the file has {len(mesh.faces)} faces, and {len(hierarchy.face_leaf)} were segmented")
+    if segmented is not None and not _are_equal(mesh, segmented):
+        raise _other_file("its faces are others than those that were segmented")
 
 
 @contextmanager

@@ -6,9 +6,9 @@ from pathlib import PurePath
 from typing import Literal, TypeAlias
 
 from segcore.errors import UnsupportedFormat
-from segcore.io.keeping import write_glb_as, write_parts_as
+from segcore.io.keeping import write_glb_as, write_obj_archive_as, write_parts_as
 from segcore.io.labels import write_json, write_npy, write_seg
-from segcore.io.obj.materials_writer import write_mtl, write_obj_archive
+from segcore.io.obj.materials_writer import write_mtl
 from segcore.io.obj.writer import write_obj
 from segcore.io.ply.writer import write_ply
 from segcore.io.result import write_result
@@ -24,7 +24,7 @@ WRITE_OPTIONS: dict[WriteOption, str] = {
     "all_levels": "every number of segments in one file",
     "features": "the hierarchy as EXT_structural_metadata, with EXT_mesh_features",
     "layout": "nodes as nested as the hierarchy (tree), or all parts below the root (flat)",
-    "keep": "the input with everything that it has, divided by part",
+    "keep": "the input with everything that it has, divided by part; as OBJ, the materials and pictures of an OBJ file",
     "capped": "close every part at its cuts, for printing; so by default in 3MF and in parts as STL",
     "part_format": "the files in it",
     "colors": "the colours of segments on vertices, divided between segments, or on faces alone",
@@ -77,8 +77,8 @@ WRITERS: dict[str, Writer] = {
         "OBJ with MTL, an object and a colour per segment as ZIP",
         ".obj.zip",
         "application/zip",
-        write_obj_archive,
-        _FREE,
+        write_obj_archive_as,
+        _FREE | {"keep"},
     ),
     "3mf": Writer("3MF, a closed object per segment", ".3mf", "model/3mf", write_3mf, _MODEL | {"capped"}),
     "zip": Writer(

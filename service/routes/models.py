@@ -48,7 +48,8 @@ OPTIONS: dict[WriteOption, tuple[Any, object]] = {
             Literal["all"] | None,
             Query(
                 description="The file that was sent with everything that it has, divided by part: nodes, materials, "
-                "textures, attributes, skins, animations. Of parts, only as glb, which always keep it."
+                "textures, attributes, skins, animations. Of parts, only as glb, which always keep it; as OBJ, the "
+                "materials and pictures of an OBJ file."
             ),
         ],
         None,
@@ -101,11 +102,16 @@ OPTIONS: dict[WriteOption, tuple[Any, object]] = {
     ),
 }
 
+_SHORT_FORMAT = Annotated[PartFormat | None, Query(description="The same as part_format.")]
+
 
 def _options_of(writer: Writer) -> Callable[..., Awaitable[dict[str, Any]]]:
     """Return a dependency that reads the options of a writer from the query."""
 
     async def read(**options: Any) -> dict[str, Any]:
+        short = options.pop("format", None)
+        if short is not None:
+            options["part_format"] = short
         if "all_levels" in options:
             options["all_levels"] = options["all_levels"] == "all"
         if options.get("part_format") == "glb":
@@ -117,6 +123,8 @@ def _options_of(writer: Writer) -> Callable[..., Awaitable[dict[str, Any]]]:
         for name, (annotation, default) in OPTIONS.items()
         if name in writer.options
     ]
+    if "part_format" in writer.options:
+        parameters.append(Parameter("format", Parameter.KEYWORD_ONLY, default=None, annotation=_SHORT_FORMAT))
     read.__signature__ = Signature(parameters)  # type: ignore[attr-defined]
     return read
 

@@ -3,6 +3,7 @@
 import math
 import posixpath
 import re
+from collections.abc import Iterator
 from dataclasses import dataclass, field
 from urllib.parse import quote
 
@@ -61,13 +62,46 @@ def read_obj_materials(data: bytes, companions: Companions) -> dict[str, ObjMate
         If a file of the set is too large.
     """
     found: dict[str, ObjMaterial] = {}
+    for name, text in _libraries(data, companions):
+        for material in parse_mtl(text, name):
+            found.setdefault(material.name, material)
+    return found
+
+
+def material_files(data: bytes, companions: Companions) -> dict[str, bytes]:
+    """Return the MTL files of an OBJ file and the pictures that they name, by their paths relative to the OBJ file.
+
+    Files that are missing, and paths that lead out of the folder of the OBJ file, are left out.
+
+    Raises
+    ------
+    LimitExceeded
+        If a file of the set is too large.
+    """
+    files: dict[str, bytes] = {}
+    for name, text in _libraries(data, companions):
+        files.setdefault(posixpath.normpath(name), text)
+        for material in parse_mtl(text, name):
+            for texture in material.maps.values():
+                picture = read_picture(companions, material, texture)
+                path = posixpath.join(posixpath.dirname(name), texture.path.replace("\\", "/"))
+                if picture is not None:
+                    files.setdefault(posixpath.normpath(path), picture)
+    return {name: content for name, content in files.items() if _is_inside(name)}
+
+
+def _libraries(data: bytes, companions: Companions) -> Iterator[tuple[str, bytes]]:
+    """The names and the contents of the MTL files that are in the set."""
     for match in _LIBRARY.finditer(data):
         rest = match[1].strip().decode("utf-8", "replace")
         for name in [rest] if _companion(companions, "", rest) is not None else rest.split():
             text = _companion(companions, "", name)
-            for material in parse_mtl(text or b"", name):
-                found.setdefault(material.name, material)
-    return found
+            if text is not None:
+                yield name.replace("\\", "/"), text
+
+
+def _is_inside(path: str) -> bool:
+    return not path.startswith(("/", "../")) and path != ".." and ":" not in path.split("/")[0]
 
 
 def parse_mtl(data: bytes, library: str) -> list[ObjMaterial]:

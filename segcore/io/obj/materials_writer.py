@@ -1,13 +1,15 @@
 """The materials of a segmented OBJ file, alone and in an archive with the file."""
 
 import zipfile
+from collections.abc import Mapping
+from types import MappingProxyType
 from typing import BinaryIO
 
 from segcore.hierarchy import Hierarchy
 from segcore.io.archive import FAST, member
 from segcore.io.converting import requested
 from segcore.io.names import SegmentNames, group_names
-from segcore.io.obj.writer import LIBRARY, write_obj
+from segcore.io.obj.writer import LIBRARY, FaceMaterials, write_obj
 from segcore.io.palette import segment_colors
 from segcore.mesh import Mesh
 
@@ -40,6 +42,8 @@ def write_obj_archive(
     names: SegmentNames | None = None,
     unit: str | None = None,
     up: str | None = None,
+    materials: FaceMaterials | None = None,
+    files: Mapping[str, bytes] = MappingProxyType({}),
 ) -> None:
     """Write a ZIP archive with ``model.obj`` and ``model.mtl``.
 
@@ -48,6 +52,8 @@ def write_obj_archive(
     target : a binary file; needs ``write`` and ``flush`` only.
     names : names of segments by label.
     unit, up : as of :func:`segcore.io.obj.writer.write_obj`.
+    materials : those of the input, in place of the materials of the segments.
+    files : further members by name, in place of ``model.mtl``, if ``materials`` is given.
 
     Raises
     ------
@@ -58,6 +64,10 @@ def write_obj_archive(
     mesh = requested(mesh, unit, up)
     with zipfile.ZipFile(target, "w", compresslevel=FAST) as archive:
         with archive.open(member("model.obj", compressed=True), "w", force_zip64=True) as file:
-            write_obj(file, mesh, hierarchy, segments, names=names)  # type: ignore[arg-type]
+            write_obj(file, mesh, hierarchy, segments, names=names, materials=materials)  # type: ignore[arg-type]
+        if materials is not None:
+            for name, content in files.items():
+                archive.writestr(member(name, compressed=True), content, compresslevel=FAST)
+            return
         with archive.open(member(LIBRARY, compressed=True), "w") as file:
             write_mtl(file, hierarchy, segments, names=names)  # type: ignore[arg-type]

@@ -1,6 +1,7 @@
 """The OBJ writer: plain meshes, and segmented ones with an object and a material for each segment."""
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
 from typing import BinaryIO
 
 import numpy as np
@@ -15,6 +16,15 @@ from segcore.io.text.rows import format_rows
 from segcore.mesh import Mesh
 
 LIBRARY = "model.mtl"  # the usual name of the file with the materials
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class FaceMaterials:
+    """The materials of the faces of an OBJ file, and the MTL files that they are in."""
+
+    of_face: IntArray  # (F,) index into ``names``, -1 for none
+    names: Sequence[str]
+    libraries: Sequence[str]
 
 
 def encode_obj(mesh: Mesh) -> Iterator[bytes]:
@@ -32,6 +42,7 @@ def write_obj(
     *,
     names: SegmentNames | None = None,
     library: str = LIBRARY,
+    materials: FaceMaterials | None = None,
     unit: str | None = None,
     up: str | None = None,
 ) -> None:
@@ -46,6 +57,7 @@ def write_obj(
     ----------
     names : names of segments by label, in place of ``segment_k``; see :func:`segcore.io.names.group_names`.
     library : the name of the file with the materials, beside this one.
+    materials : those of the input, in place of the materials of the segments.
     unit, up : convert the coordinates to this unit, such as ``mm``, and to this axis up, ``y`` or ``z``; by default
         they are those of the mesh.
 
@@ -58,16 +70,31 @@ def write_obj(
     slices = segment_slices(hierarchy, segments)
     appearance = mesh.appearance or Appearance()
     target.write(b"# written by Cleave: object k, counted from 0, holds the faces with label k, in input order\n")
-    target.write(f"mtllib {one_line(library)}\n".encode())
+    for one in [library] if materials is None else materials.libraries:
+        target.write(f"mtllib {one_line(one)}\n".encode())
     for lines in _vertex_lines(mesh, appearance):
         target.write(lines)
     for label, name in enumerate(group_names(names, len(slices))):
         faces = slices[label]
-        target.write(f"o {name}\nusemtl {name}\n".encode())
+        target.write(f"o {name}\n".encode())
         for of_input in appearance.groups_of(faces):
             target.write(f"# group of the input: {comment(of_input)}\n".encode())
-        for lines in _face_lines(mesh, appearance, faces):
-            target.write(lines)
+        for material, run in [(name, faces)] if materials is None else _runs(materials, faces):
+            target.write(f"usemtl {one_line(material)}\n".encode() if material else b"")
+            for lines in _face_lines(mesh, appearance, run):
+                target.write(lines)
+
+
+def _runs(materials: FaceMaterials, faces: IntArray) -> Iterator[tuple[str, IntArray]]:
+    """The materials of some faces, each with the consecutive faces that have it; faces without one come first."""
+    given = materials.of_face[faces]
+    without = faces[given < 0]  # after a material there is no way back to none
+    if len(without):
+        yield "", without
+    faces, given = faces[given >= 0], given[given >= 0]
+    ends = np.flatnonzero(np.diff(given, append=-1))
+    for begin, end in zip([0, *(ends[:-1] + 1).tolist()], (ends + 1).tolist(), strict=True) if len(faces) else ():
+        yield materials.names[given[begin]], faces[begin:end]
 
 
 def _vertex_lines(mesh: Mesh, appearance: Appearance) -> Iterator[bytes]:

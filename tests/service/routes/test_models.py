@@ -12,9 +12,12 @@ import matplotlib.image
 import pytest
 import trimesh
 
+from cleave.settings import Settings
 from helpers.api import FACES, problem
 from service.answer.model_formats import MODELS
 from service.routes.models import OPTIONS
+from worker.jobs.store.store import JobStore
+from worker.process.perform import perform
 
 
 def test_the_model_is_a_glb_of_the_segments(client: httpx.Client, finished_job: Callable[..., str]) -> None:
@@ -156,3 +159,28 @@ def test_a_mesh_whose_unit_nobody_said_cannot_be_converted(
     path = finished_job()
     assert "not known" in str(problem(client.get(f"{path}/model.obj?unit=mm"), 422, "invalid_parameters")["detail"])
     assert "not known" in str(problem(client.get(f"{path}/parts.zip?up=z"), 422, "invalid_parameters")["detail"])
+
+
+def test_the_materials_of_an_obj_set_come_back_as_they_were(
+    client: httpx.Client, settings: Settings, store: JobStore
+) -> None:
+    library = b"newmtl paint\nKd 1 0 0\nmap_Kd a.png\n"
+    mesh = b"mtllib a.mtl\nusemtl paint\n" + b"".join(b"v %d %d %d\n" % (x, x % 2, x // 2) for x in range(5))
+    files = [("a.obj", mesh + b"f 1 2 3\nf 2 3 4\nf 3 4 5\n"), ("a.mtl", library), ("a.png", b"\x89PNG")]
+    answer = client.post("/v1/jobs", files=[("mesh", file) for file in files])
+    perform(store, settings, answer.json()["id"], lambda *_: None)
+    path = answer.headers["Location"]
+    kept = zipfile.ZipFile(io.BytesIO(client.get(f"{path}/model.obj.zip", params={"keep": "all"}).content))
+    assert kept.read("a.mtl") == library
+    assert kept.read("a.png") == b"\x89PNG"
+    assert b"usemtl paint" in kept.read("model.obj")
+
+
+def test_parts_can_be_asked_for_by_the_short_name_of_their_format(
+    client: httpx.Client, finished_job: Callable[..., str]
+) -> None:
+    path = finished_job()
+    short, long = (client.get(f"{path}/parts.zip", params={name: "glb"}) for name in ("format", "part_format"))
+    assert short.status_code == 200
+    assert short.content == long.content
+    assert all(name.endswith(".glb") for name in zipfile.ZipFile(io.BytesIO(short.content)).namelist())
