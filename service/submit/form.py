@@ -8,6 +8,7 @@ from python_multipart.exceptions import FormParserError
 from python_multipart.multipart import MultipartParser, parse_options_header
 
 from service.problems import Problem
+from service.submit.disposition import file_name_in
 from worker.jobs.store.upload import MeshUpload
 
 MAX_PARAMETERS_BYTES = 16 * 1024
@@ -102,18 +103,17 @@ class FormReader:
         _, options = parse_options_header(self._disposition)
         self._field = options.get(b"name", b"").decode("utf-8", "replace")
         if self._field == "mesh":
-            self._begin_mesh(options.get(b"filename"))
+            self._begin_mesh(file_name_in(self._disposition))
         elif self._field != "parameters":
             _refuse(f"The field {self._field[:80]!r} is unknown: the fields are mesh and parameters.")
         elif "parameters" in self._seen:
             _refuse("The form has two fields parameters: send one.")
         self._seen.add(self._field)
 
-    def _begin_mesh(self, file_name: bytes | None) -> None:
+    def _begin_mesh(self, file_name: str | None) -> None:
         if len(self._form.meshes) == self._max_files:
             raise Problem("too_large", f"The form has more than {self._max_files} files: send fewer at a time.")
-        name = None if file_name is None else file_name.decode("utf-8", "replace")
-        self._form.meshes.append(ReceivedMesh(self._begin_upload(), name))
+        self._form.meshes.append(ReceivedMesh(self._begin_upload(), file_name))
 
     def _take_data(self, data: bytes, start: int, end: int) -> None:
         if self._field == "mesh":

@@ -15,6 +15,7 @@ from segcore.io import declared_format
 from segcore.parameters import SegmentationParameters
 from service.problems import Problem
 from service.submit.body import body_chunks, declared_length, media_type
+from service.submit.disposition import file_name_in
 from service.submit.file_set import MOST_FILES, one_model
 from service.submit.form import (
     MAX_ENVELOPE_BYTES,
@@ -54,7 +55,8 @@ async def receive_mesh(request: Request, settings: Settings, begin_upload: Calla
     upload = begin_upload()
     async for chunk in body_chunks(request, settings):
         await run_in_threadpool(write_capped, upload, chunk, settings.max_upload_bytes)
-    return Form([ReceivedMesh(upload, None)])
+    disposition = request.headers.get("content-disposition", "").encode("latin-1")
+    return Form([ReceivedMesh(upload, file_name_in(disposition))])
 
 
 async def receive_form(

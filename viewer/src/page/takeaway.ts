@@ -123,9 +123,9 @@ function curlLines({ job, fileName, session }: Shown, chosen: [string, unknown][
   const key = apiKey.get() === "" ? "" : ` -H "Authorization: Bearer $CLEAVE_KEY"`;
   const form = [`mesh=@${fileName}`, ...(chosen.length === 0 ? [] : [`parameters=${JSON.stringify(Object.fromEntries(chosen))}`])];
   return [
-    `curl -f${key} ${form.map((field) => `-F ${shellWord(field)}`).join(" ")} ${root}v1/jobs`,
-    `curl -f${key} -o ${shellWord(`${stem(fileName)}.glb`)} "${root}${jobPath(job)}/model.glb${query(session)}${nameQuery(session)}"`,
-    `curl -f${key} "${root}${jobPath(job)}/labels${query(session)}"`,
+    `curl --fail-with-body${key} ${form.map((field) => `-F ${shellWord(field)}`).join(" ")} ${root}v1/jobs`,
+    `curl --fail-with-body${key} -o ${shellWord(`${stem(fileName)}.glb`)} "${root}${jobPath(job)}/model.glb${query(session)}${nameQuery(session)}"`,
+    `curl --fail-with-body${key} "${root}${jobPath(job)}/labels${query(session)}"`,
   ].join("\n");
 }
 
