@@ -201,6 +201,7 @@ class FormatsDocument(BaseModel):
     models: list[FormatDocument] = Field(description="Formats of the segmented mesh.")
     max_upload_bytes: int
     max_faces: int
+    version: str = Field(description="Of the software; results depend on it.")
 
 
 class WebhookSecret(BaseModel):

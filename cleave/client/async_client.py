@@ -110,6 +110,10 @@ class AsyncClient:
         submission = submission_of(mesh, companions=companions, parameters=parameters, format=format, unit=unit, up=up)
         return await self._run(flows.segment(submission, flows.level_of(segments, granularity)))
 
+    async def version(self) -> str:
+        """Return the version of the software of the server."""
+        return await self._run(flows.version())
+
     async def job(self, job_id: str, *, wait_s: float = 0.0) -> Job:
         """Return a job; with ``wait_s`` the server answers when the job has ended, or after that time."""
         return await self._run(flows.get(job_id, wait_s))

@@ -52,6 +52,8 @@ class Submission:
 
     def call(self, wait_s: float, level: Mapping[str, str] | None = None) -> Call:
         name = self.file_name or (self.mesh.name if isinstance(self.mesh, Path) else None)
+        if name is not None:  # HTTP cannot carry the bytes of a name that is not UTF-8
+            name = name.encode("utf-8", "surrogateescape").decode("utf-8", "replace")
         params = {
             "file_name": name,
             "format": self.format,
@@ -77,6 +79,10 @@ class Submission:
             body=body,
             wait_s=wait_s,
         )
+
+
+def version() -> Flow[str]:
+    return str((yield Call(method="GET", path="/v1/formats")).json()["version"])
 
 
 def submit(submission: Submission) -> Flow[Job]:

@@ -121,6 +121,10 @@ class Client:
         submission = submission_of(mesh, companions=companions, parameters=parameters, format=format, unit=unit, up=up)
         return self._run(flows.segment(submission, flows.level_of(segments, granularity)))
 
+    def version(self) -> str:
+        """Return the version of the software of the server."""
+        return self._run(flows.version())
+
     def job(self, job_id: str, *, wait_s: float = 0.0) -> Job:
         """Return a job; with ``wait_s`` the server answers when the job has ended, or after that time."""
         return self._run(flows.get(job_id, wait_s))

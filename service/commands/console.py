@@ -3,6 +3,7 @@
 import os
 import sys
 import threading
+from pathlib import Path
 from types import TracebackType
 from typing import TextIO
 
@@ -23,6 +24,11 @@ def forget_output() -> None:
     nowhere = os.open(os.devnull, os.O_WRONLY)
     os.dup2(nowhere, sys.stdout.fileno())
     os.close(nowhere)
+
+
+def shown_name(path: Path) -> str:
+    """Return the name of a file for people, with bytes that are no text escaped."""
+    return path.name.encode("utf-8", "surrogateescape").decode("utf-8", "backslashreplace")
 
 
 def say_beside(text: str) -> None:

@@ -5,6 +5,7 @@ in ``COMMANDS``. Only the module of the given command is imported: `cleave --hel
 """
 
 import argparse
+import io
 import sys
 from collections.abc import Sequence
 from importlib import import_module
@@ -40,6 +41,9 @@ Cuts a 3D mesh into the parts that a person would name.
 def main(arguments: Sequence[str] | None = None) -> int:
     """Run a command and return its exit status. Expected errors print one line and return 2."""
     words = sys.argv[1:] if arguments is None else list(arguments)
+    for stream in (sys.stdout, sys.stderr):
+        if isinstance(stream, io.TextIOWrapper):
+            stream.reconfigure(errors="backslashreplace")  # the names of files may be no text that it can show
     try:
         choices = _parser(words).parse_args(words)
         return choices.run(choices) or 0

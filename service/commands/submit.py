@@ -4,19 +4,23 @@ import argparse
 import os
 import sys
 import threading
+from collections import Counter
 from collections.abc import Sequence
 from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
 
 from cleave.client import Client
+from cleave.client.errors import ClientError
+from segcore.errors import CleaveError
 from segcore.io import model_in_folder
 from service.commands.arguments import add_coordinates, add_level, add_parameters, add_structure
 from service.commands.console import ProgressBoard, say
 from service.commands.server_results import DEFAULT_RESULTS, RESULTS, result_names
-from service.commands.submission import Submission, submit_file
+from service.commands.submission import Ending, Session, Submission, submit_file
+from service.commands.submit_record import SubmitRecord
 
 _DEFAULT_SERVER = "http://127.0.0.1:8000"
-_SOME_FAILED = 1  # exit status
+_SOME_FAILED, _NOTHING_TRIED = 1, 2  # exit statuses
 _CONCURRENT_FILES = 4  # in upload or with a job that is waited for; set by hand, so that a few workers are kept busy
 _RETRIES = 8  # of a request; the client waits about a minute between them, enough for a server that is restarted
 
@@ -55,26 +59,28 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 def run(choices: argparse.Namespace) -> int:
     """Submit the files, wait for their jobs, save their results and print a summary.
 
-    A file whose results exist is skipped. The key of a job is derived from the content of the file and the parameters,
-    so a second run finds the jobs of the first.
+    A result that was made from the same file, with the same options, by the same version of the server is kept. The key
+    of a job is derived from the file, the parameters and that version, so a second run finds the jobs of the first;
+    those that failed are tried again. A file that cannot be read, or has no result, does not end the run.
 
     Raises
     ------
     OSError
-        If a file cannot be read, or a result cannot be written.
-    UnsupportedFormat
-        If a folder does not have exactly one mesh.
+        If the folder of the results cannot be made.
     """
     try:
         say(_submit_files(choices, os.environ.get("CLEAVE_API_KEY")))
     except SomeFailed as failed:
         print(f"cleave: {failed}", file=sys.stderr)
         return _SOME_FAILED
+    except ClientError as error:
+        print(f"cleave: {error}", file=sys.stderr)
+        return _NOTHING_TRIED
     return 0
 
 
 def _submit_files(choices: argparse.Namespace, api_key: str | None) -> str:
-    """Submit all files and return a summary; raise SomeFailed if a job failed or the server did not answer."""
+    """Submit all files and return a summary; raise SomeFailed if some have no results."""
     submissions = _submissions(choices)
     choices.output.mkdir(parents=True, exist_ok=True)
     stopping = threading.Event()
@@ -83,25 +89,30 @@ def _submit_files(choices: argparse.Namespace, api_key: str | None) -> str:
         Client(choices.server, api_key, retries=_RETRIES) as client,
         ThreadPoolExecutor(_CONCURRENT_FILES) as pool,
     ):
-        futures = [pool.submit(submit_file, client, submission, board, stopping) for submission in submissions]
+        session = Session(client, board, SubmitRecord(choices.output), stopping, client.version())
+        futures = [pool.submit(submit_file, session, submission) for submission in submissions]
         try:
-            errors = [future.result() for future in futures]
+            endings = [future.result() for future in futures]
         except BaseException:
             stopping.set()
             pool.shutdown(cancel_futures=True)
             raise
-    failed = [error for error in errors if error]
-    summary = f"{len(errors) - len(failed)} of {len(errors)} files have their results in {choices.output}"
+    return _summary(endings, choices.output)
+
+
+def _summary(endings: Sequence[tuple[Ending | None, str]], folder: Path) -> str:
+    """Return the numbers of files by their endings; raise SomeFailed with the reasons if some failed."""
+    failed = [text for ending, text in endings if ending is None]
+    counts = Counter(ending for ending, _ in endings)
+    done = f"{len(endings) - len(failed)} of {len(endings)} files have their results in {folder}"
+    parts = f"{counts['made']} made, {counts['kept']} kept, {len(failed)} failed"
     if failed:
-        raise SomeFailed(f"{summary}; the others: {'; '.join(failed)}")
-    return summary
+        raise SomeFailed(f"{done} ({parts}): {'; '.join(failed)}")
+    return f"{done} ({parts})"
 
 
 def _submissions(choices: argparse.Namespace) -> list[Submission]:
-    for path in choices.files:
-        path.stat()  # raises OSError before anything is sent
-    files = [model_in_folder(path) for path in choices.files]
-    names = _result_names(files)
+    names = _result_names([_mesh_of(path) for path in choices.files])
     parameters = dict(choices.parameters) | ({"structure": choices.structure} if choices.structure else {})
     return [
         Submission(
@@ -117,8 +128,16 @@ def _submissions(choices: argparse.Namespace) -> list[Submission]:
             again=choices.again,
             open_parts=choices.open,
         )
-        for path, name in zip(files, names, strict=True)
+        for path, name in zip(choices.files, names, strict=True)
     ]
+
+
+def _mesh_of(path: Path) -> Path:
+    """Return the mesh file in a folder; the path itself if it is no folder, or its one mesh cannot be told."""
+    try:
+        return model_in_folder(path)
+    except (OSError, CleaveError):
+        return path
 
 
 def _result_names(files: Sequence[Path]) -> list[str]:
