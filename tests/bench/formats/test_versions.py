@@ -41,7 +41,7 @@ def test_both_versions_are_timed(folder: Path) -> None:
     ]
     for times in compare(ROOT, lines, 2):
         assert min(times) > 0
-    assert (folder / "mesh.obj").read_bytes().count(b"\ng ") == 8
+    assert (folder / "mesh.obj").read_bytes().count(b"\no ") == 8
     with pytest.raises(BenchmarkError, match=r"could not read .*missing\.off"):
         next(compare(ROOT, [f"read {folder / 'missing.off'}"], 1))
 

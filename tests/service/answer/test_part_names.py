@@ -18,7 +18,7 @@ def test_every_model_contains_the_names(client: httpx.Client, finished_job: Call
     for path, words in {
         "model.glb": b'"left arm"',
         "model.ply": b"comment label 1 is left arm",
-        "model.obj": b"g left_arm",
+        "model.obj": b"o left_arm",
     }.items():
         named = client.get(f"{job}/{path}", params=NAMES)
         assert words in named.content
@@ -44,4 +44,4 @@ def test_a_name_is_escaped(client: httpx.Client, finished_job: Callable[..., str
     with zipfile.ZipFile(io.BytesIO(client.get(f"{job}/parts.zip", params={"name": name}).content)) as archive:
         assert re.fullmatch("segment_0+_etc_x_a_b.stl", archive.namelist()[0])
     lines = client.get(f"{job}/model.obj", params={"name": name}).text.splitlines()
-    assert next(line for line in lines if line.startswith("g ")).startswith('g ../../etc/x"')
+    assert next(line for line in lines if line.startswith("o ")).startswith('o ../../etc/x"')
