@@ -28,7 +28,7 @@ def test_every_model_contains_the_names(client: httpx.Client, finished_job: Call
     with zipfile.ZipFile(io.BytesIO(client.get(f"{job}/model.3mf", params=NAMES).content)) as package:
         assert b'"left arm"' in package.read("3D/3dmodel.model")
     with zipfile.ZipFile(io.BytesIO(client.get(f"{job}/parts.zip", params=NAMES).content)) as archive:
-        assert archive.namelist() == ["segment_0.stl", "segment_1_left_arm.stl"]
+        assert archive.namelist() == ["segment_0.stl", "segment_1_left_arm.stl", "parts.json"]
 
 
 @pytest.mark.parametrize("name", ["left arm", "1:", "-1:x", ":x", "1: "])
