@@ -42,6 +42,20 @@ def test_a_file_that_is_too_large_is_refused_before_it_is_sent(visit: Visit) -> 
     assert not [url for url in visit.requests if url.endswith("/v1/jobs")]
 
 
+@pytest.mark.parametrize(
+    ("status", "expected", "sentence"),
+    [(413, "too_large", "client_max_body_size"), (502, "unexpected", "Cleave itself does not")],
+)
+def test_what_a_proxy_answers_is_explained(visit: Visit, status: int, expected: str, sentence: str) -> None:
+    visit.open()
+    visit.page.route("**/v1/jobs", lambda route: route.fulfill(status=status, body="<html>nginx</html>"))
+    visit.drop("any.ply", small_burr() + b" ")
+    code, text, _ = problem(visit)
+    assert code == expected
+    assert sentence in text
+    visit.faults = [fault for fault in visit.faults if str(status) not in fault]
+
+
 def test_going_back_from_an_error_returns_to_the_previous_result(visit: Visit, job: str) -> None:
     visit.open_job(job)
     visit.drop("document.pdf", b"%PDF-1.7 and so on, too")

@@ -141,6 +141,19 @@ async function get<T>(path: string): Promise<T> {
   return (await (await request(path)).json()) as T;
 }
 
+const NO_ANSWER = { code: "unexpected", detail: "A proxy in front of Cleave answers, but Cleave itself does not: it may be starting." };
+
+/** What answers of a proxy mean, which do not come from Cleave. */
+const OF_PROXIES: Readonly<Record<number, Problem>> = {
+  413: {
+    code: "too_large",
+    detail: "A proxy in front of Cleave refuses uploads of this size: its operator can raise the limit, in nginx client_max_body_size.",
+  },
+  502: NO_ANSWER,
+  503: NO_ANSWER,
+  504: NO_ANSWER,
+};
+
 function problemIn(text: string, status: number): Problem {
   try {
     const { code, detail } = JSON.parse(text) as Partial<Problem>;
@@ -148,5 +161,5 @@ function problemIn(text: string, status: number): Problem {
   } catch {
     // The response is not from Cleave, for example an HTML error page of a proxy.
   }
-  return { code: status === 401 ? "unauthorized" : "unexpected", detail: `The server responded with status ${status}.` };
+  return OF_PROXIES[status] ?? { code: status === 401 ? "unauthorized" : "unexpected", detail: `The server responded with status ${status}.` };
 }
