@@ -6,6 +6,8 @@ from contextlib import suppress
 from pathlib import Path
 from typing import get_args
 
+from pydantic.fields import FieldInfo
+
 from cleave.settings import Settings
 from segcore.coordinates import Axis, Unit, unit_named
 from segcore.errors import InvalidParameters
@@ -78,9 +80,20 @@ def add_workers(parser: argparse.ArgumentParser, least: int) -> None:
 
 def add_settings_help(parser: argparse.ArgumentParser) -> None:
     """List the settings below the arguments in the help of a command."""
-    rows = [(f"CLEAVE_{name.upper()}", field.description or "") for name, field in Settings.model_fields.items()]
+    rows = [
+        (f"CLEAVE_{name.upper()}", f"{field.description} Default: {_default_of(field)}.")
+        for name, field in Settings.model_fields.items()
+    ]
     parser.formatter_class = argparse.RawDescriptionHelpFormatter
-    parser.epilog = "settings from the environment:\n" + "\n".join(f"  {name:<26} {text}" for name, text in rows)
+    parser.epilog = "settings from the environment:\n" + "\n".join(f"  {name:<27} {text}" for name, text in rows)
+
+
+def _default_of(field: FieldInfo) -> str:
+    if field.default_factory is not None:
+        return "a folder of the user"
+    if field.default in (None, ""):
+        return "none"
+    return f"{field.default:g}" if isinstance(field.default, float) else str(field.default).lower()
 
 
 def port(text: str) -> int:

@@ -1,11 +1,13 @@
 """The command `cleave`: help, version, and expected errors in one line with exit status 2."""
 
+import re
 import subprocess
 import sys
 from pathlib import Path
 
 import pytest
 
+from cleave.settings import Settings
 from service.commands.main import COMMANDS, main
 
 
@@ -112,3 +114,13 @@ def test_the_kernel_cache_is_in_the_data_folder_that_is_given(tmp_path: Path, mo
         with pytest.raises(SystemExit):
             main(["serve", *options, "--help"])
     assert folders == [tmp_path / "default", tmp_path / "given", tmp_path / "given"]
+
+
+@pytest.mark.parametrize("command", ["serve", "worker"])
+def test_the_help_has_every_setting_with_its_default(command: str, capsys: pytest.CaptureFixture[str]) -> None:
+    with pytest.raises(SystemExit):
+        main([command, "--help"])
+    text = capsys.readouterr().out
+    for name in Settings.model_fields:
+        assert re.search(rf"^  CLEAVE_{name.upper()} +\S.* Default: \S.*\.$", text, re.MULTILINE), name
+    assert "Default: 8589934592." in text
