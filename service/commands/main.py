@@ -25,7 +25,10 @@ COMMANDS = {
     "submit": "segment many meshes on a server",
     "key": "make an API key",
     "doctor": "check an installation and report what to fix",
+    "completion": "print the completion script of a shell",
 }
+
+_EVERY = "*"  # in place of the name of a command
 
 _DESCRIPTION = """\
 Cuts a 3D mesh into the parts that a person would name.
@@ -69,12 +72,17 @@ def _parser(words: Sequence[str]) -> _Parser:
     given = next((word for word in words if not word.startswith("-")), None)
     for name, summary in COMMANDS.items():
         command = commands.add_parser(name, help=summary)
-        if name == given:
+        if given in (name, _EVERY):
             _prepare_kernel_cache(words)
             module = import_module(f"service.commands.{name}")
             module.add_arguments(command)
             command.set_defaults(run=module.run)
     return parser
+
+
+def complete_parser() -> argparse.ArgumentParser:
+    """Return a parser of every command with its arguments."""
+    return _parser([_EVERY])
 
 
 def _prepare_kernel_cache(words: Sequence[str]) -> None:
