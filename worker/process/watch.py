@@ -12,7 +12,7 @@ from cleave.settings import Settings
 
 StopReason: TypeAlias = Literal["ended elsewhere", "timed_out", "shutdown"]
 
-_TICK_S = 1.0  # between two checks: a cancel or a timeout takes effect within this time
+_TICK_S = 1.0  # between two checks: a timeout takes effect within this time, and a cancel within two
 
 
 class Watch:
@@ -21,6 +21,7 @@ class Watch:
     def __init__(self, settings: Settings) -> None:
         self._settings = settings
         self._stop_by = float("inf")  # on the monotonic clock
+        self._had_ended = False  # whether the job had ended at the tick before
 
     def stop_within(self, grace_s: float) -> None:
         """Kill the current work-horse if it still runs after a time."""
@@ -44,6 +45,7 @@ class Watch:
         """
         overruns_at = time.monotonic() + self._settings.job_timeout_s
         stopped_for: StopReason | None = None
+        self._had_ended = False
         while not select.select([exited], [], [], _TICK_S)[0]:
             on_tick()
             stopped_for = stopped_for or self._reason_to_stop(has_ended, overruns_at)
@@ -54,7 +56,9 @@ class Watch:
 
     def _reason_to_stop(self, has_ended: Callable[[], bool], overruns_at: float) -> StopReason | None:
         with suppress(OSError):  # the store may answer again before the job ends
-            if has_ended():
+            # One tick later: a work-horse that has just given the job its outcome still has to count and to log it.
+            had_ended, self._had_ended = self._had_ended, has_ended()
+            if had_ended and self._had_ended:
                 return "ended elsewhere"
         if time.monotonic() > overruns_at:
             return "timed_out"

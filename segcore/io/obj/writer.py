@@ -77,9 +77,11 @@ def write_obj(
     for label, name in enumerate(group_names(names, len(slices))):
         faces = slices[label]
         target.write(f"o {name}\n".encode())
+        if materials is None:
+            target.write(f"usemtl {name}\n".encode())
         for of_input in appearance.groups_of(faces):
             target.write(f"# group of the input: {comment(of_input)}\n".encode())
-        for material, run in [(name, faces)] if materials is None else _runs(materials, faces):
+        for material, run in [("", faces)] if materials is None else _runs(materials, faces):
             target.write(f"usemtl {one_line(material)}\n".encode() if material else b"")
             for lines in _face_lines(mesh, appearance, run):
                 target.write(lines)
