@@ -9,9 +9,9 @@ from cleave.settings import Settings
 from worker.process.watch import Watch
 
 
-def watched(monkeypatch: pytest.MonkeyPatch, seconds: float, ends_at: float) -> tuple[str | None, float]:
+def watched(monkeypatch: pytest.MonkeyPatch, tick_s: float, seconds: float, ends_at: float) -> tuple[str | None, float]:
     """Watch a child that runs for a time, and whose job ends at another; return why it was killed, and when it ended."""
-    monkeypatch.setattr("worker.process.watch._TICK_S", 0.2)
+    monkeypatch.setattr("worker.process.watch._TICK_S", tick_s)
     reader, writer = os.pipe()
     child = os.fork()
     if child == 0:
@@ -25,10 +25,10 @@ def watched(monkeypatch: pytest.MonkeyPatch, seconds: float, ends_at: float) -> 
 
 
 def test_a_child_that_has_just_given_its_job_an_outcome_may_end_by_itself(monkeypatch: pytest.MonkeyPatch) -> None:
-    assert watched(monkeypatch, seconds=0.5, ends_at=0.3)[0] is None
+    assert watched(monkeypatch, tick_s=3.0, seconds=3.5, ends_at=1.0)[0] is None
 
 
 def test_a_child_whose_job_was_ended_by_others_is_killed_soon(monkeypatch: pytest.MonkeyPatch) -> None:
-    reason, took_s = watched(monkeypatch, seconds=60, ends_at=0.3)
+    reason, took_s = watched(monkeypatch, tick_s=0.2, seconds=60, ends_at=0.3)
     assert reason == "ended elsewhere"
     assert took_s < 30
