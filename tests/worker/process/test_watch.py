@@ -10,7 +10,7 @@ from worker.process.watch import Watch
 
 
 def watched(monkeypatch: pytest.MonkeyPatch, tick_s: float, seconds: float, ends_at: float) -> tuple[str | None, float]:
-    """Watch a child that runs for a time, and whose job ends at another; return why it was killed, and when it ended."""
+    """Watch a child that runs for a time, and whose job ends at another; return why it was killed, and its time."""
     monkeypatch.setattr("worker.process.watch._TICK_S", tick_s)
     reader, writer = os.pipe()
     child = os.fork()
