@@ -35,7 +35,7 @@ def run(choices: argparse.Namespace) -> None:
 
     parser = complete_parser()
     _mark_files(parser, shtab.FILE)
-    say(shtab.complete(parser, shell=choices.shell))
+    say(shtab.complete(parser, choices.shell))
 
 
 def _mark_files(parser: argparse.ArgumentParser, files: object) -> None:
