@@ -32,10 +32,8 @@ WRITE_OPTIONS: dict[WriteOption, str] = {
     "up": "the axis that points up, y or z, if that of the mesh is known",
 }
 _MODEL: frozenset[WriteOption] = frozenset({"names"})
-_FREE: frozenset[WriteOption] = _MODEL | {
-    "unit",
-    "up",
-}  # of formats whose coordinates have no unit and no axis of their own
+# Of formats whose coordinates have no unit and no axis of their own.
+_FREE: frozenset[WriteOption] = _MODEL | {"unit", "up"}
 
 
 @dataclass(frozen=True, slots=True)

@@ -7,7 +7,8 @@ from segcore.io import with_coordinates
 from segcore.io.result import read_result
 from segcore.levels import Fineness
 from service.commands.arguments import add_coordinates, add_level
-from service.commands.outputs import STANDARD, add_outputs, check_outputs, output_options, standard_input, write_model
+from service.commands.inputs import STANDARD, standard_input
+from service.commands.outputs import add_outputs, check_outputs, output_options, write_model
 from service.commands.summary import level_summary
 
 

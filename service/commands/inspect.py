@@ -3,24 +3,15 @@
 import argparse
 import json
 from dataclasses import asdict
-from pathlib import Path
 
-import segcore
 from segcore.report import MeshReport, mesh_report
-from service.commands.arguments import add_coordinates
 from service.commands.console import say
-from service.commands.outputs import standard_input
+from service.commands.inputs import add_mesh, read_input
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     parser.description = "Report what a mesh file contains: components, borders, and defects that segmentation repairs."
-    parser.add_argument(
-        "mesh",
-        type=Path,
-        metavar="MESH",
-        help="the mesh file, or a folder or ZIP archive with one; - for the standard input",
-    )
-    add_coordinates(parser)
+    add_mesh(parser)
     parser.add_argument("--json", action="store_true", help="print the report as JSON")
 
 
@@ -34,11 +25,7 @@ def run(choices: argparse.Namespace) -> None:
     OSError
         If the file cannot be read.
     """
-    report = mesh_report(
-        segcore.read_mesh(
-            standard_input(choices.mesh), appearance=True, neighbours=True, unit=choices.unit, up=choices.up
-        )
-    )
+    report = mesh_report(read_input(choices))
     if choices.json:
         say(json.dumps(asdict(report), indent=2, allow_nan=False))
     else:

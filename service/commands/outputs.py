@@ -15,9 +15,9 @@ from segcore.io.ply.writer import PlyColors
 from segcore.io.writing import WRITERS, Writer, writer_for
 from segcore.mesh import Mesh
 from service.commands.console import forget_output, say, say_beside
+from service.commands.inputs import STANDARD
 from worker.jobs.objects.durable import replace_file
 
-STANDARD = Path("-")  # the standard input or output
 _EXTENSIONS = [writer.extension for writer in WRITERS.values()]
 
 
@@ -201,11 +201,6 @@ def _write_standard(write: Callable[[BinaryIO], object]) -> None:
         sys.stdout.buffer.flush()
     except BrokenPipeError:
         forget_output()
-
-
-def standard_input(path: Path) -> Path | BinaryIO:
-    """Return the file to read: the whole standard input for -, else the path."""
-    return io.BytesIO(sys.stdin.buffer.read()) if path == STANDARD else path
 
 
 def _output(text: str) -> Path:

@@ -13,15 +13,14 @@ from segcore.io.labels import hierarchy_document, write_seg
 from segcore.io.result import write_result
 from segcore.levels import Fineness
 from segcore.report import StructureCounts, structure_counts, structure_note
-from service.commands.arguments import add_coordinates, add_level, add_parameters, add_structure
+from service.commands.arguments import add_level, add_parameters, add_structure
 from service.commands.console import ProgressBar
+from service.commands.inputs import STANDARD, add_mesh, read_input
 from service.commands.outputs import (
-    STANDARD,
     OutputOptions,
     add_outputs,
     check_outputs,
     output_options,
-    standard_input,
     write_file,
     write_model,
 )
@@ -30,13 +29,7 @@ from service.commands.summary import level_summary, part_lines
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     parser.description = "Segment one mesh and write the outputs; without outputs, only a summary is printed."
-    parser.add_argument(
-        "mesh",
-        type=Path,
-        metavar="MESH",
-        help="the mesh file, or a folder or ZIP archive with one; - for the standard input",
-    )
-    add_coordinates(parser)
+    add_mesh(parser)
     add_level(parser, "chosen by the mesh")
     parser.add_argument("--max-segments", type=int, metavar="N", help="end of the hierarchy (64, or K, or bodies)")
     parser.add_argument("--preset", metavar="NAME", help="a published method, such as chahhou2014")
@@ -67,8 +60,7 @@ def run(choices: argparse.Namespace) -> None:
         bar("prepare", 0.0)
         segcore.warm_up()
         bar("read", 0.0)
-        source = standard_input(choices.mesh)
-        mesh = segcore.read_mesh(source, appearance=True, neighbours=True, unit=choices.unit, up=choices.up)
+        mesh = read_input(choices)
         surface = segcore.build_surface(mesh)
         hierarchy = segcore.segment(mesh, parameters, bar, surface)
         segments = fineness.segments_of(hierarchy)

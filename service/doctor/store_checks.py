@@ -1,6 +1,5 @@
 """Checks of the store and the data folder: access, clock, permissions and free space."""
 
-import os
 import secrets
 import shutil
 import stat
@@ -11,6 +10,7 @@ from pathlib import Path
 from cleave.settings import InvalidSettings, Settings
 from service.doctor.findings import Finding, error, ok, warning
 from service.doctor.queue_checks import check_clock
+from service.host.folders import can_be_made, nearest_existing
 from worker.jobs.objects.interface import ObjectStorage
 from worker.jobs.store.opening import open_store
 
@@ -43,18 +43,13 @@ def _store(settings: Settings) -> Iterator[Finding]:
 
 def _future_folder(data_dir: Path) -> Finding:
     """Check that a data folder can be made, without making it."""
-    existing = _nearest_existing(data_dir)
-    if existing.is_dir() and os.access(existing, os.W_OK | os.X_OK):
+    if can_be_made(data_dir):
         return ok("data folder", f"{data_dir} does not exist yet, and the first start can make it.")
     return error(
         "data folder",
-        f"{data_dir} does not exist, and {existing} cannot be written.",
+        f"{data_dir} does not exist, and {nearest_existing(data_dir)} cannot be written.",
         "Make the folder for this user, or set CLEAVE_DATA_DIR.",
     )
-
-
-def _nearest_existing(folder: Path) -> Path:
-    return next(one for one in (folder, *folder.parents) if one.exists())
 
 
 def _clock_ahead_s(objects: ObjectStorage) -> float:
@@ -81,7 +76,7 @@ def _data_folder(data_dir: Path) -> Iterator[Finding]:
 
 
 def _disk(settings: Settings) -> Iterator[Finding]:
-    existing = _nearest_existing(settings.data_dir)
+    existing = nearest_existing(settings.data_dir)
     free = shutil.disk_usage(existing).free
     text = f"{free / 2**30:.1f} GiB are free in {existing}"
     if free < settings.max_upload_bytes:

@@ -1,7 +1,7 @@
 """Refusal of query parameters that a route does not have, so that a misspelt one is never ignored."""
 
 import difflib
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterator
 
 from fastapi import Request
 from fastapi.dependencies.models import Dependant
@@ -25,12 +25,14 @@ async def refuse_unknown_parameters(request: Request) -> None:
     Problem
         If the query has a parameter that the route does not have; the message names the nearest one.
     """
+    if not request.query_params:
+        return
     route = request.scope["route"]
     assert isinstance(route, APIRoute)
     known = set(_query_parameters(route.dependant))
     for name in request.query_params:
         if name not in known:
-            raise Problem("invalid_request", unknown_name("query parameter", name, known))
+            raise Problem("invalid_request", _sentence(name, sorted(known)))
 
 
 def _query_parameters(dependant: Dependant) -> Iterator[str]:
@@ -39,13 +41,12 @@ def _query_parameters(dependant: Dependant) -> Iterator[str]:
         yield from _query_parameters(needed)
 
 
-def unknown_name(what: str, name: str, known: Iterable[str]) -> str:
+def _sentence(name: str, known: list[str]) -> str:
     """Return a sentence for a name that is not known: the nearest known one, or all of them."""
-    names = sorted(set(known))
-    shown = f"There is no {what} {name[:80]!r} here"
-    near = difflib.get_close_matches(name, names, 1)
+    shown = f"There is no query parameter {name[:80]!r} here"
+    near = difflib.get_close_matches(name, known, 1)
     if name in _ELSEWHERE:
         return f"{shown}: {_ELSEWHERE[name]}."
     if near:
         return f"{shown}: the nearest one is {near[0]!r}."
-    return f"{shown}; there are {', '.join(names)}." if names else f"{shown}, and no other."
+    return f"{shown}; there are {', '.join(known)}." if known else f"{shown}, and no other."

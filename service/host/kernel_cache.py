@@ -8,6 +8,8 @@ from collections.abc import Callable
 from contextlib import suppress
 from pathlib import Path
 
+from service.host.folders import can_be_made
+
 _VARIABLE = "NUMBA_CACHE_DIR"
 
 
@@ -21,14 +23,9 @@ def prepare_kernel_cache(data_dir: Callable[[], Path]) -> None:
     if os.access(shipped or Path(__file__).parents[2] / "segcore", os.W_OK):
         return
     caches = data_dir() / "kernels"
-    if not _can_be_made(caches):
+    if not can_be_made(caches):
         return  # segcore finds another place
     os.environ[_VARIABLE] = str(_copy(Path(shipped), caches) if shipped and Path(shipped).is_dir() else caches)
-
-
-def _can_be_made(folder: Path) -> bool:
-    existing = next(one for one in (folder, *folder.parents) if one.exists())
-    return existing.is_dir() and os.access(existing, os.W_OK | os.X_OK)
 
 
 def _copy(shipped: Path, caches: Path) -> Path:

@@ -52,26 +52,31 @@ def get_sample(name: str) -> Response:
     return Response(sample_ply(name), headers=headers, media_type="model/ply")
 
 
-class _File(NamedTuple):
+class _Body(NamedTuple):
     content: bytes
-    packed: bytes  # with gzip
+    tag: str  # its ETag
 
 
 def _answer(request: Request, name: str, media_type: str, headers: dict[str, str]) -> Response:
-    file = _files()[name]
-    is_packed = not media_type.startswith("image/png") and takes_gzip(request.headers.get("accept-encoding", ""))
-    body = file.packed if is_packed else file.content
-    tag = entity_tag(body)
-    headers = {**headers, "ETag": tag, "Vary": "Accept-Encoding"}
-    if is_current(request, tag):
+    is_packed = media_type != "image/png" and takes_gzip(request.headers.get("accept-encoding", ""))
+    body = _packed(name) if is_packed else _files()[name]
+    headers = {**headers, "ETag": body.tag, "Vary": "Accept-Encoding"}
+    if is_current(request, body.tag):
         return Response(status_code=304, headers=headers)
     if is_packed:
         headers["Content-Encoding"] = "gzip"
-    return Response(body, headers=headers, media_type=media_type)
+    return Response(body.content, headers=headers, media_type=media_type)
 
 
 @cache
-def _files() -> dict[str, _File]:
+def _files() -> dict[str, _Body]:
     """Return the built files by name; they are part of the package and do not change."""
     contents = {entry.name: entry.read_bytes() for entry in files("service").joinpath("viewer").iterdir()}
-    return {name: _File(content, gzip.compress(content, mtime=0)) for name, content in contents.items()}
+    return {name: _Body(content, entity_tag(content)) for name, content in contents.items()}
+
+
+@cache
+def _packed(name: str) -> _Body:
+    """Return a file compressed with gzip, once."""
+    content = gzip.compress(_files()[name].content, mtime=0)
+    return _Body(content, entity_tag(content))
