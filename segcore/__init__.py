@@ -13,13 +13,14 @@ Public are the names of this package:
 - ``read_mesh``, ``Mesh``: the input
 - ``segment``, ``SegmentationParameters``, ``parameters_schema``, ``warm_up``: the method and its choices
 - ``Hierarchy``, ``Fineness``, ``keep_splits``: the result at any number of segments
+- ``Guide``: corrections by hand, the part around marked faces and borders between parts
 - ``mesh_report``, ``MeshReport``, ``build_surface``, ``Surface``: the cleaned mesh and the defects that were found
 - ``CleaveError``, ``InvalidMesh``, ``UnsupportedFormat``, ``InvalidParameters``, ``LimitExceeded``: the errors
 
 and the modules that define them, ``segcore.io`` (readers and writers), ``segcore.appearance``, ``segcore.structure``,
 ``segcore.progress`` and ``segcore.shapes`` (procedural meshes). The packages of the stages (``clean``, ``affinity``,
-``coarsen``, ``symmetry``, ``cut``, ``label``) and ``solvers``, ``graphs`` and ``learned`` are internal, except for
-``Surface`` and ``build_surface``.
+``coarsen``, ``symmetry``, ``cut``, ``label``, ``edit``) and ``solvers``, ``graphs`` and ``learned`` are internal,
+except for ``Surface``, ``build_surface`` and ``Guide``.
 """
 
 import segcore.kernel_cache  # noqa: F401  # before any kernel
@@ -27,6 +28,7 @@ import segcore.kernel_cache  # noqa: F401  # before any kernel
 # isort: split
 
 from segcore.clean.surface import Surface, build_surface
+from segcore.edit.guide import Guide
 from segcore.errors import CleaveError, InvalidMesh, InvalidParameters, LimitExceeded, UnsupportedFormat
 from segcore.hierarchy import Hierarchy
 from segcore.io import read_mesh
@@ -40,6 +42,7 @@ from segcore.warm_up import warm_up
 __all__ = [
     "CleaveError",
     "Fineness",
+    "Guide",
     "Hierarchy",
     "InvalidMesh",
     "InvalidParameters",

@@ -1,0 +1,1 @@
+"""How many clicks a person needs until a part is right: simulated people, evaluation and training."""
