@@ -11,12 +11,10 @@ from dataclasses import dataclass
 import numpy as np
 
 from segcore.arrays import BoolArray, FloatArray, IntArray
-from segcore.edit.distances import distances_from, distances_from_border, nearest_seed
-from segcore.edit.guide_graph import GuideGraph
+from segcore.edit.distances import distances_from, distances_from_border, marked_components, nearest_seed
 from segcore.edit.local_cut import minimum_cut
 from segcore.edit.tree_parts import FEATURES as PART_FEATURES
 from segcore.edit.tree_parts import TreeParts
-from segcore.graphs.surface_graph import connected_components
 from segcore.learned.choices import choice_models
 
 KINDS = (
@@ -188,7 +186,7 @@ class _Change:
 
     def obeying(self, inside: BoolArray) -> BoolArray:
         """The components of a set that contain marks, with all marks on their sides."""
-        return with_marked_components(self._graph, self._with_marks(inside.copy()), self._wanted)
+        return marked_components(self._graph.rows, self._with_marks(inside.copy()), self._wanted)
 
     def features(self, kind: str, after: BoolArray, log_probability: float) -> FloatArray:
         """(M,) the features of a change."""
@@ -229,11 +227,3 @@ class _Change:
 
 def _nodes(marks: Iterator[Mark]) -> IntArray:
     return np.array([mark.node for mark in marks], dtype=np.int32)
-
-
-def with_marked_components(graph: GuideGraph, inside: BoolArray, marked: IntArray) -> BoolArray:
-    """(N,) the connected components of a set that contain marked nodes."""
-    ends = inside[graph.edges]
-    component = connected_components(graph.edges[ends.all(axis=1)], graph.count)
-    kept: BoolArray = inside & np.isin(component, component[marked])
-    return kept

@@ -1,4 +1,7 @@
-"""Compiled kernels: shortest paths between the nodes of a graph (Dijkstra, A note on two problems, 1959)."""
+"""Compiled kernels: shortest paths between the nodes of a graph, and connected components around some of them.
+
+Shortest paths are those of Dijkstra, A note on two problems in connexion with graphs, 1959.
+"""
 
 import heapq
 
@@ -119,3 +122,33 @@ def shortest_path(rows, step, region, origin, target):  # type: ignore[no-untype
     if path[-1] != origin:
         path.append(np.int64(origin))
     return np.array(path[::-1], dtype=np.int32)
+
+
+@njit(cache=True)
+def marked_components(rows, inside, marked):  # type: ignore[no-untyped-def]
+    """(N,) the connected components of a set that contain some of its nodes.
+
+    Parameters
+    ----------
+    inside : (N,) True for the nodes of the set.
+    marked : (K,) nodes of the set.
+    """
+    start, neighbour, _ = rows
+    found = np.zeros(len(inside), dtype=np.bool_)
+    queue = np.empty(len(inside), dtype=np.int32)
+    end = 0
+    for node in marked:
+        if not found[node]:
+            found[node] = True
+            queue[end] = node
+            end += 1
+    k = 0
+    while k < end:
+        for entry in range(start[queue[k]], start[queue[k] + 1]):
+            j = neighbour[entry]
+            if inside[j] and not found[j]:
+                found[j] = True
+                queue[end] = j
+                end += 1
+        k += 1
+    return found

@@ -7,7 +7,8 @@ import numpy as np
 from segcore.arrays import BoolArray, IntArray
 from segcore.clean.surface import Surface, build_surface
 from segcore.edit.borders import border_along, divided, least_border, smoothed
-from segcore.edit.corrections import Mark, with_marked_components
+from segcore.edit.corrections import Mark
+from segcore.edit.distances import marked_components
 from segcore.edit.guide_graph import face_guide_graph, guide_clusters
 from segcore.edit.local_cut import minimum_cut
 from segcore.edit.marked_part import MarkedParts
@@ -220,7 +221,8 @@ class Guide:
         faces[wanted], faces[unwanted] = True, False
         free[wanted] = free[unwanted] = False
         drawn = minimum_cut(self._faces.rows, self._faces.cost, faces, free)
-        return with_marked_components(self._faces, drawn, wanted)
+        connected: BoolArray = marked_components(self._faces.rows, drawn, wanted)
+        return connected
 
     def _checked(self, faces: Iterable[int]) -> IntArray:
         numbers = np.asarray(list(faces), dtype=np.int64)

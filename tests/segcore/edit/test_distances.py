@@ -3,9 +3,15 @@ from itertools import pairwise
 import numpy as np
 import pytest
 from scipy.sparse import csr_matrix
-from scipy.sparse.csgraph import dijkstra
+from scipy.sparse.csgraph import connected_components, dijkstra
 
-from segcore.edit.distances import distances_from, distances_from_border, nearest_seed, shortest_path
+from segcore.edit.distances import (
+    distances_from,
+    distances_from_border,
+    marked_components,
+    nearest_seed,
+    shortest_path,
+)
 from segcore.graphs.surface_graph import rows_of
 
 
@@ -72,3 +78,15 @@ def test_a_path_between_unconnected_nodes_has_its_ends_alone():
     rows = rows_of(np.array([[0, 1], [2, 3]], dtype=np.int32), 4)
     path = shortest_path(rows, np.ones(2), np.ones(4, dtype=bool), 0, 3)
     np.testing.assert_array_equal(path, [0, 3])
+
+
+def test_the_components_of_marked_nodes_are_those_of_scipy(graph):
+    rows, _, matrix, _ = graph
+    inside = np.arange(40) % 5 != 2
+    kept = matrix.tolil()
+    kept[~inside] = 0
+    kept[:, ~inside] = 0
+    component = connected_components(kept.tocsr(), directed=False)[1]
+    marked = np.array([0, 8, 31], dtype=np.int32)
+    found = marked_components(rows, inside, marked)
+    np.testing.assert_array_equal(found, np.isin(component, component[marked]) & inside)
