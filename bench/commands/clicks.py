@@ -7,6 +7,8 @@ that is wrong. Beside segcore.Guide the table has plain region growing and the b
 --train FILE learns the choices of segcore.edit from both folders and writes them to a file; with --choice-folds FOLDER
 one more file is written for every category and set without it. Without --train, --choice-folds evaluates every model
 with the file that has not seen it.
+
+--sizes measures the CPU time of clicks on a procedural shape of these numbers of faces instead.
 """
 
 from __future__ import annotations
@@ -20,6 +22,7 @@ from bench.arguments import add_folds, add_jobs, require_folder_of, require_jobs
 from bench.assets.dataset import Asset, read_assets
 from bench.clicks.evaluation import evaluate_clicks
 from bench.clicks.report import render
+from bench.clicks.sizes import render_sizes
 from bench.clicks.unseen import apply_choices, read_choices, save_choices
 from bench.errors import BenchmarkError
 from bench.learning.folds import apply_unseen, read_folds, with_unseen
@@ -36,11 +39,15 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     add_folds(parser, "--folds")
     parser.add_argument("--train", type=Path, metavar="FILE", help="learn, and write the file")
     parser.add_argument("--choice-folds", type=Path, metavar="FOLDER", help="what was learned without each group")
+    parser.add_argument("--sizes", type=int, nargs="+", metavar="FACES", help="only the time of clicks at these sizes")
     add_jobs(parser)
 
 
 def run(arguments: argparse.Namespace) -> None:
     require_jobs(arguments.jobs)
+    if arguments.sizes is not None:
+        print(render_sizes(arguments.sizes))
+        return
     models: list[Model | Asset] = []
     if arguments.data is not None:
         models += read_models(arguments.data, arguments.limit)

@@ -72,3 +72,10 @@ def test_a_command_that_cannot_run_prints_one_sentence(
     folder = [] if options == [] else ["--assets", str(assets)]
     assert main(["clicks", *folder, *options]) == 2
     assert message in capsys.readouterr().err
+
+
+def test_the_time_of_clicks_is_measured_at_several_sizes(capsys: pytest.CaptureFixture[str]) -> None:
+    assert main(["clicks", "--sizes", "300", "1300"]) == 0
+    lines = capsys.readouterr().out.splitlines()
+    assert [line.split()[0] for line in lines[-2:]] == ["320", "1,280"]
+    assert all(len(line.split()) == 6 for line in lines[-2:])
