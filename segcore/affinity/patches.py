@@ -7,7 +7,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from segcore.arrays import FloatArray, IntArray, at_least, group_sums
+from segcore.arrays import FloatArray, IntArray, LongArray, at_least, group_sums
 from segcore.clean.surface import Surface
 from segcore.coarsen.matching import coarsen
 from segcore.graphs.laplacian import Elimination
@@ -59,25 +59,36 @@ class Patches:
 
     def gradients(self, values: FloatArray) -> FloatArray:
         """(P, 3) the gradient of values (P,) in the tangent plane of every patch, by least squares over neighbours."""
-        count = len(self.area)
-        here, there = np.concatenate([self.pairs, self.pairs[:, ::-1]]).T
-        weight = np.tile(self.border / self.distance, 2)
-        step = self.centre[there] - self.centre[here]
-        step -= np.einsum("ij,ij->i", step, self.normal[here])[:, None] * self.normal[here]
-        rise = weight * (values[there] - values[here])
-        moment = np.empty((count, 3, 3))
-        right = np.empty((count, 3))
-        for i in range(3):
-            right[:, i] = group_sums(here, rise * step[:, i], count)
-            for j in range(i, 3):
-                moment[:, i, j] = moment[:, j, i] = group_sums(here, weight * step[:, i] * step[:, j], count)
-        size = np.trace(moment, axis1=1, axis2=2)
-        safe = _FLAT * size + np.finfo(float).tiny
-        moment += safe[:, None, None] * np.eye(3)
-        # Along the normal there is nothing to fit; any positive number there keeps the system regular.
-        moment += size[:, None, None] * np.einsum("ki,kj->kij", self.normal, self.normal)
-        gradient: FloatArray = np.linalg.solve(moment, right[:, :, None])[:, :, 0].astype(np.float64, copy=False)
+        gradient = np.zeros((len(self.area), 3))
+        joined, place = np.unique(self.pairs, return_inverse=True)  # the others have no neighbours
+        gradient[joined] = _gradients(
+            place.reshape(-1, 2), self.border / self.distance, self.centre[joined], self.normal[joined], values[joined]
+        )
         return gradient
+
+
+def _gradients(
+    pairs: LongArray, weight: FloatArray, centre: FloatArray, normal: FloatArray, values: FloatArray
+) -> FloatArray:
+    count = len(centre)
+    here, there = np.concatenate([pairs, pairs[:, ::-1]]).T
+    weight = np.tile(weight, 2)
+    step = centre[there] - centre[here]
+    step -= np.einsum("ij,ij->i", step, normal[here])[:, None] * normal[here]
+    rise = weight * (values[there] - values[here])
+    moment = np.empty((count, 3, 3))
+    right = np.empty((count, 3))
+    for i in range(3):
+        right[:, i] = group_sums(here, rise * step[:, i], count)
+        for j in range(i, 3):
+            moment[:, i, j] = moment[:, j, i] = group_sums(here, weight * step[:, i] * step[:, j], count)
+    size = np.trace(moment, axis1=1, axis2=2)
+    safe = _FLAT * size + np.finfo(float).tiny
+    moment += safe[:, None, None] * np.eye(3)
+    # Along the normal there is nothing to fit; any positive number there keeps the system regular.
+    moment += size[:, None, None] * np.einsum("ki,kj->kij", normal, normal)
+    gradient: FloatArray = np.linalg.solve(moment, right[:, :, None])[:, :, 0].astype(np.float64, copy=False)
+    return gradient
 
 
 def patches_of(surface: Surface, affinity: FloatArray, length: FloatArray, rng: np.random.Generator) -> Patches:

@@ -50,6 +50,8 @@ def patch_thickness(surface: Surface, patches: Patches) -> Thickness:
     """
     size = float(np.sqrt(patches.area.sum()))
     chosen = _measurable(patches)
+    if len(chosen) == 0:
+        return Thickness(*np.zeros((2, len(patches.area))))
     rays = _rays(surface, patches, chosen, size)
     distance = RayCaster.of(surface.vertices, surface.faces).inner_distances(rays.origins, rays.directions)
     value, confidence = np.zeros((2, len(patches.area)))
@@ -87,8 +89,7 @@ class _Rays:
 
 
 def _rays(surface: Surface, patches: Patches, chosen: LongArray, size: float) -> _Rays:
-    face, place = _sample_faces(patches.of_face, surface.areas, len(patches.area))
-    face, place = face.reshape(-1, RAYS)[chosen].ravel(), place.reshape(-1, RAYS)[chosen].ravel()
+    face, place = _sample_faces(patches.of_face, surface.areas, len(patches.area), chosen)
     corners = surface.vertices[surface.faces[face]]
     inward = -surface.normals[face]
     is_sliver = ~inward.any(axis=1)
@@ -111,8 +112,8 @@ def _rays(surface: Surface, patches: Patches, chosen: LongArray, size: float) ->
     return _Rays(origins, directions, cosine)
 
 
-def _sample_faces(of_face: IntArray, areas: FloatArray, count: int) -> tuple[IntArray, FloatArray]:
-    """Faces at ``RAYS`` equal steps of area through every patch, and the position of the step in the face, 0 to 1."""
+def _sample_faces(of_face: IntArray, areas: FloatArray, count: int, chosen: LongArray) -> tuple[IntArray, FloatArray]:
+    """Faces at ``RAYS`` equal steps of area through some patches, and the position of the step in the face, 0 to 1."""
     order = np.argsort(of_face, kind="stable").astype(np.int32)
     sizes = at_least(areas, _SMALLEST_FACE)[order]
     end = np.cumsum(sizes)
@@ -120,7 +121,7 @@ def _sample_faces(of_face: IntArray, areas: FloatArray, count: int) -> tuple[Int
     high = end[last]
     low = np.concatenate([[0.0], high[:-1]])
     steps = (np.arange(RAYS) + 0.5) / RAYS
-    wanted = (low[:, None] + (high - low)[:, None] * steps).ravel()
+    wanted = (low[chosen, None] + (high - low)[chosen, None] * steps).ravel()
     found = np.minimum(np.searchsorted(end, wanted), len(order) - 1)
     place = np.clip((wanted - (end[found] - sizes[found])) / sizes[found], 0.0, 1.0)
     return order[found], place

@@ -11,7 +11,8 @@ import numpy as np
 from numba import njit
 
 from segcore.arrays import BoolArray, FloatArray, IntArray, LongArray, pair_keys
-from segcore.clean.borders import ends_of, near_segments
+from segcore.clean.borders import ends_of
+from segcore.clean.near_segments import near_segments
 from segcore.clean.topology import DualEdges
 
 # Set by hand.
@@ -55,7 +56,7 @@ def find_matches(vertices: FloatArray, faces: IntArray, dual: DualEdges, borders
     ends = ends_of(borders, faces)
     segments = vertices[ends]
     length = np.linalg.norm(segments[:, 1] - segments[:, 0], axis=1)
-    pairs = _neighbours(vertices, ends, segments, np.minimum(_LARGEST_SHARE * length, 2 * LARGEST_GAP))
+    pairs = _neighbours(vertices, ends, np.minimum(_LARGEST_SHARE * length, 2 * LARGEST_GAP))
     far = vertices[faces[face, (corner + 2) % 3]]
     candidates, cost, intervals = _measured(pairs, segments, far, ends)
     is_new = _first_of_equals(candidates.edges) & ~are_adjacent(face[candidates.edges], dual.faces, len(faces))
@@ -65,20 +66,23 @@ def find_matches(vertices: FloatArray, faces: IntArray, dual: DualEdges, borders
     return candidates.select(order[chosen])
 
 
-def _neighbours(vertices: FloatArray, ends: IntArray, segments: FloatArray, radius: FloatArray) -> LongArray:
+def _neighbours(vertices: FloatArray, ends: IntArray, radius: FloatArray) -> LongArray:
     """(P, 2) the pairs of different open edges of which an end of one lies beside the other; pairs may be repeated."""
-    used, which = np.unique(ends, return_inverse=True)
-    which = which.reshape(-1, 2)
-    near = near_segments(vertices[used], segments, radius)
-    near = near[(which[near[:, 0]] != near[:, 1:]).all(axis=1)]
-    order = np.argsort(which.ravel(), kind="stable")
-    start = np.searchsorted(which.ravel()[order], np.arange(len(used) + 1))
-    ends_there = np.diff(start)
-    near = near[ends_there[near[:, 1]] <= _MOST_ENDS]
-    count = ends_there[near[:, 1]]
+    is_used = np.zeros(len(vertices), dtype=bool)
+    is_used[ends] = True
+    ends = (np.cumsum(is_used, dtype=np.int32) - 1)[ends]
+    points = vertices[is_used]
+    edges_at = np.bincount(ends.ravel(), minlength=len(points))
+    near = near_segments(points, ends, radius)
+    near = near[edges_at[near[:, 1]] <= _MOST_ENDS]
+    is_near = np.zeros(len(points), dtype=bool)
+    is_near[near[:, 1]] = True
+    at = np.flatnonzero(is_near[ends.ravel()])
+    at = at[np.argsort(ends.ravel()[at], kind="stable")]
+    first, count = np.searchsorted(ends.ravel()[at], near[:, 1]), edges_at[near[:, 1]]
     edge = np.repeat(near[:, 0], count)
     within = np.arange(len(edge)) - np.repeat(np.cumsum(count) - count, count)
-    other = order[np.repeat(start[near[:, 1]], count) + within] // 2
+    other = at[np.repeat(first, count) + within] // 2
     pairs = np.stack([np.minimum(edge, other), np.maximum(edge, other)], axis=1)
     return pairs[edge != other]
 

@@ -22,7 +22,7 @@ class DualEdges(NamedTuple):
 
 
 @njit(cache=True)
-def _mix(key: np.uint64) -> np.uint64:
+def mixed_bits(key: np.uint64) -> np.uint64:
     """The finaliser of SplitMix64: mixes the bits of a key over the whole word."""
     key = (key ^ (key >> np.uint64(30))) * np.uint64(0xBF58476D1CE4E5B9)
     key = (key ^ (key >> np.uint64(27))) * np.uint64(0x94D049BB133111EB)
@@ -41,7 +41,7 @@ def first_equal_row(rows: LongArray) -> IntArray:
     first = np.empty(count, np.int32)
     for i in range(count):
         a, b, c = rows[i, 0], rows[i, 1], rows[i, 2]
-        slot = _mix(_mix(_mix(np.uint64(a)) + np.uint64(b)) + np.uint64(c)) & mask
+        slot = mixed_bits(mixed_bits(mixed_bits(np.uint64(a)) + np.uint64(b)) + np.uint64(c)) & mask
         while True:
             j = slots[slot]
             if j == _EMPTY:
