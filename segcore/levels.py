@@ -46,6 +46,14 @@ class Fineness:
         return len(hierarchy.segment_nodes(self.segments))
 
 
+def one_segment_note(automatic_segments: int | None, max_segments: int | None) -> str | None:
+    """A sentence on a hierarchy whose automatic number of segments is 1 although it has cuts; None for any other."""
+    if automatic_segments != 1 or max_segments is None or max_segments == 1:
+        return None
+    numbers = "2 segments" if max_segments == 2 else f"a number of segments from 2 to {max_segments}"
+    return f"No cut is clear enough to be made automatically: ask for {numbers} to see the best ones."
+
+
 def keep_splits(hierarchy: Hierarchy, splits: Collection[int]) -> Hierarchy:
     """The hierarchy with some splits moved to the front; its automatic number of segments makes exactly these splits.
 

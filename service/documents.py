@@ -5,6 +5,7 @@ from typing import Any, Literal
 
 from pydantic import BaseModel, Field
 
+from segcore.levels import one_segment_note
 from segcore.parameters import USUAL_SEGMENTS
 from segcore.report import MeshReport, structure_note
 from service.answer.model_formats import model_links
@@ -78,7 +79,7 @@ class JobDocument(BaseModel):
     )
     notes: list[str] = Field(
         description="Sentences on what limits the result, for people: for example that a file has more shells than "
-        "segments can be."
+        "segments can be, or that the automatic number is 1 although there are cuts."
     )
     error: JobError | None = Field(description="The reason why the job failed.")
     links: JobLinks
@@ -259,19 +260,20 @@ def _result_fields(job: Job, outcome: Outcome | None) -> dict[str, Any]:
         case Succeeded(faces=faces, vertices=vertices, report=report):
             mesh = MeshSummary.model_validate({"faces": faces, "vertices": vertices, "report": report})
             numbers = {name: getattr(outcome, name) for name in levels}
-            return fields | numbers | {"mesh": mesh, "notes": _notes(job, mesh)}
+            return fields | numbers | {"mesh": mesh, "notes": _notes(job, outcome, mesh)}
         case Failed(code=code, message=message):
             return fields | {"error": JobError(code=code, message=message)}
         case Canceled() | None:
             return fields
 
 
-def _notes(job: Job, mesh: MeshSummary) -> list[str]:
+def _notes(job: Job, outcome: Succeeded, mesh: MeshSummary) -> list[str]:
+    notes = [one_segment_note(outcome.automatic_segments, outcome.max_segments)]
     counts = mesh.report.structure if mesh.report else None
-    if counts is None or "structure" not in job.parameters:
-        return []
-    note = structure_note(counts, job.parameters["structure"], job.parameters["max_segments"] or USUAL_SEGMENTS)
-    return [] if note is None else [note]
+    if counts is not None and "structure" in job.parameters:
+        most = job.parameters["max_segments"] or USUAL_SEGMENTS
+        notes.append(structure_note(counts, job.parameters["structure"], most))
+    return [note for note in notes if note is not None]
 
 
 def _links(path: str) -> JobLinks:

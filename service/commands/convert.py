@@ -9,7 +9,7 @@ from segcore.levels import Fineness
 from service.commands.arguments import add_coordinates, add_level
 from service.commands.inputs import STANDARD, standard_input
 from service.commands.outputs import add_outputs, check_outputs, output_options, write_model
-from service.commands.summary import level_summary
+from service.commands.summary import level_lines
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
@@ -45,7 +45,8 @@ def run(choices: argparse.Namespace) -> None:
     for path in outputs:
         for note in write_model(path, mesh, result.hierarchy, segments, options):
             tell(note)
-    tell(level_summary(result.hierarchy, segments, fineness))
+    for line in level_lines(result.hierarchy, segments, fineness):
+        tell(line)
     for path in outputs:
         if path != STANDARD:
             tell(f"wrote {path}")

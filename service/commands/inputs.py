@@ -29,6 +29,11 @@ def read_input(choices: argparse.Namespace) -> segcore.Mesh:
     return segcore.read_mesh(source, appearance=True, neighbours=True, unit=choices.unit, up=choices.up)
 
 
+def input_name(path: Path) -> str:
+    """Return the name of the file to read, for messages."""
+    return "standard input" if path == STANDARD else path.name
+
+
 def standard_input(path: Path) -> Path | BinaryIO:
     """Return the file to read: the whole standard input for -, else the path."""
     return io.BytesIO(sys.stdin.buffer.read()) if path == STANDARD else path

@@ -6,7 +6,7 @@ from dataclasses import asdict
 
 from segcore.report import MeshReport, mesh_report
 from service.commands.console import say
-from service.commands.inputs import add_mesh, read_input
+from service.commands.inputs import add_mesh, input_name, read_input
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
@@ -29,7 +29,7 @@ def run(choices: argparse.Namespace) -> None:
     if choices.json:
         say(json.dumps(asdict(report), indent=2, allow_nan=False))
     else:
-        say("\n".join(_lines(choices.mesh.name, report)))
+        say("\n".join(_lines(input_name(choices.mesh), report)))
 
 
 def _lines(name: str, report: MeshReport) -> list[str]:

@@ -15,7 +15,7 @@ from segcore.levels import Fineness
 from segcore.report import StructureCounts, structure_counts, structure_note
 from service.commands.arguments import add_level, add_parameters, add_structure
 from service.commands.console import ProgressBar
-from service.commands.inputs import STANDARD, add_mesh, read_input
+from service.commands.inputs import STANDARD, add_mesh, input_name, read_input
 from service.commands.outputs import (
     OutputOptions,
     add_outputs,
@@ -24,7 +24,7 @@ from service.commands.outputs import (
     write_file,
     write_model,
 )
-from service.commands.summary import level_summary, part_lines
+from service.commands.summary import level_lines, part_lines
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
@@ -65,12 +65,10 @@ def run(choices: argparse.Namespace) -> None:
         hierarchy = segcore.segment(mesh, parameters, bar, surface)
         segments = fineness.segments_of(hierarchy)
         notes = _write(choices, options, mesh, hierarchy, segments)
-    name = "standard input" if choices.mesh == STANDARD else choices.mesh.name
-    tell(f"{name}: {len(mesh.faces)} faces, {len(mesh.vertices)} vertices")
+    tell(f"{input_name(choices.mesh)}: {len(mesh.faces)} faces, {len(mesh.vertices)} vertices")
     for note in (*mesh.notes, *notes):
         tell(note)
-    tell(level_summary(hierarchy, segments, fineness))
-    for line in part_lines(hierarchy, segments):
+    for line in (*level_lines(hierarchy, segments, fineness), *part_lines(hierarchy, segments)):
         tell(line)
     for line in _structure_lines(structure_counts(mesh, surface), parameters):
         tell(line)

@@ -3,9 +3,15 @@
 import numpy as np
 
 from segcore.hierarchy import Hierarchy
-from segcore.levels import Fineness
+from segcore.levels import Fineness, one_segment_note
 
 _MOST_LINES = 8  # of segments; set by hand
+
+
+def level_lines(hierarchy: Hierarchy, segments: int, fineness: Fineness) -> list[str]:
+    """Return :func:`level_summary`, and what to do if the automatic number is 1 although there are cuts."""
+    note = one_segment_note(hierarchy.automatic_segments, hierarchy.max_segments) if fineness.is_automatic else None
+    return [level_summary(hierarchy, segments, fineness), *([f"{note} (--segments)"] if note else [])]
 
 
 def level_summary(hierarchy: Hierarchy, segments: int, fineness: Fineness) -> str:

@@ -5,7 +5,8 @@ import httpx
 from cleave.settings import Settings
 from helpers.api import submit
 from service.answer.model_formats import MODELS, model_links
-from service.documents import JobLinks
+from service.documents import JobLinks, job_document
+from worker.jobs.job import Succeeded, now
 from worker.jobs.store.store import JobStore
 from worker.process.perform import perform
 from worker.process.progress import REPORTED_STAGES, STAGES
@@ -27,3 +28,13 @@ def test_a_job_runs_through_all_stages_in_their_order(
     assert work is not None
     assert tuple(reported) == REPORTED_STAGES
     assert tuple(work.stage_seconds) == STAGES
+
+
+def test_a_job_says_what_to_do_if_its_automatic_number_is_one(client: httpx.Client, store: JobStore) -> None:
+    job = store.records.job(submit(client).rpartition("/")[2])
+    assert job is not None
+    for automatic, most, count in ((1, 9, 1), (1, 1, 0), (2, 9, 0)):
+        done = Succeeded(finished_at=now(), faces=9, vertices=9, max_segments=most, automatic_segments=automatic)
+        notes = job_document(job, done, [], None).notes
+        assert len(notes) == count
+        assert all("from 2 to 9" in note for note in notes)

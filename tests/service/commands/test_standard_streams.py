@@ -37,7 +37,7 @@ def test_a_result_is_converted_in_a_pipe(ball: Path) -> None:
 
 
 def test_a_mesh_is_inspected_in_a_pipe(mesh: Path) -> None:
-    assert b"528 faces" in cleave("inspect", "-", data=mesh.read_bytes()).stdout
+    assert b"standard input: 528 faces" in cleave("inspect", "-", data=mesh.read_bytes()).stdout
 
 
 def test_a_reader_that_stops_early_is_no_error(mesh: Path) -> None:

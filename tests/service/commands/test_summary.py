@@ -7,7 +7,7 @@ import pytest
 
 from helpers.files.hierarchies import two_strips
 from segcore.levels import Fineness
-from service.commands.summary import level_summary, part_lines
+from service.commands.summary import level_lines, level_summary, part_lines
 
 
 @pytest.mark.parametrize(
@@ -26,6 +26,14 @@ def test_the_summary_says_where_the_hierarchy_ends_and_why(limit_reached: bool |
 
 def test_one_segment_is_singular() -> None:
     assert level_summary(two_strips()[1], 1, Fineness(segments=1)).startswith("1 segment, as requested; ")
+
+
+def test_an_automatic_number_of_one_says_why_and_what_to_do() -> None:
+    hierarchy = replace(two_strips()[1], automatic_segments=1)
+    note = "No cut is clear enough to be made automatically: ask for a number of segments from 2 to 3 to see the best"
+    assert level_lines(hierarchy, 1, Fineness())[1].startswith(note)
+    assert len(level_lines(hierarchy, 1, Fineness(segments=1))) == 1
+    assert len(level_lines(two_strips()[1], 2, Fineness())) == 1
 
 
 def test_the_largest_segments_are_listed_with_their_sizes() -> None:
