@@ -25,8 +25,8 @@ from segcore.label.pieces import draw_on_whole_faces
 from segcore.label.projection import Votes, project
 from segcore.mesh import Mesh
 from segcore.parameters import SegmentationParameters
-from segcore.progress import OnProgress, Progress
-from segcore.symmetry.clusters import clusters_with_images, symmetrised, with_connected_leaves
+from segcore.progress import OnPart, OnProgress, Progress, report_nothing
+from segcore.symmetry.clusters import CLUSTERED, clusters_with_images, symmetrised, with_connected_leaves
 from segcore.symmetry.images import MirrorImage, mirror_image
 
 
@@ -105,21 +105,22 @@ def coarse_graph(
     parameters: SegmentationParameters,
     rng: np.random.Generator,
     is_symmetric: bool,
-    on_stage: Callable[[str], None] = lambda _: None,
+    on_progress: OnProgress = lambda *_: None,
 ) -> CoarseGraph:
     """Carry out the stages "affinity" and "coarsen".
 
     Parameters
     ----------
     is_symmetric : look for a mirror symmetry of the surface, and coarsen both halves alike.
-    on_stage : called with the name of each stage when it begins.
+    on_progress : called with the name of each stage and the fraction of it that is done.
     """
-    on_stage("affinity")
+    on_progress("affinity", 0.0)
     refinement = refine(surface) if parameters.measures_shape else undivided(surface)
-    nodes = mesh_graph(refinement.surface, parameters, refinement.is_piece)
-    on_stage("coarsen")
-    mirror = mirror_image(refinement.surface) if is_symmetric else None
-    clusters, links = _coarsened(refinement.surface, nodes, mirror, parameters, rng)
+    nodes = mesh_graph(refinement.surface, parameters, refinement.is_piece, partial(on_progress, "affinity"))
+    on_part = partial(on_progress, "coarsen")
+    on_part(0.0)
+    mirror = mirror_image(refinement.surface, on_part) if is_symmetric else None
+    clusters, links = _coarsened(refinement.surface, nodes, mirror, parameters, rng, on_part)
     return CoarseGraph(refinement, nodes, mirror, clusters, links)
 
 
@@ -129,8 +130,10 @@ def _coarsened(
     mirror: MirrorImage | None,
     parameters: SegmentationParameters,
     rng: np.random.Generator,
+    on_part: OnPart = report_nothing,
 ) -> tuple[Clusters, Links]:
-    clusters = clusters_with_images(nodes, mirror, parameters.clusters, rng)
+    clusters = clusters_with_images(nodes, mirror, parameters.clusters, rng, on_part)
+    on_part(CLUSTERED)
     return assemble(surface, nodes, clusters, parameters.max_segments or MOST_COMPONENTS)
 
 

@@ -4,6 +4,12 @@ from collections.abc import Callable
 from math import log
 
 OnProgress = Callable[[str, float], None]
+OnPart = Callable[[float], None]  # called with the fraction of a stage that is done
+
+
+def report_nothing(_: float) -> None:
+    """Ignore the fraction of a stage that is done."""
+
 
 # Processor seconds of every stage in the order of the work, fixed and per million faces; only their proportions matter.
 # The times per million are those of 2,000,000 faces in the section "Scale" of bench/RESULTS.md. The fixed times were

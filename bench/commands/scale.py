@@ -1,10 +1,11 @@
 """CPU seconds by stage and peak memory of one segmentation with 20,000 to 2,000,000 faces, in one thread.
 
 Every mesh is segmented in its own process with loaded kernels. Memory is the growth of the peak memory of the process
-during the segmentation, without the mesh itself. The shapes are a dumbbell and, with --data, a model of the benchmark
-whose faces are split in four repeatedly. At the end a thousand small boxes, apart and in contact, are compared with
-one body of as many faces. With --hard, legal meshes that are hard for their size (surfaces that cross themselves, edges
-and vertices with very many faces, very many components) are compared with smooth ones of as many faces instead.
+during the segmentation, without the mesh itself. The silence is the longest time between two reports of progress. The
+shapes are a dumbbell and, with --data, a model of the benchmark whose faces are split in four repeatedly. At the end a
+thousand small boxes, apart and in contact, are compared with one body of as many faces. With --hard, legal meshes that
+are hard for their size (surfaces that cross themselves, edges and vertices with very many faces, very many components)
+are compared with smooth ones of as many faces instead.
 """
 
 from __future__ import annotations
@@ -56,7 +57,7 @@ def run(arguments: argparse.Namespace) -> None:
 
 def render(costs: Sequence[Cost]) -> str:
     """Return a line for every mesh."""
-    header = ["mesh", "faces", *STAGES, "total s", "us/face", "MB", "bytes/face"]
+    header = ["mesh", "faces", *STAGES, "total s", "us/face", "MB", "bytes/face", "silence s"]
     rows = [
         [
             cost.name,
@@ -66,6 +67,7 @@ def render(costs: Sequence[Cost]) -> str:
             number(1e6 * cost.total_s / cost.faces, 2),
             number(cost.memory_bytes / 1e6, 0),
             number(cost.memory_bytes / cost.faces, 0),
+            number(cost.silence_s, 2),
         ]
         for cost in costs
     ]
@@ -74,7 +76,7 @@ def render(costs: Sequence[Cost]) -> str:
 
 def render_hard(pairs: Sequence[tuple[Cost, Cost]]) -> str:
     """Return a line for every hard mesh, with the ratio of its time to that of a smooth one of its size."""
-    header = ["mesh", "faces", "total s", "smooth s", "ratio", "MB", "smooth MB"]
+    header = ["mesh", "faces", "total s", "smooth s", "ratio", "MB", "smooth MB", "silence s"]
     rows = [
         [
             hard.name,
@@ -84,6 +86,7 @@ def render_hard(pairs: Sequence[tuple[Cost, Cost]]) -> str:
             number(hard.total_s / smooth.total_s, 2),
             number(hard.memory_bytes / 1e6, 0),
             number(smooth.memory_bytes / 1e6, 0),
+            number(hard.silence_s, 2),
         ]
         for hard, smooth in pairs
     ]

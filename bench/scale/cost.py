@@ -20,12 +20,13 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True, slots=True)
 class Cost:
-    """CPU time and memory of one segmentation."""
+    """CPU time, memory and progress of one segmentation."""
 
     name: str
     faces: int
     stage_s: dict[str, float]  # CPU seconds by stage
     memory_bytes: int  # growth of the peak memory of the process
+    silence_s: float  # the most CPU seconds between two reports of progress
 
     @property
     def total_s(self) -> float:
@@ -54,16 +55,17 @@ def _measure(name: str, make: Callable[[], Mesh]) -> Cost:
     mesh = make()
     before = _reset_peak()
     stage_s = dict.fromkeys(STAGES, 0.0)
-    now, current = time.process_time(), STAGES[0]
+    now, current, silence_s = time.process_time(), STAGES[0], 0.0
 
     def on_progress(stage: str, _: float) -> None:
-        nonlocal now, current
+        nonlocal now, current, silence_s
         then, now = now, time.process_time()
+        silence_s = max(silence_s, now - then)
         stage_s[current] += now - then
         current = stage
 
     segment(mesh, on_progress=on_progress)
-    return Cost(name, len(mesh.faces), stage_s, _peak_memory() - before)
+    return Cost(name, len(mesh.faces), stage_s, _peak_memory() - before, silence_s)
 
 
 def _reset_peak() -> int:

@@ -15,6 +15,7 @@ from segcore.affinity.minima_rule import minima_rule_of_faces, minima_rule_of_ve
 from segcore.arrays import FloatArray, IntArray
 from segcore.clean.surface import Surface
 from segcore.parameters import SegmentationParameters
+from segcore.progress import OnPart, report_nothing
 
 # Fitted on the benchmark; the results of their neighbours are in docs/algorithm.md, "Constants" of section 2.
 _FLOOR = 0.03  # g of the strongest boundary: lower lets noise be cut out, higher lets boundaries be ignored
@@ -34,29 +35,29 @@ class Affinity:
     confidence: FloatArray | None = None  # (F,) share of the rays that met the other side from inside
 
 
-def concavity(surface: Surface, parameters: SegmentationParameters) -> Affinity:
+def concavity(surface: Surface, parameters: SegmentationParameters, on_part: OnPart = report_nothing) -> Affinity:
     """g = 0.03 + 0.97 exp(-x / 1.4 - x3 / 0.3), x the concave bending of an edge, x3 the change of thickness across it.
 
     See ``segcore.affinity.measurements.measure``.
     """
-    measured = measure(surface, parameters.seed)
+    measured = measure(surface, parameters.seed, on_part)
     return _affinity(measured, measured.bending / _BENDING_SCALE + measured.change / _CHANGE_SCALE)
 
 
-def learned(surface: Surface, parameters: SegmentationParameters) -> Affinity:
+def learned(surface: Surface, parameters: SegmentationParameters, on_part: OnPart = report_nothing) -> Affinity:
     """g = 0.03 + 0.97 exp(-p / 0.05 - 0.4 x - 1.5 x3), p the probability that a person cuts along the edge.
 
     See ``segcore.affinity.boundary_features``.
     """
-    measured = measure(surface, parameters.seed)
-    probability = boundary_probability(surface, measured)
+    measured = measure(surface, parameters.seed, on_part)
+    probability = boundary_probability(surface, measured, on_part)
     return _affinity(
         measured,
         probability / _PROBABILITY_SCALE + _LEARNED_BENDING * measured.bending + _LEARNED_CHANGE * measured.change,
     )
 
 
-def adjacency_of_faces(surface: Surface, _: SegmentationParameters) -> Affinity:
+def adjacency_of_faces(surface: Surface, _: SegmentationParameters, _on_part: OnPart = report_nothing) -> Affinity:
     """g = 1: the standard adjacency matrix of the faces."""
     return Affinity(np.ones(len(surface.edge_faces)))
 
@@ -69,7 +70,7 @@ def adjacency_of_vertices(_surface: Surface, ends: IntArray, _: SegmentationPara
 FACE_AFFINITIES = {
     "concavity": concavity,
     "learned": learned,
-    "minima_rule": lambda surface, parameters: Affinity(minima_rule_of_faces(surface, parameters)),
+    "minima_rule": lambda surface, parameters, _on_part: Affinity(minima_rule_of_faces(surface, parameters)),
     "adjacency": adjacency_of_faces,
 }
 VERTEX_AFFINITIES = {"minima_rule": minima_rule_of_vertices, "adjacency": adjacency_of_vertices}

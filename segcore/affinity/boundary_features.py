@@ -9,12 +9,13 @@ from typing import NamedTuple
 import numpy as np
 from numba import njit
 
-from segcore.affinity.measurements import THICKNESS_RADIUS, Measurements
+from segcore.affinity.measurements import MEASURED, THICKNESS_RADIUS, Measurements
 from segcore.affinity.thickness import smooth_logarithm
 from segcore.arrays import FloatArray, IntArray, LongArray, group_sums
 from segcore.clean.surface import Surface
 from segcore.learned.logistic import signed_log
 from segcore.learned.models import learned_models
+from segcore.progress import OnPart, report_nothing
 
 # Radii of smoothing in sqrt(total area), set by hand. The model is trained with them; its card is
 # docs/explanation/learned-models.md.
@@ -54,6 +55,7 @@ _EXCESS_NEAR = FEATURES.index("thickness_excess_near")
 _EXCESS_FAR = FEATURES.index("thickness_excess_far")
 _CONFIDENCE = FEATURES.index("confidence")
 
+_PREDICTED = 0.92  # fraction of the processor time of the stage "affinity", as in measurements.py
 _BLOCK = 1 << 16  # edges whose features are in memory at a time: 16 MB
 
 
@@ -76,14 +78,20 @@ class _Edges(NamedTuple):
     along: FloatArray  # (N, 3) from end to end
 
 
-def boundary_probability(surface: Surface, measured: Measurements) -> FloatArray:
-    """(E,) the probability that a person's cut runs along each mesh edge."""
+def boundary_probability(surface: Surface, measured: Measurements, on_part: OnPart = report_nothing) -> FloatArray:
+    """(E,) the probability that a person's cut runs along each mesh edge.
+
+    Parameters
+    ----------
+    on_part : called with the fraction of the stage "affinity" that is done.
+    """
     model = learned_models().boundary
     fields = patch_fields(surface, measured)
     probability = np.empty(len(surface.edge_faces))
     for start in range(0, len(probability), _BLOCK):
         block = slice(start, start + _BLOCK)
         probability[block] = model.probability(edge_features(surface, measured, fields, block))
+        on_part(MEASURED + (_PREDICTED - MEASURED) * min(1.0, (start + _BLOCK) / len(probability)))
     return probability
 
 

@@ -10,12 +10,15 @@ from segcore.affinity.thickness import Thickness, patch_thickness, smooth_logari
 from segcore.arrays import FloatArray, IntArray
 from segcore.clean.edge_geometry import EdgeGeometry
 from segcore.clean.surface import Surface
+from segcore.progress import OnPart, report_nothing
 
 # The sources of these numbers are in docs/algorithm.md, "Constants" of section 2.
 _CURVATURE_SCALE = 8.0  # concave minimum curvature, times sqrt(total area), that bends as much as a mean dihedral angle
 THICKNESS_RADIUS = 0.06  # of the smoothing of the thickness, in sqrt(total area)
 _LARGEST_CHANGE = 3.0
 _LOWEST_GUARD = 0.03  # affinity at the deepest concavity when patches are made, as that of the edge weights
+# Fractions of the processor time of the stage "affinity", measured on a dumbbell of 1,000,000 faces.
+_CURVED, _PATCHED, MEASURED = 0.15, 0.45, 0.65
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -32,7 +35,7 @@ class Measurements:
     log_thickness: FloatArray  # (P,) its logarithm, smoothed over 0.06 sqrt(A)
 
 
-def measure(surface: Surface, seed: int) -> Measurements:
+def measure(surface: Surface, seed: int, on_part: OnPart = report_nothing) -> Measurements:
     """Measure a surface.
 
     The concave bending of an edge is x1 + x2 / 8 with x1 = max(0, -theta) / mean |theta| and x2 = sqrt(A) max(0, -k2),
@@ -46,6 +49,7 @@ def measure(surface: Surface, seed: int) -> Measurements:
     Parameters
     ----------
     seed : of the random order in which faces are merged into patches.
+    on_part : called with the fraction of the stage "affinity" that is done.
     """
     edges = EdgeGeometry.of(surface)
     size = float(np.sqrt(surface.areas.sum()))
@@ -54,11 +58,14 @@ def measure(surface: Surface, seed: int) -> Measurements:
     k1, k2 = (0.5 * size * (k[ends[:, 0]] + k[ends[:, 1]]) for k in (curvatures.k1, curvatures.k2))
     bending = np.maximum(0.0, -edges.dihedral) / edges.typical_dihedral + np.maximum(0.0, -k2) / _CURVATURE_SCALE
     guard = _LOWEST_GUARD + (1.0 - _LOWEST_GUARD) * np.exp(-bending)
+    on_part(_CURVED)
     patches = patches_of(surface, guard, edges.positive_length, np.random.default_rng(seed))
+    on_part(_PATCHED)
     thickness = patch_thickness(surface, patches)
     log = smooth_logarithm(thickness, patches, THICKNESS_RADIUS * size)
     slope = patches.gradients(log) * (THICKNESS_RADIUS * size * thickness.confidence)[:, None]
     change = _change_across(slope, patches.of_face[surface.edge_faces], edges.across)
+    on_part(MEASURED)
     return Measurements(edges, k1, k2, bending, change, patches, thickness, log)
 
 

@@ -13,6 +13,7 @@ from segcore.graphs.mesh_graph import MeshGraph
 from segcore.graphs.surface_graph import SurfaceGraph, connected_components, weighted_degrees
 from segcore.mesh import face_centroids
 from segcore.parameters import SegmentationParameters
+from segcore.progress import OnPart, report_nothing
 
 # Set by hand: a face of the least area has edges of about the least length. Without a least length a triangle whose
 # corners nearly coincide is the cheapest cut of its segment (tests/segcore/test_laws.py).
@@ -20,20 +21,29 @@ _SMALLEST_FACE = 1e-4  # least volume of a face in mean areas
 _SHORTEST_EDGE = 1e-2  # least length of an edge in mean lengths
 
 
-def mesh_graph(surface: Surface, parameters: SegmentationParameters, is_piece: BoolArray | None = None) -> MeshGraph:
+def mesh_graph(
+    surface: Surface,
+    parameters: SegmentationParameters,
+    is_piece: BoolArray | None = None,
+    on_part: OnPart = report_nothing,
+) -> MeshGraph:
     """The graph of a surface that the parameters select, weighted by the affinity that they select.
 
     Parameters
     ----------
     is_piece : (F,) True for faces that are pieces of a face that was divided; None if there are none.
+    on_part : called with the fraction of the stage "affinity" that is done.
     """
     if parameters.graph == "vertices":
         return vertex_graph(surface, parameters)
-    return face_dual_graph(surface, parameters, is_piece)
+    return face_dual_graph(surface, parameters, is_piece, on_part)
 
 
 def face_dual_graph(
-    surface: Surface, parameters: SegmentationParameters, is_piece: BoolArray | None = None
+    surface: Surface,
+    parameters: SegmentationParameters,
+    is_piece: BoolArray | None = None,
+    on_part: OnPart = report_nothing,
 ) -> MeshGraph:
     """The face dual graph: W = edge length times affinity, the volume of a node is the area of its face.
 
@@ -43,7 +53,7 @@ def face_dual_graph(
     Areas are at least 1e-4 of the mean area and lengths at least 1e-2 of the mean length, so that degenerate faces and
     edges have a positive weight and a face that is nearly a point is not the cheapest cut.
     """
-    affinity = FACE_AFFINITIES[parameters.affinity](surface, parameters)
+    affinity = FACE_AFFINITIES[parameters.affinity](surface, parameters, on_part)
     length = at_least(edge_lengths(surface), _SHORTEST_EDGE)
     weight = length * affinity.value
     if parameters.measures_shape:

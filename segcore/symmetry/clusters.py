@@ -9,12 +9,20 @@ from segcore.coarsen.clusters import Clusters, cluster_nodes, clusters_of
 from segcore.graphs.mesh_graph import MeshGraph
 from segcore.graphs.surface_graph import SurfaceGraph
 from segcore.graphs.tree import Tree
+from segcore.progress import OnPart, report_nothing
 from segcore.symmetry.images import MirrorImage
 from segcore.symmetry.pieces import in_one_piece
 
+# Fractions of the processor time of the stage "coarsen", measured on a dumbbell of 1,000,000 faces.
+_HALF_CLUSTERED, CLUSTERED = 0.72, 0.98
+
 
 def clusters_with_images(
-    nodes: MeshGraph, mirror: MirrorImage | None, target: int, rng: np.random.Generator
+    nodes: MeshGraph,
+    mirror: MirrorImage | None,
+    target: int,
+    rng: np.random.Generator,
+    on_part: OnPart = report_nothing,
 ) -> Clusters:
     """Coarsen a mesh graph to about ``target`` clusters, or not at all if it is 0; if it is symmetric, symmetrically.
 
@@ -25,6 +33,7 @@ def clusters_with_images(
     Parameters
     ----------
     mirror : the mirror image of the surface, whose faces are the nodes; None if it is not symmetric.
+    on_part : called with the fraction of the stage "coarsen" that is done.
     """
     if mirror is None:
         return cluster_nodes(nodes, target, rng)
@@ -36,6 +45,7 @@ def clusters_with_images(
         None if nodes.thickness is None else nodes.thickness[first],
     )
     of_first = cluster_nodes(half, (target + 1) // 2, rng).of_node
+    on_part(_HALF_CLUSTERED)
     of_node = _mirrored(nodes.graph, mirror, of_first)
     count = (int(of_node.max()) + 1) // 2
     image = np.roll(np.arange(2 * count, dtype=np.int32), count)

@@ -10,6 +10,7 @@ from segcore.clean.surface import Surface
 from segcore.coarsen.assembly import NEGLIGIBLE
 from segcore.graphs.surface_graph import connected_components
 from segcore.mesh import face_centroids
+from segcore.progress import OnPart, report_nothing
 from segcore.symmetry.reflection import Reflection, find_reflection
 
 # All set by hand.
@@ -17,6 +18,8 @@ _NORMAL = 0.1  # distance, in sqrt(total area), that counts as much as a differe
 _EXACT = 0.1  # distance of an image from its face, in sqrt(area of the face), up to which the meshes coincide
 _IN_PLANE = 1e-9  # distance from the plane, in extents of the surface, that is rounding error
 _VANISHING = 1e-12  # share of the area of a component in which halves cannot be told apart
+# Fractions of the processor time of the stage "coarsen", measured on a dumbbell of 1,000,000 faces.
+_REFLECTED, _IMAGED = 0.3, 0.6
 _MESHED_ALIKE = 0.9  # share of the area with exact images from which the mesh is symmetric and not only the shape
 
 
@@ -30,10 +33,18 @@ class MirrorImage:
     meshed_alike: bool  # the faces of the halves are images of each other, apart from a few
 
 
-def mirror_image(surface: Surface) -> MirrorImage | None:
-    """The mirror image of a surface, or None if the surface is not symmetric."""
+def mirror_image(surface: Surface, on_part: OnPart = report_nothing) -> MirrorImage | None:
+    """The mirror image of a surface, or None if the surface is not symmetric.
+
+    Parameters
+    ----------
+    on_part : called with the fraction of the stage "coarsen" that is done.
+    """
     reflection = find_reflection(surface)
-    return None if reflection is None else image_under(surface, reflection)
+    on_part(_REFLECTED)
+    image = None if reflection is None else image_under(surface, reflection)
+    on_part(_IMAGED)
+    return image
 
 
 def image_under(surface: Surface, reflection: Reflection) -> MirrorImage | None:

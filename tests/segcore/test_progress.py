@@ -64,3 +64,12 @@ def test_a_callback_that_raises_ends_the_work_and_changes_nothing(stage):
         segment(mesh, on_progress=end)
     assert (mesh.vertices.tobytes(), mesh.faces.tobytes()) == before
     assert segment(mesh).face_leaf.tobytes() == whole.face_leaf.tobytes()
+
+
+def test_progress_moves_within_the_long_stages():
+    reported = []
+    segment(shapes.dumbbell().mesh, on_progress=lambda stage, fraction: reported.append((fraction, stage)))
+    assert reported == sorted(reported, key=lambda report: report[0])
+    stages = [stage for _, stage in set(reported)]
+    assert stages.count("affinity") >= 5
+    assert stages.count("coarsen") >= 4

@@ -10,21 +10,22 @@ from segcore.method import segment
 
 
 def test_costs_are_per_face_and_add_up():
-    cost = Cost("ball", 1000, dict.fromkeys(STAGES, 0.01), 500_000)
+    cost = Cost("ball", 1000, dict.fromkeys(STAGES, 0.01), 500_000, 0.02)
     assert cost.total_s == pytest.approx(0.05)
     row = render([cost]).splitlines()[2].split()
-    assert row == ["ball", "1000", *["0.010"] * 5, "0.050", "50.00", "0", "500"]
+    assert row == ["ball", "1000", *["0.010"] * 5, "0.050", "50.00", "0", "500", "0.02"]
 
 
 def test_crowds_are_compared_with_the_first_one():
-    costs = [Cost(name, 12, dict.fromkeys(STAGES, seconds), 0) for name, seconds in (("one", 0.1), ("many", 0.2))]
+    costs = [Cost(name, 12, dict.fromkeys(STAGES, seconds), 0, 0.0) for name, seconds in (("one", 0.1), ("many", 0.2))]
     assert [line.split()[-1] for line in render_crowds(costs).splitlines()[2:]] == ["1.00", "2.00"]
 
 
 def test_hard_meshes_are_compared_with_smooth_ones_of_their_size():
-    hard, smooth = (Cost("any", 12, dict.fromkeys(STAGES, seconds), 0) for seconds in (0.5, 0.2))
+    hard, smooth = (Cost("any", 12, dict.fromkeys(STAGES, seconds), 0, seconds) for seconds in (0.5, 0.2))
     (line,) = render_hard([(hard, smooth)]).splitlines()[2:]
     assert line.split()[2:5] == ["2.50", "1.00", "2.50"]
+    assert line.split()[-1] == "0.50"
 
 
 @pytest.mark.parametrize("name", HARD_SHAPES)
