@@ -59,6 +59,7 @@ def segment_stored_mesh(store: JobStore, job: Job, limits: ReadLimits, clock: St
         clock("reading", 0.0)
         with store.open_mesh(job.id) as source:
             mesh = segcore.read_mesh(source, job.mesh_format, limits=limits, appearance=True, unit=job.unit, up=job.up)
+        clock("clean", 0.0)
         surface = segcore.build_surface(mesh)
         parameters = segcore.SegmentationParameters.from_mapping(job.parameters)
         hierarchy = segcore.segment(mesh, parameters, clock, surface)
