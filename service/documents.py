@@ -1,99 +1,12 @@
-"""Models of the JSON documents of the API, from which its OpenAPI document is made."""
+"""Models of the JSON documents of the API except jobs, from which its OpenAPI document is made."""
 
 from datetime import datetime
-from typing import Any, Literal
+from typing import Literal
 
 from pydantic import BaseModel, Field
 
-from segcore.parameters import USUAL_SEGMENTS
-from segcore.report import MeshReport, structure_note
-from service.answer.model_formats import model_links
-from service.mount import public_path
+from service.job_documents import Status
 from service.problems import JobError
-from worker.jobs.attempts import Attempt
-from worker.jobs.job import Canceled, Failed, Job, Outcome, Succeeded
-from worker.jobs.queue.queue import Activity
-from worker.process.progress import REPORTED_STAGES
-
-Status = Literal["queued", "running", "succeeded", "failed", "canceled"]
-
-
-class InputDocument(BaseModel):
-    """The uploaded mesh file."""
-
-    file_name: str | None = Field(description="Its name at the client.", examples=["hand.off"])
-    format: str | None = Field(
-        description="Declared by its name or type; null if it is detected from the content.", examples=["off"]
-    )
-    size_bytes: int = Field(examples=[274_139])
-    sha256: str = Field(description="Of its bytes, in hexadecimal.")
-
-
-class MeshSummary(BaseModel):
-    faces: int = Field(examples=[12_000])
-    vertices: int = Field(examples=[6_002])
-    report: MeshReport | None = Field(description="Properties of the mesh; null in jobs of earlier versions.")
-
-
-class JobLinks(BaseModel):
-    """Paths on this server; results are available when the job has succeeded."""
-
-    self: str
-    events: str
-    cancel: str
-    labels: str
-    hierarchy: str
-    model: str = Field(
-        description="A coloured GLB; ?segments=k for another level, ?levels=all for all levels in one file."
-    )
-    ply: str
-    obj: str
-    mtl: str = Field(description="The colours of the OBJ file.")
-    objzip: str = Field(description="A ZIP archive with the OBJ file and its colours.")
-    threemf: str
-    parts: str = Field(description="A ZIP archive with a file per segment.")
-    preview: str = Field(description="A picture.")
-
-
-class JobDocument(BaseModel):
-    id: str = Field(examples=["5f1c5d1d2c0f4e0fa8f0b4b2f1a9d6c3"])
-    status: Status
-    stage: str | None = Field(
-        description=f"Stage of a running job: one of {', '.join(REPORTED_STAGES)}.", examples=["cut"]
-    )
-    progress: float = Field(ge=0, le=1, description="Fraction of the work that is done.")
-    queue_position: int | None = Field(description="Position of a waiting job: 1 is next. Null if it is not known.")
-    created_at: datetime
-    started_at: datetime | None = Field(description="Start of the latest attempt.")
-    finished_at: datetime | None
-    attempts: int = Field(description="Number of times the job was started.")
-    input: InputDocument
-    parameters: dict[str, Any] = Field(description="All parameters of the segmentation, including defaults.")
-    mesh: MeshSummary | None = Field(description="Null until the job has succeeded.")
-    max_segments: int | None = Field(description="The largest possible number of segments.")
-    automatic_segments: int | None = Field(description="The number of segments if a request gives none.")
-    limit_reached: bool | None = Field(
-        description="Whether the hierarchy ends at max_segments because of the parameter of that name, although "
-        "sensible cuts are left. Null if that is not known, as in jobs of earlier versions."
-    )
-    notes: list[str] = Field(
-        description="Sentences on what limits the result, for people: for example that a file has more shells than "
-        "segments can be."
-    )
-    error: JobError | None = Field(description="The reason why the job failed.")
-    links: JobLinks
-
-
-class JobPageDocument(BaseModel):
-    jobs: list[JobDocument] = Field(description="Newest first; may be fewer than the limit although more jobs follow.")
-    next_cursor: str | None = Field(description="Send it as cursor to get the next page; null on the last page.")
-
-
-class SubmittedJobDocument(JobDocument):
-    """A submitted job, with its labels if the client waited for it and it succeeded."""
-
-    segments: int | None = Field(description="The number of segments of these labels.")
-    labels: list[int] | None = Field(description="The segment of every face, in the order of the file.")
 
 
 class BatchJobs(BaseModel):
@@ -221,66 +134,3 @@ class Readiness(BaseModel):
     store: bool = Field(description="The store is writable.")
     workers: int = Field(description="Number of live workers.")
     missing: list[str] = Field(description="Reasons why the service is not ready, one sentence each.")
-
-
-def job_document(job: Job, outcome: Outcome | None, attempts: list[Attempt], activity: Activity | None) -> JobDocument:
-    """Return the document of a job; ``activity`` is None if the queue does not answer."""
-    is_running = outcome is None and _is_running(attempts, activity)
-    progress = activity.progress if activity is not None and is_running else None
-    return JobDocument(
-        id=job.id,
-        status=outcome.status if outcome else "running" if is_running else "queued",
-        stage=progress.stage if progress else None,
-        progress=1.0 if isinstance(outcome, Succeeded) else progress.fraction if progress else 0.0,
-        queue_position=None if outcome or activity is None else activity.position,
-        created_at=job.created_at,
-        started_at=attempts[-1].started_at if attempts else None,
-        finished_at=outcome.finished_at if outcome else None,
-        attempts=len(attempts),
-        input=InputDocument(
-            file_name=job.file_name, format=job.mesh_format, size_bytes=job.size_bytes, sha256=job.sha256
-        ),
-        parameters=job.parameters,
-        links=_links(public_path(f"/v1/jobs/{job.id}")),
-        **_result_fields(job, outcome),
-    )
-
-
-def _is_running(attempts: list[Attempt], activity: Activity | None) -> bool:
-    if activity is not None:
-        return activity.running
-    return bool(attempts) and attempts[-1].ended_at is None
-
-
-def _result_fields(job: Job, outcome: Outcome | None) -> dict[str, Any]:
-    levels = ("max_segments", "automatic_segments", "limit_reached")
-    fields: dict[str, Any] = {**dict.fromkeys(("mesh", *levels, "error")), "notes": []}
-    match outcome:
-        case Succeeded(faces=faces, vertices=vertices, report=report):
-            mesh = MeshSummary.model_validate({"faces": faces, "vertices": vertices, "report": report})
-            numbers = {name: getattr(outcome, name) for name in levels}
-            return fields | numbers | {"mesh": mesh, "notes": _notes(job, mesh)}
-        case Failed(code=code, message=message):
-            return fields | {"error": JobError(code=code, message=message)}
-        case Canceled() | None:
-            return fields
-
-
-def _notes(job: Job, mesh: MeshSummary) -> list[str]:
-    counts = mesh.report.structure if mesh.report else None
-    if counts is None or "structure" not in job.parameters:
-        return []
-    note = structure_note(counts, job.parameters["structure"], job.parameters["max_segments"] or USUAL_SEGMENTS)
-    return [] if note is None else [note]
-
-
-def _links(path: str) -> JobLinks:
-    return JobLinks(
-        self=path,
-        events=f"{path}/events",
-        cancel=f"{path}/cancel",
-        labels=f"{path}/labels",
-        hierarchy=f"{path}/hierarchy",
-        preview=f"{path}/preview.png",
-        **model_links(path),
-    )
