@@ -35,7 +35,6 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         "pictures), and save their results. A second run resumes an interrupted one. If the "
         "service requires an API key, set it in the environment variable CLEAVE_API_KEY."
     )
-    parser.epilog = "exit status: 0 all done, 1 some files failed, 2 nothing was tried, 130 interrupted"
     parser.add_argument("files", type=Path, nargs="+", metavar="FILE", help="mesh files, or folders with one")
     parser.add_argument("--server", default=_DEFAULT_SERVER, metavar="URL", help="of the service (%(default)s)")
     add_coordinates(parser)
