@@ -14,7 +14,7 @@ from textwrap import fill
 from typing import NoReturn
 
 from cleave.settings import InvalidSettings, load_settings
-from service.commands.console import say
+from service.commands.console import say, say_beside
 from service.host.kernel_cache import prepare_kernel_cache
 
 COMMANDS = {
@@ -82,13 +82,14 @@ def main(arguments: Sequence[str] | None = None) -> int:
     except Exception as error:
         if not isinstance(error, _expected_errors()):
             raise
-        print(f"cleave: {_sentence(error)}", file=sys.stderr)
+        say_beside(f"cleave: {_sentence(error)}")
         return 2
 
 
 class _Parser(argparse.ArgumentParser):
     def error(self, message: str) -> NoReturn:
-        self.exit(2, f"cleave: {message}; see {self.prog} --help.\n")
+        say_beside(f"cleave: {message}; see {self.prog} --help.")
+        self.exit(2)
 
 
 def _parser(words: Sequence[str]) -> _Parser:

@@ -14,7 +14,7 @@ from cleave.client.errors import ClientError
 from segcore.errors import CleaveError
 from segcore.io import model_in_folder
 from service.commands.arguments import add_coordinates, add_level, add_parameters, add_structure
-from service.commands.console import ProgressBoard, say
+from service.commands.console import ProgressBoard, say, say_beside
 from service.commands.server_results import DEFAULT_RESULTS, RESULTS, result_names
 from service.commands.submission import Ending, Session, Submission, submit_file
 from service.commands.submit_record import SubmitRecord
@@ -70,10 +70,10 @@ def run(choices: argparse.Namespace) -> int:
     try:
         say(_submit_files(choices, os.environ.get("CLEAVE_API_KEY")))
     except SomeFailed as failed:
-        print(f"cleave: {failed}", file=sys.stderr)
+        say_beside(f"cleave: {failed}")
         return _SOME_FAILED
     except ClientError as error:
-        print(f"cleave: {error}", file=sys.stderr)
+        say_beside(f"cleave: {error}")
         return _NOTHING_TRIED
     return 0
 
