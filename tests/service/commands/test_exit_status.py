@@ -74,7 +74,7 @@ def test_submit_ends_with_its_statuses(url: str, mesh: Path, tmp_path: Path) -> 
     options = ["--results", "seg", "-o", str(tmp_path / "out")]
     assert status_of("submit", str(mesh), "--server", url, *options) == 0
     assert status_of("submit", str(mesh), str(tmp_path / "missing.off"), "--server", url, *options) == 1
-    assert status_of("submit", str(mesh), "--server", "nowhere", *options) == 2
+    assert status_of("submit", str(mesh), "--server", url, "-o", str(mesh)) == 2
 
 
 @pytest.mark.parametrize("command", ["segment", "convert", "inspect"])
@@ -89,8 +89,7 @@ def test_ctrl_c_ends_a_command_with_130(monkeypatch: pytest.MonkeyPatch, command
     assert status_of(command, "-", *output) == INTERRUPTED
 
 
-@pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM])
-@pytest.mark.parametrize("command", ["serve", "worker"])
+@pytest.mark.parametrize(("command", "number"), [("serve", signal.SIGINT), ("worker", signal.SIGTERM)])
 def test_a_signal_ends_the_processes_of_an_installation_with_0(
     start_server: StartServer, tmp_path: Path, command: str, number: signal.Signals
 ) -> None:

@@ -15,7 +15,7 @@ viewer.addEventListener("cleave-load", function ({ detail }) {
   same<typeof detail.limitReached, boolean | null>();
   if (this.tree !== null) this.cut = this.tree.split(this.tree.cutAt(7), 3);
 });
-viewer.addEventListener("click", (event) => same<typeof event, MouseEvent>());
+viewer.addEventListener("keydown", (event) => same<typeof event, KeyboardEvent>());
 viewer.addEventListener("cleave-error", ({ detail }) => {
   // @ts-expect-error: the code is none of the enumeration
   detail.code === "no_such_code";
