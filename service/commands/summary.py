@@ -5,18 +5,13 @@ import numpy as np
 from segcore.hierarchy import Hierarchy
 from segcore.levels import Fineness
 
-_NO_CUT = "No cut is good enough by the rule of these parameters: choose a number with --segments, or other parameters."
 _MOST_LINES = 8  # of segments; set by hand
 
 
 def level_summary(hierarchy: Hierarchy, segments: int, fineness: Fineness) -> str:
-    """Return the number of segments, who has chosen it, and the number at which the hierarchy ends and why.
-
-    A second line says what to do if the automatic number is one.
-    """
+    """Return the number of segments, who has chosen it, and the number at which the hierarchy ends and why."""
     chosen = "chosen automatically" if fineness.is_automatic else "as requested"
-    summary = f"{segments} segment{'s' if segments != 1 else ''}, {chosen}; {_end(hierarchy)}"
-    return f"{summary}\n{_NO_CUT}" if fineness.is_automatic and segments == 1 < hierarchy.max_segments else summary
+    return f"{segments} segment{'s' if segments != 1 else ''}, {chosen}; {_end(hierarchy)}"
 
 
 def part_lines(hierarchy: Hierarchy, segments: int) -> list[str]:

@@ -28,12 +28,6 @@ def test_one_segment_is_singular() -> None:
     assert level_summary(two_strips()[1], 1, Fineness(segments=1)).startswith("1 segment, as requested; ")
 
 
-def test_a_single_automatic_segment_is_explained() -> None:
-    summary = level_summary(two_strips()[1], 1, Fineness())
-    assert summary.endswith("choose a number with --segments, or other parameters.")
-    assert "\n" not in level_summary(two_strips()[1], 1, Fineness(segments=1))
-
-
 def test_the_largest_segments_are_listed_with_their_sizes() -> None:
     hierarchy = two_strips()[1]
     lines = part_lines(hierarchy, 3)
