@@ -7,6 +7,7 @@ from pathlib import Path
 
 import pytest
 
+from helpers.documents import blocks
 from helpers.node import programs
 from service.openapi.export import DOCS
 
@@ -24,10 +25,22 @@ def complaints(folder: Path, name: str) -> str:
     return subprocess.run(command, capture_output=True, text=True, timeout=120, check=False).stdout
 
 
-def test_types_made_from_the_document_are_exact(folder: Path) -> None:
+@pytest.fixture(scope="module")
+def generated(folder: Path) -> Path:
+    """The folder with the generated types, cleave.d.ts."""
     generator = folder / "node_modules/openapi-typescript/bin/cli.js"
-    programs.run(generator, [str(DOCS / "openapi.json"), "-o", str(folder / "api.d.ts")])
-    assert complaints(folder, "exact.ts") == ""
+    programs.run(generator, [str(DOCS / "openapi.json"), "-o", str(folder / "cleave.d.ts")])
+    return folder
+
+
+def test_types_made_from_the_document_are_exact(generated: Path) -> None:
+    assert complaints(generated, "exact.ts") == ""
+
+
+def test_the_example_of_the_guide_compiles(generated: Path) -> None:
+    (example,) = blocks((DOCS / "how-to" / "frontend.md").read_text(), "ts")
+    (generated / "example.ts").write_text(example)
+    assert complaints(generated, "example.ts") == ""
 
 
 def test_the_types_of_the_component_are_exact(folder: Path) -> None:

@@ -1,6 +1,6 @@
 /** Compiles only if the generated types are exact. */
 import createClient from "openapi-fetch";
-import type { components, paths } from "./api";
+import type { components, paths } from "./cleave";
 
 type Schemas = components["schemas"];
 type Equal<A, B> = (<T>() => T extends A ? 1 : 2) extends <T>() => T extends B ? 1 : 2 ? true : false;
