@@ -1,5 +1,5 @@
 # syntax=docker/dockerfile:1
-FROM python:3.13-slim-bookworm AS build
+FROM python:3.13.16-slim-bookworm AS build
 WORKDIR /src
 COPY pyproject.toml README.md LICENSE ./
 COPY cleave cleave
@@ -12,7 +12,7 @@ ENV NUMBA_CACHE_DIR=/opt/cleave/kernels \
     NUMBA_CPU_NAME=generic
 RUN /opt/cleave/bin/python -P -c "import segcore; segcore.warm_up()"
 
-FROM python:3.13-slim-bookworm
+FROM python:3.13.16-slim-bookworm
 RUN groupadd --system --gid 10001 cleave \
     && useradd --system --uid 10001 --gid cleave --no-create-home cleave \
     && install -d -m 700 -o cleave -g cleave /data

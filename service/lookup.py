@@ -9,8 +9,9 @@ from fastapi import Path
 from cleave.logs import note_job
 from segcore.io import Segmentation
 from service.context import Context
-from service.documents import BatchDocument, BatchedJob, BatchLinks, JobDocument, job_document
+from service.documents import BatchDocument, BatchedJob, BatchLinks
 from service.guard.callers import Caller
+from service.job_documents import JobDocument, job_document
 from service.mount import public_path
 from service.problems import JobError, Problem
 from worker.jobs.job import Canceled, Failed, Job, Succeeded

@@ -9,11 +9,14 @@ from typing import Any
 from fastapi import FastAPI, Request
 from fastapi.exceptions import RequestValidationError
 from pydantic import BaseModel, Field
+from pydantic.config import JsonDict
+from pydantic.json_schema import SkipJsonSchema
 from starlette.exceptions import HTTPException
 from starlette.requests import ClientDisconnect
 from starlette.responses import Response
 
 from segcore.errors import InvalidParameters
+from worker.jobs.attempts import FAILURE_CODES
 from worker.jobs.objects.durable import is_disk_full
 from worker.jobs.objects.interface import StoreError
 from worker.jobs.queue.connection import QueueError
@@ -77,8 +80,14 @@ _RETRY_AFTER_S = {"not_finished": 1, "queue_unavailable": 5, "store_unavailable"
 class JobError(BaseModel):
     """Why a job failed."""
 
-    code: str = Field(description="Stable, for programs.", examples=["invalid_mesh"])
+    code: str = Field(
+        description="Stable, for programs.", examples=["invalid_mesh"], json_schema_extra={"enum": list(FAILURE_CODES)}
+    )
     message: str = Field(description="One sentence for people.")
+
+
+def _drop_default(schema: JsonDict) -> None:
+    del schema["default"]  # generators of types would take the field for one that is always there
 
 
 class ProblemDocument(BaseModel):
@@ -88,8 +97,12 @@ class ProblemDocument(BaseModel):
     title: str = Field(description="The phrase of the HTTP status.", examples=["Not Found"])
     status: int = Field(examples=[404])
     detail: str = Field(description="One sentence that says what to do.")
-    code: str = Field(description="Stable, for programs.", examples=list(STATUS))
-    error: JobError | None = Field(default=None, description="With code job_failed: why the job failed.")
+    code: str = Field(description="Stable, for programs.", json_schema_extra={"enum": list(STATUS)})
+    error: JobError | SkipJsonSchema[None] = Field(
+        default=None,
+        description="With code job_failed: why the job failed. Otherwise absent.",
+        json_schema_extra=_drop_default,
+    )
 
 
 class Problem(Exception):  # noqa: N818

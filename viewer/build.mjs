@@ -4,6 +4,7 @@ import { mkdir, readdir, readFile, rm, writeFile } from "node:fs/promises";
 import { join } from "node:path";
 
 const target = "../service/viewer";
+const TYPES = "cleave-viewer.d.ts"; // of the component, for pages that embed it
 const common = { bundle: true, minify: true, write: false, logLevel: "warning", outdir: target };
 
 /** Return the contents of the built files, by name. */
@@ -21,6 +22,7 @@ async function built() {
   });
   const styles = await build({ ...common, entryPoints: ["src/page/page.css"] });
   const files = withPlainNames([...scripts.outputFiles, ...styles.outputFiles]);
+  files.set(TYPES, await readFile(join("src/component", TYPES)));
   for (const name of await readdir("static")) files.set(name, await readFile(join("static", name)));
   return files;
 }

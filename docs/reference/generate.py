@@ -44,10 +44,15 @@ _HEAD_OF_ARGUMENTS = ("| argument | default | meaning |", "|---|---|---|")
 _COMMANDS = """\
 # Command line
 
-`cleave` has one subcommand per task; `cleave COMMAND --help` prints what this page lists. An expected error, such as a
-file that cannot be read, is one line on standard error and exit status 2. Ctrl-C ends a command with exit status 130.
+`cleave` has one subcommand per task; `cleave COMMAND --help` prints what this page lists. `cleave --version` prints the
+version.
 
-`cleave --version` prints the version.
+## Exit status
+
+An expected error, such as a file that cannot be read, is one line on standard error and exit status 2. Ctrl-C ends a
+command with exit status 130, except `serve` and `worker`, which end with 0. A traceback and status 1 are an error in
+Cleave.
+
 """
 
 
@@ -58,7 +63,7 @@ def settings_page() -> str:
 
 def commands_page() -> str:
     """Return the reference of the command line."""
-    return _COMMANDS + "".join(f"{line}\n" for line in _command_sections())
+    return _COMMANDS + "".join(f"{line}\n" for line in (*_exit_statuses(), *_command_sections()))
 
 
 def parsers() -> dict[str, argparse.ArgumentParser]:
@@ -123,8 +128,14 @@ def _command_sections() -> Iterator[str]:
         yield from (_argument(action) for action in parser._actions if action.dest != "help")
         if (parser.epilog or "").startswith("settings"):
             yield from ("", "Everything else is a [setting](settings.md) in the environment.")
-        elif parser.epilog:
-            yield from ("", _sentence(parser.epilog))
+
+
+def _exit_statuses() -> Iterator[str]:
+    columns = sorted({status for statuses in command_line.EXIT_STATUSES.values() for status in statuses})
+    yield from (f"| command | {' | '.join(map(str, columns))} |", "|---" * (len(columns) + 1) + "|")
+    for name, statuses in command_line.EXIT_STATUSES.items():
+        cells = (_sentence(statuses[status]) if status in statuses else "" for status in columns)
+        yield f"| `{name}` | {' | '.join(cells)} |"
 
 
 def _argument(action: argparse.Action) -> str:

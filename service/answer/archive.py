@@ -10,7 +10,7 @@ from segcore.io import WRITERS, Segmentation
 from segcore.levels import Fineness
 from service.answer.label_formats import hierarchy_json
 from service.context import Context
-from service.documents import JobDocument
+from service.job_documents import JobDocument
 from service.lookup import result_of
 from worker.jobs.job import Job
 from worker.jobs.store.store import UnknownJob

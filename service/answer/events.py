@@ -8,7 +8,7 @@ from datetime import timedelta
 from starlette.concurrency import run_in_threadpool
 
 from service.context import Context
-from service.documents import JobDocument
+from service.job_documents import JobDocument
 from service.lookup import describe
 from worker.jobs.job import Job, now
 from worker.jobs.store.store import UnknownJob

@@ -24,6 +24,14 @@ _RESULT_HEADERS = {
         "description": "Of labels and the hierarchy, if Accept-Encoding allows it and no range is requested.",
     },
 }
+PARTIAL_CONTENT: dict[str, Any] = {
+    "description": "Status 206: a piece of the bytes of a result, with its media type.",
+    "headers": {
+        "Content-Range": {"schema": {"type": "string"}, "description": "Its place, for example bytes 0-99/2500."},
+        "ETag": {"schema": {"type": "string"}, "description": "Of the whole; for If-Range."},
+    },
+    "content": {"application/octet-stream": {"schema": {"type": "string", "format": "binary"}}},
+}
 LEVEL_PROBLEMS = ("invalid_parameters", "invalid_request")  # codes for a level that does not exist
 NOT_MODIFIED = "Not modified: If-None-Match contains its ETag."
 # Media types that compress well and fast; models and pictures do not.
@@ -45,12 +53,17 @@ class Rendition:
 
 
 def rendition_responses(content: dict[str, Any], description: str, *problems: str) -> dict[int | str, dict[str, Any]]:
-    """Return the ``responses`` of a route that answers with a rendition, for the OpenAPI document."""
+    """Return the ``responses`` of a route that answers with a rendition, for the OpenAPI document.
+
+    Ranges are described beside the responses, because generated types would be unions with a piece of the bytes, which
+    no request without the header Range gets.
+    """
     return {
-        200: {"content": content, "description": description, "headers": _RESULT_HEADERS},
-        206: {
-            "content": {media_type: {"schema": {"type": "string", "format": "binary"}} for media_type in content},
-            "description": "The requested range.",
+        200: {
+            "content": content,
+            "description": f"{description} If the request has a Range header, status 206 and that piece of the bytes.",
+            "headers": _RESULT_HEADERS,
+            "x-partial-content": {"$ref": "#/components/responses/PartialContent"},
         },
         304: {"description": NOT_MODIFIED},
         **documented(*RESULT_PROBLEMS, "range_not_satisfiable", *problems),

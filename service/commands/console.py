@@ -3,18 +3,27 @@
 import os
 import sys
 import threading
-from pathlib import Path
 from types import TracebackType
 from typing import TextIO
 
 _BAR_WIDTH, _BOARD_BAR_WIDTH = 30, 20  # characters; with its percentage and stage, either fits on a line of 80
+# Control characters, and bytes of file names that are no text, which Python has as U+DC80 to U+DCFF.
+_ESCAPES = {
+    **{code: f"\\x{code:02x}" for code in (*range(32), *range(127, 160)) if chr(code) not in "\n\t"},
+    **{0xDC00 + byte: f"\\x{byte:02x}" for byte in range(128, 256)},
+}
 _NAME_WIDTH = 24  # of a name on the board; longer names are cut
+
+
+def printable(text: str) -> str:
+    """Return text without control characters: the name of a file must not command the terminal."""
+    return text.translate(_ESCAPES)
 
 
 def say(text: str) -> None:
     """Print text at once. If the standard output is a pipe that has been closed, as ``head`` does, print nothing."""
     try:
-        print(text, flush=True)
+        print(printable(text), flush=True)
     except BrokenPipeError:  # the work goes on
         forget_output()
 
@@ -26,14 +35,9 @@ def forget_output() -> None:
     os.close(nowhere)
 
 
-def shown_name(path: Path) -> str:
-    """Return the name of a file for people, with bytes that are no text escaped."""
-    return path.name.encode("utf-8", "surrogateescape").decode("utf-8", "backslashreplace")
-
-
 def say_beside(text: str) -> None:
-    """Print text on the standard error, because the standard output carries data."""
-    print(text, file=sys.stderr, flush=True)
+    """Print text on the standard error."""
+    print(printable(text), file=sys.stderr, flush=True)
 
 
 class ProgressBar:

@@ -19,7 +19,6 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     parser.description = (
         "Check the queue server, the store, the workers and this machine against the settings, and report what to fix."
     )
-    parser.epilog = "exit status: 0 nothing has to be fixed, 1 something has, 2 the settings cannot be used"
     parser.add_argument("--host", default="127.0.0.1", help="the address that the service listens on (%(default)s)")
     add_data_dir(parser)
     parser.add_argument("--json", action="store_true", help="print the findings as JSON")

@@ -10,10 +10,11 @@ import sys
 from collections.abc import Sequence
 from importlib import import_module
 from pathlib import Path
+from textwrap import fill
 from typing import NoReturn
 
 from cleave.settings import InvalidSettings, load_settings
-from service.commands.console import say
+from service.commands.console import say, say_beside
 from service.host.kernel_cache import prepare_kernel_cache
 
 COMMANDS = {
@@ -28,6 +29,32 @@ COMMANDS = {
     "completion": "print the completion script of a shell",
 }
 
+_NOT_DONE = "the arguments, the settings or a file cannot be used, and one line says why"
+_CANNOT_START = "it cannot start, and one line says why"
+# What the exit statuses of each command mean, for its help and docs/reference/cli.md. Every command but serve and
+# worker, which end with 0 then, ends with 130 if Ctrl-C interrupts it.
+EXIT_STATUSES = {
+    "serve": {0: "stopped by Ctrl-C or SIGTERM", 2: _CANNOT_START},
+    "worker": {
+        0: "stopped by Ctrl-C or SIGTERM; with --check: workers of this machine are alive",
+        1: "with --check: none is alive, or the queue server does not answer",
+        2: _CANNOT_START,
+    },
+    "segment": {0: "done", 2: _NOT_DONE},
+    "convert": {0: "done", 2: _NOT_DONE},
+    "inspect": {0: "done", 2: _NOT_DONE},
+    "submit": {
+        0: "every file has its results",
+        1: "some files failed",
+        2: "nothing was tried: the arguments, the server or the folder cannot be used",
+    },
+    "key": {0: "done", 2: "the name cannot be used"},
+    "doctor": {0: "nothing has to be fixed", 1: "something has", 2: "the settings cannot be used"},
+    "completion": {0: "done", 2: "the shell is not known, or the extra completion is missing"},
+}
+INTERRUPTED = 130  # 128 + SIGINT, as shells report it
+
+_HELP_WIDTH = 78
 _EVERY = "*"  # in place of the name of a command
 
 _DESCRIPTION = """\
@@ -51,17 +78,18 @@ def main(arguments: Sequence[str] | None = None) -> int:
         choices = _parser(words).parse_args(words)
         return choices.run(choices) or 0
     except KeyboardInterrupt:
-        return 130  # 128 + SIGINT, as shells report it
+        return INTERRUPTED
     except Exception as error:
         if not isinstance(error, _expected_errors()):
             raise
-        print(f"cleave: {_sentence(error)}", file=sys.stderr)
+        say_beside(f"cleave: {_sentence(error)}")
         return 2
 
 
 class _Parser(argparse.ArgumentParser):
     def error(self, message: str) -> NoReturn:
-        self.exit(2, f"cleave: {message}; see {self.prog} --help.\n")
+        say_beside(f"cleave: {message}; see {self.prog} --help.")
+        self.exit(2)
 
 
 def _parser(words: Sequence[str]) -> _Parser:
@@ -76,8 +104,19 @@ def _parser(words: Sequence[str]) -> _Parser:
             _prepare_kernel_cache(words)
             module = import_module(f"service.commands.{name}")
             module.add_arguments(command)
+            command.epilog = "\n\n".join(filter(None, [command.epilog, _exit_statuses(name)]))
+            command.description = fill(command.description or "", _HELP_WIDTH)
+            command.formatter_class = argparse.RawDescriptionHelpFormatter  # keeps the lines of the epilog
             command.set_defaults(run=module.run)
     return parser
+
+
+def _exit_statuses(name: str) -> str:
+    """Return the last lines of the help of a command."""
+    statuses = (
+        EXIT_STATUSES[name] if name in ("serve", "worker") else {**EXIT_STATUSES[name], INTERRUPTED: "interrupted"}
+    )
+    return "exit status:\n" + "\n".join(f"  {status:<4} {meaning}" for status, meaning in statuses.items())
 
 
 def complete_parser() -> argparse.ArgumentParser:

@@ -14,7 +14,7 @@ from segcore.io.result import write_result
 from segcore.levels import Fineness
 from segcore.report import StructureCounts, structure_counts, structure_note
 from service.commands.arguments import add_level, add_parameters, add_structure
-from service.commands.console import ProgressBar
+from service.commands.console import ProgressBar, say_beside
 from service.commands.inputs import STANDARD, add_mesh, input_name, read_input
 from service.commands.outputs import (
     OutputOptions,
@@ -25,6 +25,7 @@ from service.commands.outputs import (
     write_model,
 )
 from service.commands.summary import level_lines, part_lines
+from service.host.kernel_cache import compiled_kernels
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
@@ -56,8 +57,10 @@ def run(choices: argparse.Namespace) -> None:
     outputs = [*choices.output, *filter(None, (choices.labels, choices.hierarchy, choices.result))]
     tell = check_outputs(outputs)
     options = output_options(choices, None if choices.mesh == STANDARD else choices.mesh)
+    if not compiled_kernels()[0]:
+        say_beside("Compiling the kernels, which takes up to a minute and is done once.")
     with ProgressBar(sys.stderr) as bar:
-        bar("prepare", 0.0)
+        bar("load the kernels", 0.0)
         segcore.warm_up()
         bar("read", 0.0)
         mesh = read_input(choices)

@@ -14,7 +14,7 @@ from cleave.client.documents import Job
 from cleave.client.errors import ClientError, JobEnded, RequestRefused
 from segcore.errors import CleaveError
 from segcore.io import model_in_folder, neighbours_of
-from service.commands.console import ProgressBoard, shown_name
+from service.commands.console import ProgressBoard, printable
 from service.commands.server_results import RESULTS, save_result
 from service.commands.submit_record import SubmitRecord
 
@@ -79,7 +79,7 @@ class Session:
 
 def submit_file(session: Session, submission: Submission) -> tuple[Ending | None, str]:
     """Save the results of a file that are not current; return how it ended, None if it failed, and a sentence."""
-    label = shown_name(submission.path)
+    label = printable(submission.path.name)
     try:
         ending, text = _submit(session, replace(submission, path=model_in_folder(submission.path)))
     except OSError as error:
@@ -111,7 +111,7 @@ def _submit(session: Session, submission: Submission) -> tuple[Ending, str]:
 
 def _finished_job(session: Session, submission: Submission, companions: dict[str, Path], digest: str) -> Job:
     """Submit a file and wait for its job; raise JobEnded if it does not succeed."""
-    label = shown_name(submission.path)
+    label = printable(submission.path.name)
     session.board.show(label, "upload", 0.0)
     job = _submitted_job(session, submission, companions, digest)
     while not job.has_ended:

@@ -14,7 +14,7 @@ from cleave.client.errors import ClientError
 from segcore.errors import CleaveError
 from segcore.io import model_in_folder
 from service.commands.arguments import add_coordinates, add_level, add_parameters, add_structure
-from service.commands.console import ProgressBoard, say
+from service.commands.console import ProgressBoard, say, say_beside
 from service.commands.server_results import DEFAULT_RESULTS, RESULTS, result_names
 from service.commands.submission import Ending, Session, Submission, submit_file
 from service.commands.submit_record import SubmitRecord
@@ -35,7 +35,6 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         "pictures), and save their results. A second run resumes an interrupted one. If the "
         "service requires an API key, set it in the environment variable CLEAVE_API_KEY."
     )
-    parser.epilog = "exit status: 0 all done, 1 some files failed, 2 nothing was tried, 130 interrupted"
     parser.add_argument("files", type=Path, nargs="+", metavar="FILE", help="mesh files, or folders with one")
     parser.add_argument("--server", default=_DEFAULT_SERVER, metavar="URL", help="of the service (%(default)s)")
     add_coordinates(parser)
@@ -71,10 +70,10 @@ def run(choices: argparse.Namespace) -> int:
     try:
         say(_submit_files(choices, os.environ.get("CLEAVE_API_KEY")))
     except SomeFailed as failed:
-        print(f"cleave: {failed}", file=sys.stderr)
+        say_beside(f"cleave: {failed}")
         return _SOME_FAILED
     except ClientError as error:
-        print(f"cleave: {error}", file=sys.stderr)
+        say_beside(f"cleave: {error}")
         return _NOTHING_TRIED
     return 0
 

@@ -12,6 +12,7 @@ from cleave.settings import InvalidSettings, Settings, unknown_variables
 from cleave.version import installed_version
 from service.doctor.findings import Finding, error, ok, warning
 from service.guard.exposure import check_exposure
+from service.host.kernel_cache import compiled_kernels
 from service.host.listening import BACKLOG
 
 # Memory of a work-horse. bench/RESULTS.md measures 398 to 411 bytes per face on meshes of 200,000 faces and more (its
@@ -86,9 +87,7 @@ def memory_bytes() -> int:
 
 
 def _kernels() -> Iterator[Finding]:
-    shipped = os.environ.get("NUMBA_CACHE_DIR")
-    folder = Path(shipped) if shipped else Path(__file__).parents[2] / "segcore"
-    compiled = sum(1 for _ in folder.rglob("*.nbi"))
+    compiled, folder = compiled_kernels()
     if compiled:
         yield ok("kernels", f"{compiled} are compiled, in {folder}.")
     else:

@@ -28,6 +28,13 @@ def prepare_kernel_cache(data_dir: Callable[[], Path]) -> None:
     os.environ[_VARIABLE] = str(_copy(Path(shipped), caches) if shipped and Path(shipped).is_dir() else caches)
 
 
+def compiled_kernels() -> tuple[int, Path]:
+    """Return the number of kernels that are compiled, and their folder."""
+    chosen = os.environ.get(_VARIABLE)
+    folder = Path(chosen) if chosen else Path(__file__).parents[2] / "segcore"
+    return sum(1 for _ in folder.rglob("*.nbi")), folder
+
+
 def _copy(shipped: Path, caches: Path) -> Path:
     """Copy a folder once, completely or not at all, and return the copy."""
     copy = caches / _digest(shipped)

@@ -8,6 +8,7 @@ from pydantic import BaseModel
 from pydantic.json_schema import models_json_schema
 
 from segcore.parameters import parameters_schema
+from service.answer.renditions import PARTIAL_CONTENT
 from service.documents import BatchJobs, HierarchyDocument, LabelsDocument, RunsDocument
 from service.problems import MEDIA_TYPE, ProblemDocument, documented
 
@@ -57,6 +58,7 @@ def _completed(document: dict[str, Any], keys_required: bool) -> dict[str, Any]:
     _, hidden = models_json_schema([(model, "serialization") for model in _HIDDEN_MODELS], ref_template=_PLACE)
     schemas.update(hidden["$defs"])
     schemas["Parameters"] = deepcopy(parameters_schema())
+    document["components"]["responses"] = {"PartialContent": PARTIAL_CONTENT}
     for name in _UNUSED:
         schemas.pop(name, None)
     for path, operations in document["paths"].items():

@@ -3,28 +3,51 @@
 from fastapi import APIRouter, Request
 from starlette.responses import HTMLResponse, Response
 
-from service.openapi.reference import html_body
+from service.openapi.reference import markdown
+from service.openapi.reference_page import html_page
 
 router = APIRouter(include_in_schema=False)
 
+_FOR_PROGRAMS = "For programs: [openapi.json](openapi.json)."
 _STYLE = """
-:root { color-scheme: light dark; }
-body { font: 1rem/1.5 system-ui, sans-serif; max-width: 60rem; margin: 2rem auto; padding: 0 1rem; }
-h2 { margin-top: 3rem; font-size: 1.1rem; border-top: 1px solid #8886; padding-top: 1rem; overflow-wrap: anywhere; }
+:root { color-scheme: light dark; --line: #8884; --code: #8882; }
+* { box-sizing: border-box; }
+body { font: 1rem/1.5 system-ui, sans-serif; margin: 0; display: grid; grid-template-columns: 19rem minmax(0, 1fr); }
+nav { position: sticky; top: 0; height: 100vh; overflow: auto; padding: 1rem; border-right: 1px solid var(--line); }
+nav ul { list-style: none; margin: .5rem 0; padding: 0; font-size: .875rem; }
+nav li { overflow-wrap: anywhere; }
+nav li a { display: block; padding: .2rem 0; text-decoration: none; }
+nav a:hover { text-decoration: underline; }
+nav .level2 { font-weight: 600; margin-top: .75rem; }
+nav .level3 { padding-left: 1rem; }
+summary { font-weight: 600; cursor: pointer; }
+main { max-width: 62rem; padding: 1rem 2rem 4rem; min-width: 0; }
+h2 { margin-top: 3rem; border-bottom: 1px solid var(--line); }
+h3 { margin-top: 2.5rem; overflow-wrap: anywhere; }
+code { font: .9em ui-monospace, monospace; background: var(--code); border-radius: 3px; padding: .1em .25em; }
+code { overflow-wrap: anywhere; }
 table { border-collapse: collapse; width: 100%; margin: 1rem 0; }
-td, th { text-align: left; vertical-align: top; padding: .25rem .75rem .25rem 0; border-bottom: 1px solid #8883; }
-td:first-child { font-family: ui-monospace, monospace; white-space: nowrap; }
+td, th { text-align: left; vertical-align: top; padding: .3rem .75rem .3rem 0; border-bottom: 1px solid var(--line); }
+td:first-child code { white-space: nowrap; }
+@media (max-width: 50rem) {
+  body { display: block; }
+  nav { position: static; height: auto; max-height: 45vh; border: 0; border-bottom: 1px solid var(--line); }
+  main { padding: 1rem; }
+  table, tbody, tr, td { display: block; width: 100%; }
+  thead { display: none; }
+  tr { padding: .4rem 0; border-bottom: 1px solid var(--line); }
+  td { border: 0; padding: .1rem 0; overflow-wrap: anywhere; }
+  td:first-child { font-weight: 600; }
+  td:first-child code { white-space: normal; }
+  td:empty { display: none; }
+}
 """
 
 
 @router.get("/docs")
 def get_docs(request: Request) -> HTMLResponse:
-    body = html_body(request.app.openapi())
-    return HTMLResponse(
-        f'<!doctype html><html lang="en"><head><meta charset="utf-8"><title>Cleave API</title>'
-        f'<meta name="viewport" content="width=device-width"><link rel="stylesheet" href="docs.css"></head>'
-        f"<body>{body}</body></html>"
-    )
+    title, _, rest = markdown(request.app.openapi()).partition("\n")
+    return HTMLResponse(html_page(f"{title}\n\n{_FOR_PROGRAMS}\n{rest}"))
 
 
 @router.get("/docs.css")

@@ -27,7 +27,13 @@ _PAGE_HEADERS = {
 }
 _FILE_HEADERS = {"X-Content-Type-Options": "nosniff", "Cache-Control": "no-cache"}
 _PAGE = "index.html"
-_MEDIA_TYPES = {".js": "text/javascript", ".css": "text/css", ".svg": "image/svg+xml", ".png": "image/png"}
+_MEDIA_TYPES = {
+    ".js": "text/javascript",
+    ".ts": "text/plain",
+    ".css": "text/css",
+    ".svg": "image/svg+xml",
+    ".png": "image/png",
+}
 
 
 @router.get("/")

@@ -11,8 +11,8 @@ from service.answer.events import EVENT_SCHEMA, has_last_event, job_events
 from service.answer.renditions import NOT_MODIFIED, answer_json
 from service.answer.waiting import wait_for_end
 from service.context import ContextOf
-from service.documents import JobDocument, JobPageDocument, Status
 from service.guard.callers import CallerOf
+from service.job_documents import JobDocument, JobPageDocument, Status
 from service.lookup import JOB_PROBLEMS, JobId, describe, describe_all, find_job
 from service.problems import Problem, documented
 from worker.jobs.job import Canceled

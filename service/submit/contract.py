@@ -4,7 +4,8 @@ from typing import Any
 
 from segcore.io import FORMATS
 from service.answer.archive import ZIP
-from service.documents import BatchDocument, BatchJobs, JobDocument, SubmittedJobDocument
+from service.documents import BatchDocument, BatchJobs
+from service.job_documents import SubmittedJobDocument, UnfinishedJobDocument
 from service.openapi.document import PARAMETERS, ref
 from service.submit.request import FORM_TYPE
 
@@ -108,7 +109,7 @@ JOB_RESPONSES: dict[int | str, dict[str, Any]] = {
         "links": _LINKS,
     },
     202: {
-        "model": JobDocument,
+        "model": UnfinishedJobDocument,
         "description": "The job is accepted and stored. Poll its Location, or read its events.",
         "headers": {**_JOB_HEADERS, "Retry-After": {"schema": {"type": "integer"}, "description": "Seconds."}},
         "links": _LINKS,

@@ -10,6 +10,7 @@ import pytest
 from playwright.sync_api import Browser, sync_playwright
 
 from helpers.browser.meshes import small_burr
+from helpers.browser.other_site import OtherSite
 from helpers.browser.visit import MAX_UPLOAD_BYTES, NewVisit, Visit
 from helpers.installation import Installation
 from helpers.node import programs
@@ -19,13 +20,23 @@ _CHROMIUM = Path("/usr/bin/chromium")
 _ARGUMENTS = ["--no-sandbox", "--use-angle=swiftshader", "--enable-unsafe-swiftshader", "--ignore-gpu-blocklist"]
 
 
-class _Limited(Installation):
-    settings = Installation.settings | {"CLEAVE_MAX_UPLOAD_BYTES": str(MAX_UPLOAD_BYTES)}
+@pytest.fixture(scope="package")
+def other_site() -> Iterator[OtherSite]:
+    with OtherSite() as site:
+        yield site
 
 
 @pytest.fixture(scope="package")
-def installation() -> Iterator[Installation]:
-    with _Limited(workers=1) as installation:
+def installation(other_site: OtherSite) -> Iterator[Installation]:
+    """A service that allows one other site."""
+
+    class Limited(Installation):
+        settings = Installation.settings | {
+            "CLEAVE_MAX_UPLOAD_BYTES": str(MAX_UPLOAD_BYTES),
+            "CLEAVE_CORS_ORIGINS": other_site.allowed_origin,
+        }
+
+    with Limited(workers=1) as installation:
         yield installation
 
 

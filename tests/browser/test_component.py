@@ -3,11 +3,19 @@
 import io
 import json
 import struct
+from pathlib import Path
 
-from helpers.browser.visit import Visit
+from playwright.sync_api import Route
+
+from helpers.browser.other_site import OtherSite
+from helpers.browser.visit import NewVisit, Visit
+from helpers.documents import blocks, read
 from helpers.files.hierarchies import two_strips
+from helpers.installation import Installation
 from segcore.io.gltf.writer import write_glb
 
+FRONTEND = Path("docs/how-to/frontend.md")
+EXAMPLE_ID = "5f1c5d1d2c0f4e0fa8f0b4b2f1a9d6c3"
 PAGE = """<!doctype html><html lang="en"><title>Another page</title>
 <script type="module" src="viewer/cleave-viewer.js"></script>
 <cleave-viewer src="v1/jobs/{job}/model.glb{query}" {attributes}></cleave-viewer>"""
@@ -134,3 +142,74 @@ def test_a_moved_element_shows_its_model_again(visit: Visit, job: str) -> None:
         })"""
     )
     assert evaluate(visit, "v.partAt(200, 150 + v.getBoundingClientRect().top)") != -1
+
+
+def shown_text(visit: Visit) -> str:
+    """The text that the element shows in place of a model; empty if it shows none."""
+    box = visit.page.locator("cleave-viewer p")
+    return box.inner_text() if box.is_visible() else ""
+
+
+def test_the_state_is_an_attribute_with_a_text(visit: Visit, job: str) -> None:
+    held: list[Route] = []
+    visit.page.route("**/model.glb?levels=all", lambda route: held.append(route))
+    visit.page.route(
+        "**/embedding",
+        lambda route: route.fulfill(
+            body=PAGE.format(job=job, query="?levels=all", attributes=""), content_type="text/html"
+        ),
+    )
+    visit.open("embedding")
+    visit.page.wait_for_selector("cleave-viewer[state=loading] p:visible")
+    assert shown_text(visit) == "Loading the model…"
+    visit.page.evaluate("document.addEventListener('cleave-load', (event) => (window.at = event.target.state))")
+    held[0].continue_()
+    visit.page.wait_for_selector("cleave-viewer[state=loaded]")
+    assert (shown_text(visit), visit.page.evaluate("window.at")) == ("", "loaded")
+    visit.page.evaluate("document.querySelector('cleave-viewer').removeAttribute('src')")
+    visit.page.wait_for_selector("cleave-viewer[state=empty]")
+
+
+def test_the_text_of_an_error_says_what_to_do(visit: Visit, job: str) -> None:
+    embed(visit, job)
+    visit.page.evaluate(
+        "(path) => document.querySelector('cleave-viewer').setAttribute('src', path)", f"v1/jobs/{'0' * 32}/model.glb"
+    )
+    visit.page.wait_for_selector("cleave-viewer[state=failed]")
+    said = "The model was not loaded. There is no job with this id: it was deleted, or the id is wrong."
+    assert shown_text(visit) == said
+    assert evaluate(visit, "v.error") == {"code": "not_loaded", "message": said}
+    assert evaluate(visit, "v.tree") is None
+    visit.faults = [fault for fault in visit.faults if "404" not in fault]
+    visit.page.evaluate(
+        "(path) => document.querySelector('cleave-viewer').setAttribute('src', path)", f"v1/jobs/{job}/model.glb"
+    )
+    visit.page.wait_for_selector("cleave-viewer[state=loaded]")
+    assert (shown_text(visit), evaluate(visit, "v.error")) == ("", None)
+
+
+def test_without_webgl_the_element_says_so(visit: Visit, job: str) -> None:
+    visit.page.add_init_script("HTMLCanvasElement.prototype.getContext = () => null")
+    body = PAGE.format(job=job, query="", attributes="")
+    visit.page.route("**/embedding", lambda route: route.fulfill(body=body, content_type="text/html"))
+    visit.open("embedding")
+    visit.page.wait_for_selector("cleave-viewer[state=failed]")
+    assert "enable WebGL 2" in shown_text(visit)
+    assert evaluate(visit, "v.error.code") == "no_webgl"
+    visit.faults = [fault for fault in visit.faults if "WebGL" not in fault]
+
+
+def test_a_page_of_another_origin_shows_models_if_it_is_allowed(
+    new_visit: NewVisit, installation: Installation, other_site: OtherSite, job: str
+) -> None:
+    """As the example of docs/how-to/frontend.md, whose addresses are absolute."""
+    (example,) = (block for block in blocks(read(FRONTEND), "html") if "cleave-viewer" in block)
+    other_site.html = example.replace("http://127.0.0.1:8000", installation.url).replace(EXAMPLE_ID, job)
+    for origin, state in ((other_site.allowed_origin, "loaded"), (other_site.refused_origin, "failed")):
+        visit = new_visit()
+        visit.page.goto(f"{origin}/")
+        visit.page.wait_for_selector(f"cleave-viewer[state={state}]")
+        if state == "failed":
+            assert f"CLEAVE_CORS_ORIGINS there must contain {origin}." in shown_text(visit)
+            visit.faults = [fault for fault in visit.faults if "CORS" not in fault and "ERR_FAILED" not in fault]
+        visit.foreign = [url for url in visit.foreign if not url.startswith(f"{origin}/")]

@@ -32,7 +32,7 @@ def test_the_policy_allows_only_this_server(installation: Installation) -> None:
     assert directives["script-src"] == "'self'"
 
 
-@pytest.mark.parametrize("name", [*SCRIPTS, "page.css", "icon.svg", "sample-jack.png"])
+@pytest.mark.parametrize("name", [*SCRIPTS, "cleave-viewer.d.ts", "page.css", "icon.svg", "sample-jack.png"])
 def test_an_unchanged_file_is_not_sent_again(installation: Installation, name: str) -> None:
     url = f"{installation.url}/viewer/{name}"
     tag = httpx.get(url).raise_for_status().headers["ETag"]

@@ -4,8 +4,10 @@ import re
 from pathlib import Path
 
 import pytest
+import yaml
 
 from cleave.settings import Settings
+from helpers.documents import blocks
 from service.problems import STATUS
 from service.telemetry.metrics import Metrics
 from worker.jobs.queue.counters import JobCounters, Stored
@@ -46,3 +48,13 @@ def test_every_error_that_is_explained_exists() -> None:
 def test_every_claim_of_the_security_document_names_an_existing_test(name: str) -> None:
     file, _, function = name.partition("::")
     assert f"def {function}" in (ROOT / file).read_text()
+
+
+def test_the_names_in_the_configuration_of_traefik_refer_to_each_other() -> None:
+    (text,) = blocks((ROOT / "docs" / "how-to" / "proxies.md").read_text(), "yaml")
+    http = yaml.safe_load(text)["http"]
+    (router,) = http["routers"].values()
+    assert router["service"] in http["services"]
+    assert set(router["middlewares"]) == set(http["middlewares"])
+    (prefix,) = http["middlewares"][router["middlewares"][0]]["stripPrefix"]["prefixes"]
+    assert f"PathPrefix(`{prefix}`)" == router["rule"]

@@ -1,5 +1,6 @@
 """The Kubernetes manifests are valid and match the product."""
 
+from itertools import chain
 from pathlib import Path
 from typing import Any
 
@@ -13,10 +14,18 @@ from worker.jobs.size_class import SizeClass
 
 FOLDER = Path(__file__).parents[2] / "deploy" / "kubernetes"
 KUSTOMIZATION = yaml.safe_load((FOLDER / "kustomization.yaml").read_text())
-DOCUMENTS: list[dict[str, Any]] = [
-    document for file in KUSTOMIZATION["resources"] for document in yaml.safe_load_all((FOLDER / file).read_text())
-]
-BUILT_IN = [one for one in DOCUMENTS if not one["apiVersion"].startswith("keda.sh/")]
+COMPONENTS = ["ingress", "service-monitor"]
+
+
+def resources(folder: Path) -> list[dict[str, Any]]:
+    files = yaml.safe_load((folder / "kustomization.yaml").read_text())["resources"]
+    return [document for file in files for document in yaml.safe_load_all((folder / file).read_text())]
+
+
+DOCUMENTS = resources(FOLDER)
+OPTIONAL = {name: resources(FOLDER / "components" / name) for name in COMPONENTS}
+OF_OPERATORS = ("keda.sh/", "monitoring.coreos.com/")  # whose schemas are not those of Kubernetes
+BUILT_IN = [one for one in [*DOCUMENTS, *chain(*OPTIONAL.values())] if not one["apiVersion"].startswith(OF_OPERATORS)]
 WORKLOADS = {one["metadata"]["name"]: one for one in DOCUMENTS if one["kind"] in ("Deployment", "StatefulSet")}
 OWN = ["service", "worker-small", "worker-large"]
 SECRET_KEYS = {"redis-password", "aws-access-key-id", "aws-secret-access-key", "api-keys"}
@@ -52,7 +61,10 @@ def test_every_manifest_is_valid(document: dict[str, Any]) -> None:
 
 
 def test_every_file_belongs_to_the_kustomization() -> None:
-    assert {path.name for path in FOLDER.iterdir()} == {*KUSTOMIZATION["resources"], "kustomization.yaml"}
+    assert {path.name for path in FOLDER.glob("*.yaml")} == {*KUSTOMIZATION["resources"], "kustomization.yaml"}
+    assert {path.name for path in (FOLDER / "components").iterdir()} == set(COMPONENTS)
+    for name in COMPONENTS:
+        assert f"#   - components/{name}\n" in (FOLDER / "kustomization.yaml").read_text()
 
 
 @pytest.mark.parametrize("name", WORKLOADS)
@@ -119,6 +131,35 @@ def test_names_and_ports_match() -> None:
         assert uses <= WORKLOADS[name]["spec"]["template"]["metadata"]["labels"].items()
     for name, budget in named("PodDisruptionBudget").items():
         assert budget["selector"]["matchLabels"] == {"app.kubernetes.io/name": name}
+
+
+def test_the_ingress_leads_to_the_service_and_takes_the_largest_upload() -> None:
+    (ingress,) = OPTIONAL["ingress"]
+    (rule,) = ingress["spec"]["rules"]
+    (path,) = rule["http"]["paths"]
+    assert path["backend"]["service"] == {
+        "name": "cleave",
+        "port": {"name": named("Service")["cleave"]["ports"][0]["name"]},
+    }
+    assert path["path"] == Settings.model_fields["root_path"].default + "/"
+    assert ingress["spec"]["tls"][0]["hosts"] == [rule["host"]]
+    annotations = {name.rpartition("/")[2]: value for name, value in ingress["metadata"]["annotations"].items()}
+    assert (
+        int(annotations["proxy-body-size"].removesuffix("g")) * 2**30
+        >= Settings.model_fields["max_batch_bytes"].default
+    )
+    assert int(annotations["proxy-read-timeout"]) > Settings.model_fields["max_stream_s"].default
+    assert annotations["proxy-request-buffering"] == "off"
+
+
+def test_the_service_monitor_selects_the_service_and_sends_a_key() -> None:
+    (monitor,) = OPTIONAL["service-monitor"]
+    (service,) = (one for one in DOCUMENTS if one["kind"] == "Service" and one["metadata"]["name"] == "cleave")
+    assert monitor["spec"]["selector"]["matchLabels"] == service["metadata"]["labels"]
+    (endpoint,) = monitor["spec"]["endpoints"]
+    assert endpoint["port"] == service["spec"]["ports"][0]["name"]
+    assert endpoint["path"] == "/metrics"
+    assert endpoint["authorization"]["credentials"]["name"] == "cleave-metrics"
 
 
 def test_the_queue_server_is_persistent_and_requires_a_password() -> None:

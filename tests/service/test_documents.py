@@ -5,7 +5,7 @@ import httpx
 from cleave.settings import Settings
 from helpers.api import submit
 from service.answer.model_formats import MODELS, model_links
-from service.documents import JobLinks, job_document
+from service.job_documents import JobLinks, job_document
 from worker.jobs.job import Succeeded, now
 from worker.jobs.store.store import JobStore
 from worker.process.perform import perform

@@ -4,6 +4,7 @@ from dataclasses import dataclass
 from datetime import datetime
 from typing import Literal, TypeAlias
 
+from segcore.errors import InvalidMesh, InvalidParameters, LimitExceeded, UnsupportedFormat
 from worker.jobs.job import Failed, now
 
 Cause: TypeAlias = Literal["worker_lost", "out_of_memory", "timed_out", "file_too_large", "internal_error"]
@@ -17,6 +18,13 @@ FAILURES: dict[Cause, str] = {
     "internal_error": "The job stopped at an internal error, {attempts} times in a row: ask the operator to check "
     "the log of the workers.",
 }
+INPUT_LOST = "input_lost"
+# Every code of Failed.
+FAILURE_CODES = (
+    *(error.code for error in (InvalidMesh, UnsupportedFormat, InvalidParameters, LimitExceeded)),
+    INPUT_LOST,
+    *FAILURES,
+)
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

@@ -7,6 +7,7 @@ import segcore
 from cleave.settings import Settings
 from segcore.io import ReadLimits
 from segcore.io.result import write_result
+from worker.jobs.attempts import INPUT_LOST
 from worker.jobs.job import Failed, Job, Outcome, Succeeded, now
 from worker.jobs.store.store import JobStore, UnknownJob
 from worker.process.progress import OnProgress, StageClock
@@ -66,9 +67,7 @@ def segment_stored_mesh(store: JobStore, job: Job, limits: ReadLimits, clock: St
     except segcore.CleaveError as error:
         return Failed(finished_at=now(), code=error.code, message=str(error))
     except FileNotFoundError:
-        return Failed(
-            finished_at=now(), code="input_lost", message="The mesh is no longer in the store: send it again."
-        )
+        return Failed(finished_at=now(), code=INPUT_LOST, message="The mesh is no longer in the store: send it again.")
     clock.begin("storing")
     store.results.write(job.id, lambda target: write_result(target, mesh, hierarchy))
     return Succeeded(

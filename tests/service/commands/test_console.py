@@ -11,6 +11,7 @@ from pathlib import Path
 import pytest
 
 from service.commands.console import ProgressBar, ProgressBoard
+from service.commands.main import main
 
 
 class Terminal(io.StringIO):
@@ -60,3 +61,12 @@ def test_a_board_shows_a_bar_for_each_running_task_and_a_line_for_each_that_has_
     assert last_drawn.startswith("a.off: 3 segments\nb.off ")
     assert last_drawn.endswith("\x1b[1F")
     assert cleared == ""
+
+
+def test_names_cannot_command_the_terminal(mesh: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    hostile = mesh.with_name(os.fsdecode(b"\x1b[2J\xc2\x9b\xff.off"))
+    mesh.rename(hostile)
+    assert main(["inspect", str(hostile)]) == 0
+    assert capsys.readouterr().out.startswith("\\x1b[2J\\x9b\\xff.off: ")
+    assert main(["inspect", f"{hostile}.missing"]) == 2
+    assert "\\x1b[2J\\x9b\\xff.off.missing: No such file or directory.\n" in capsys.readouterr().err

@@ -116,3 +116,13 @@ def test_a_pipe_that_is_closed_early_is_no_error(mesh: Path, tmp_path: Path) -> 
         errors = process.stderr.read()
     assert (process.returncode, errors) == (0, b"")
     assert output.stat().st_size > 0
+
+
+def test_kernels_that_must_be_compiled_first_are_announced(
+    mesh: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    assert main(["segment", str(mesh)]) == 0
+    assert "Compiling" not in capsys.readouterr().err
+    monkeypatch.setenv("NUMBA_CACHE_DIR", str(tmp_path))
+    assert main(["segment", str(mesh)]) == 0
+    assert "Compiling the kernels, which takes up to a minute" in capsys.readouterr().err

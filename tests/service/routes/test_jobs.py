@@ -12,7 +12,7 @@ from cleave.settings import Settings
 from helpers.api import AGAIN, FACES, problem, submit, traces
 from helpers.files.samples import TWO_SQUARES
 from helpers.jobs import SMALL
-from service.documents import Status
+from service.job_documents import Status
 from worker.jobs.queue.queue import JobQueue, Progress
 from worker.jobs.store.store import JobStore
 from worker.process.perform import perform

@@ -1,21 +1,16 @@
 /** The web component ``<cleave-viewer>``, which shows the GLB file of a job. docs/reference/viewer.md describes it. */
 
+import type { CleaveViewer as Declared, ErrorDetail, LoadDetail, ViewerState } from "./cleave-viewer";
 import { Drawing, type Inks } from "./drawing";
 import { InvalidModel, parseModel, type Model } from "./glb";
 import { loadOriginal, lookNamed, NoOriginal, type Look } from "./look";
 import { FIRST_VIEW, Stage, type View } from "./stage";
+import { reasonOf, Status, unreachable } from "./status";
 import { buildSurface } from "./surface";
 import type { Cut, PartTree } from "./tree";
 
-export type { Look, Model, View };
+export type { LoadDetail, Look, Model, View };
 export { type Cut, type PartTree, type TreeNode } from "./tree";
-
-export interface LoadDetail {
-  readonly maxSegments: number;
-  readonly automaticSegments: number;
-  readonly limitReached: boolean | null;
-  readonly faces: number;
-}
 
 const LIGHT: Inks = {
   line: [0.09, 0.1, 0.13, 0.62],
@@ -32,17 +27,25 @@ const DARK: Inks = {
   sky: [0.16, 0.17, 0.2],
 };
 const STYLE = `
-:host { display: block; position: relative; min-width: 1px; min-height: 1px; contain: strict; }
+:host { display: block; position: relative; min-width: 1px; min-height: 1px; contain: strict; contain-intrinsic-block-size: 20rem; }
 :host([hidden]) { display: none; }
 canvas { display: block; width: 100%; height: 100%; touch-action: none; outline: none; cursor: grab; border-radius: inherit; }
 canvas:active { cursor: grabbing; }
 canvas.over { cursor: pointer; }
+p { position: absolute; inset: 0; display: grid; place-content: center; margin: 0; padding: 1em; text-align: center; pointer-events: none; }
+p[hidden] { display: none; }
+:host([state="failed"]) canvas { visibility: hidden; }
+:host([state="loading"]) p { animation: wait 0s 0.3s both; }
+@keyframes wait { from { visibility: hidden; } }
 canvas:focus-visible { box-shadow: inset 0 0 0 3px var(--cleave-focus, #5b5bd6); }
 `;
 const CLICK_PIXELS = 5; // a pointer that moves farther drags
 const PAUSE_MS = 12; // of work on a model before control returns to the event loop
 
-export class CleaveViewer extends HTMLElement {
+/** The server did not send the model; the message says why. */
+class NotLoaded extends Error {}
+
+export class CleaveViewer extends HTMLElement implements Declared {
   static readonly observedAttributes = [
     "src",
     "segments",
@@ -60,6 +63,7 @@ export class CleaveViewer extends HTMLElement {
   /** Headers of the request for ``src``. */
   requestHeaders: Record<string, string> = {};
 
+  readonly #status = new Status(this);
   #canvas = document.createElement("canvas");
   #stage: Stage | null = null;
   #resizing: ResizeObserver | null = null;
@@ -87,11 +91,12 @@ export class CleaveViewer extends HTMLElement {
 
   connectedCallback(): void {
     this.#canvas = this.#newCanvas(); // a canvas cannot be used after its WebGL context was released
-    this.shadowRoot!.replaceChildren(this.#canvas);
+    this.shadowRoot!.replaceChildren(this.#canvas, this.#status.box);
+    this.#status.state = "empty";
     try {
       this.#stage = new Stage(this.#canvas, () => this.#emit("cleave-view", this.view));
     } catch {
-      this.#fail("no_webgl", "This browser shows no 3D graphics: enable WebGL 2, or use another browser.");
+      this.#fail("no_webgl", "This browser shows no 3D graphics: enable WebGL 2 (hardware acceleration), or use another browser.");
       return;
     }
     this.#resizing = new ResizeObserver(() => this.#stage?.resize());
@@ -103,7 +108,6 @@ export class CleaveViewer extends HTMLElement {
   }
 
   disconnectedCallback(): void {
-    this.#loading?.abort();
     cancelAnimationFrame(this.#hoverFrame);
     this.#dark.removeEventListener("change", this.#applyTheme);
     this.#resizing?.disconnect();
@@ -131,6 +135,15 @@ export class CleaveViewer extends HTMLElement {
     } else {
       this.#applyModes();
     }
+  }
+
+  get state(): ViewerState {
+    return this.#status.state;
+  }
+
+  /** Why the state is ``failed``; null in other states. */
+  get error(): ErrorDetail | null {
+    return this.#status.error;
   }
 
   /** The tree of cuts of the present model; null if no model is shown. */
@@ -235,13 +248,17 @@ export class CleaveViewer extends HTMLElement {
 
   /** Show the bytes of a GLB file. */
   async load(data: ArrayBuffer): Promise<void> {
-    this.#loading?.abort();
-    const loading = (this.#loading = new AbortController());
-    await this.#show(data, loading.signal);
+    await this.#loadFrom(null, async () => data);
   }
 
   /** Remove the model and free its memory. */
   clear(): void {
+    this.#loading?.abort();
+    this.#remove();
+    if (this.#stage !== null) this.#status.state = "empty";
+  }
+
+  #remove(): void {
     this.#loadingLook?.abort();
     this.#drawing?.dispose();
     this.#drawing = null;
@@ -252,16 +269,29 @@ export class CleaveViewer extends HTMLElement {
   }
 
   async #fetch(source: string): Promise<void> {
+    await this.#loadFrom(source, async (signal) => {
+      const noResponse = (): never => {
+        throw new NotLoaded(unreachable(source));
+      };
+      const answer = await fetch(source, { headers: this.requestHeaders, signal }).catch(noResponse);
+      if (!answer.ok) throw new NotLoaded(await reasonOf(answer));
+      return answer.arrayBuffer().catch(noResponse);
+    });
+  }
+
+  async #loadFrom(src: string | null, read: (signal: AbortSignal) => Promise<ArrayBuffer>): Promise<void> {
+    if (this.#stage === null) return;
     this.#loading?.abort();
-    const loading = (this.#loading = new AbortController());
+    const { signal } = (this.#loading = new AbortController());
+    this.#status.state = "loading";
+    this.#emit("cleave-loading", { src });
     try {
-      const answer = await fetch(source, { headers: this.requestHeaders, signal: loading.signal });
-      if (!answer.ok) return this.#fail("not_loaded", `The model was not loaded: the server responded with status ${answer.status}.`);
-      await this.#show(await answer.arrayBuffer(), loading.signal);
+      await this.#show(await read(signal), signal);
     } catch (error) {
-      if (loading.signal.aborted) return;
+      if (signal.aborted) return;
       if (error instanceof InvalidModel) this.#fail("invalid_model", error.message);
-      else this.#fail("not_loaded", "The model was not loaded: the server is not responding.");
+      else if (error instanceof NotLoaded) this.#fail("not_loaded", `The model was not loaded. ${error.message}`);
+      else throw error;
     }
   }
 
@@ -269,7 +299,7 @@ export class CleaveViewer extends HTMLElement {
     const model = parseModel(data);
     const surface = await buildSurface(model, eventLoopYielder());
     if (signal.aborted || this.#stage === null) return;
-    this.clear();
+    this.#remove();
     this.#model = model;
     this.#drawing = new Drawing(model, surface, this.#inks());
     const segments = Number(this.getAttribute("segments") ?? model.automaticSegments);
@@ -286,6 +316,7 @@ export class CleaveViewer extends HTMLElement {
       limitReached: model.limitReached,
       faces: model.index.length / 3,
     };
+    this.#status.state = "loaded";
     this.#emit("cleave-load", detail satisfies LoadDetail);
     if (this.#firstView === null && !this.hasAttribute("no-entrance")) this.#stage.enter();
     this.#firstView = null;
@@ -452,8 +483,9 @@ export class CleaveViewer extends HTMLElement {
     this.#pick(parts.at(now < 0 && step > 0 ? 0 : (now + step) % parts.length)!, false);
   }
 
-  #fail(code: string, message: string): void {
-    this.clear();
+  #fail(code: ErrorDetail["code"], message: string): void {
+    this.#remove();
+    this.#status.fail({ code, message });
     this.#emit("cleave-error", { code, message });
   }
 

@@ -1,9 +1,11 @@
 /** The looks of a model: its parts, the original colours and textures, or both. */
 
+import type { Look } from "./cleave-viewer";
 import type { Model } from "./glb";
 import type { Original } from "./original";
+import { reasonOf, unreachable } from "./status";
 
-export type Look = "parts" | "original" | "both";
+export type { Look };
 
 /** The original look cannot be shown; the message says why. */
 export class NoOriginal extends Error {}
@@ -23,7 +25,7 @@ export async function loadOriginal(
   if (source === null) throw new NoOriginal("There is no file with the original look.");
   const data = await download(source, headers, signal).catch((error: unknown) => {
     if (signal.aborted || error instanceof NoOriginal) throw error;
-    throw new NoOriginal("The server is not responding.");
+    throw new NoOriginal(unreachable(source));
   });
   // Loaded on demand: only this look needs the reader of glTF files.
   const { readOriginal } = await import("./original");
@@ -38,9 +40,4 @@ async function download(source: string, headers: Record<string, string>, signal:
   const answer = await fetch(source, { headers, signal });
   if (!answer.ok) throw new NoOriginal(await reasonOf(answer));
   return answer.arrayBuffer();
-}
-
-async function reasonOf(answer: Response): Promise<string> {
-  const problem = (await answer.json().catch(() => ({}))) as { detail?: string };
-  return problem.detail ?? `The server responded with status ${answer.status}.`;
 }

@@ -14,15 +14,10 @@ import {
   WebGLRenderTarget,
 } from "three";
 import { OrbitControls } from "three/addons/controls/OrbitControls.js";
+import type { View } from "./cleave-viewer";
 import type { Drawing } from "./drawing";
 
-/** Camera position: angles in radians; distance and target in radii of the model. */
-export interface View {
-  readonly azimuth: number;
-  readonly polar: number;
-  readonly distance: number;
-  readonly target: readonly [number, number, number];
-}
+export type { View };
 
 export const FIRST_VIEW: View = { azimuth: 0.55, polar: 1.18, distance: 3.5, target: [0, 0, 0] };
 

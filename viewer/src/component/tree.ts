@@ -1,29 +1,10 @@
 /** The tree of cuts, and its cuts: the parts at a level or after edits by hand. */
 
-/** A node of the tree; node 0 is the whole mesh, and split s makes the nodes 2 s + 1 and 2 s + 2. */
-export interface TreeNode {
-  readonly id: number;
-  /** -1 for the whole mesh. */
-  readonly parent: number;
-  /** Two, the larger first, or none. */
-  readonly children: readonly number[];
-  /** The smallest number of segments at which the node is a segment. */
-  readonly level: number;
-  /** Its label at every level at which it is a segment; selects its colour. */
-  readonly label: number;
-  /** In squared units of the mesh. */
-  readonly area: number;
-  readonly faces: number;
-  /** Value of the cut that splits the node; null for a leaf. */
-  readonly cutValue: number | null;
-  /** Step of the cut that splits the node; null for a leaf. Cuts that separate equal parts have one step. */
-  readonly step: number | null;
-}
+import type { Cut, Tree, TreeNode } from "./cleave-viewer";
 
-/** The set of nodes that are split; it contains the parents of its nodes. The parts are the nodes just below. */
-export type Cut = ReadonlySet<number>;
+export type { Cut, TreeNode };
 
-export class PartTree {
+export class PartTree implements Tree {
   readonly nodes: readonly TreeNode[];
 
   constructor(nodes: readonly TreeNode[]) {

@@ -1,0 +1,188 @@
+/** Types of the web component `<cleave-viewer>`: attributes, properties and events. */
+
+/** What is drawn: a colour for each part, the colours and textures of the file, or both. */
+export type Look = "parts" | "original" | "both";
+
+/** `empty` without `src`; `failed` if the model cannot be shown, until another is. */
+export type ViewerState = "empty" | "loading" | "loaded" | "failed";
+
+/** Camera position: angles in radians; distance and target in radii of the model. */
+export interface View {
+  readonly azimuth: number;
+  readonly polar: number;
+  readonly distance: number;
+  readonly target: readonly [number, number, number];
+}
+
+/** A node of the tree; node 0 is the whole mesh, and split s makes the nodes 2 s + 1 and 2 s + 2. */
+export interface TreeNode {
+  readonly id: number;
+  /** -1 for the whole mesh. */
+  readonly parent: number;
+  /** Two, the larger first, or none. */
+  readonly children: readonly number[];
+  /** The smallest number of segments at which the node is a segment. */
+  readonly level: number;
+  /** Its label at every level at which it is a segment; selects its colour. */
+  readonly label: number;
+  /** In squared units of the mesh. */
+  readonly area: number;
+  readonly faces: number;
+  /** Value of the cut that splits the node; null for a leaf. */
+  readonly cutValue: number | null;
+  /** Step of the cut that splits the node; null for a leaf. Cuts that separate equal parts have one step. */
+  readonly step: number | null;
+}
+
+/** The set of nodes that are split; it contains the parents of its nodes. The parts are the nodes just below. */
+export type Cut = ReadonlySet<number>;
+
+/** The tree of cuts. */
+export interface Tree {
+  readonly nodes: readonly TreeNode[];
+  readonly maxSegments: number;
+  readonly totalArea: number;
+  /** Entry i: value of the cut from i + 1 to i + 2 segments. */
+  readonly cutValues: readonly (number | null)[];
+  /** The numbers of segments that are worth offering: 1, and those after the last split of each step. */
+  readonly stepEnds: readonly number[];
+  node(id: number): TreeNode;
+  /** Return the cut with a number of segments, clipped to 1..maxSegments. */
+  cutAt(segments: number): Cut;
+  /** Return the cut with the given splits and the splits above them. */
+  cutOfSplits(splits: Iterable<number>): Cut;
+  /** Return the splits of a cut in ascending order, as in `?splits=` of the API. */
+  splitsOf(cut: Cut): number[];
+  /** Return the number of segments of a cut; null if it is not a level of the tree. */
+  levelOf(cut: Cut): number | null;
+  /** Return the parts of a cut, sorted by label. */
+  parts(cut: Cut): number[];
+  /** Return the nodes that are shown below a node of a cut in the n-ary tree, sorted by label. */
+  childrenIn(cut: Cut, id: number): number[];
+  /** Return the part that contains a node; -1 if the node itself is split. */
+  partOf(cut: Cut, id: number): number;
+  /** Return the cut with one more part split, together with the parts below it that belong to the step. */
+  split(cut: Cut, part: number): Cut;
+  /** Return the cut with all parts below a node merged. */
+  merge(cut: Cut, id: number): Cut;
+}
+
+/** Detail of `cleave-load`. */
+export interface LoadDetail {
+  readonly maxSegments: number;
+  readonly automaticSegments: number;
+  /** Null if it is not known. */
+  readonly limitReached: boolean | null;
+  readonly faces: number;
+}
+
+/** Detail of `cleave-error`, and the property `error`. */
+export interface ErrorDetail {
+  readonly code: "no_webgl" | "not_loaded" | "invalid_model";
+  /** A sentence for people, which says what to do. */
+  readonly message: string;
+}
+
+/** Events by name. All of them bubble out of shadow roots. */
+export interface CleaveViewerEventMap {
+  "cleave-loading": CustomEvent<{ readonly src: string | null }>;
+  "cleave-load": CustomEvent<LoadDetail>;
+  "cleave-error": CustomEvent<ErrorDetail>;
+  "cleave-look": CustomEvent<{ readonly look: Look }>;
+  "cleave-look-error": CustomEvent<{ readonly message: string }>;
+  /** `part` is -1 for none. */
+  "cleave-hover": CustomEvent<{ readonly part: number }>;
+  /** `preventDefault()` keeps the present selection. */
+  "cleave-select": CustomEvent<{ readonly parts: readonly number[] }>;
+  "cleave-view": CustomEvent<View>;
+}
+
+/** Attributes, for JSX and templates. */
+export interface CleaveViewerAttributes {
+  src?: string;
+  segments?: number | string;
+  /** Nodes, separated by blanks. */
+  selected?: string;
+  /** 0 to 1. */
+  explode?: number | string;
+  wireframe?: boolean | "";
+  concavity?: boolean | "";
+  "no-lines"?: boolean | "";
+  "no-entrance"?: boolean | "";
+  up?: "y" | "z";
+  look?: Look;
+  "original-src"?: string;
+  theme?: "light" | "dark";
+  label?: string;
+}
+
+export declare class CleaveViewer extends HTMLElement {
+  /** Headers of the requests for `src` and `original-src`. */
+  requestHeaders: Record<string, string>;
+  readonly state: ViewerState;
+  /** Why the state is `failed`; null in other states. */
+  readonly error: ErrorDetail | null;
+  /** Null if no model is shown. */
+  readonly tree: Tree | null;
+  readonly automaticSegments: number;
+  /** The nodes that are split. */
+  cut: Cut;
+  /** The parts of the present cut, sorted by label. */
+  readonly parts: number[];
+  hiddenParts: ReadonlySet<number>;
+  selected: readonly number[];
+  /** The highlighted part; -1 for none. */
+  hovered: number;
+  /** Names of nodes for the text alternative. */
+  set names(names: ReadonlyMap<number, string>);
+  /** The camera. If it is set before a model is loaded, the model appears without an entrance. */
+  view: View;
+  resetView(): void;
+  /** Return the colour of a node as a CSS colour. */
+  colorOf(node: number): string;
+  /** Return the part at a position in the window; -1 if there is none. */
+  partAt(clientX: number, clientY: number): number;
+  /** Return a PNG of the present view, without a background. */
+  picture(): Promise<Blob>;
+  /** Show the bytes of a GLB file. Bytes that are none are the state `failed` and the event `cleave-error`. */
+  load(data: ArrayBuffer): Promise<void>;
+  /** Remove the model and free its memory. */
+  clear(): void;
+
+  addEventListener<K extends keyof CleaveViewerEventMap>(
+    type: K,
+    listener: (this: CleaveViewer, event: CleaveViewerEventMap[K]) => unknown,
+    options?: boolean | AddEventListenerOptions,
+  ): void;
+  addEventListener<K extends keyof HTMLElementEventMap>(
+    type: K,
+    listener: (this: CleaveViewer, event: HTMLElementEventMap[K]) => unknown,
+    options?: boolean | AddEventListenerOptions,
+  ): void;
+  addEventListener(
+    type: string,
+    listener: EventListenerOrEventListenerObject,
+    options?: boolean | AddEventListenerOptions,
+  ): void;
+  removeEventListener<K extends keyof CleaveViewerEventMap>(
+    type: K,
+    listener: (this: CleaveViewer, event: CleaveViewerEventMap[K]) => unknown,
+    options?: boolean | EventListenerOptions,
+  ): void;
+  removeEventListener<K extends keyof HTMLElementEventMap>(
+    type: K,
+    listener: (this: CleaveViewer, event: HTMLElementEventMap[K]) => unknown,
+    options?: boolean | EventListenerOptions,
+  ): void;
+  removeEventListener(
+    type: string,
+    listener: EventListenerOrEventListenerObject,
+    options?: boolean | EventListenerOptions,
+  ): void;
+}
+
+declare global {
+  interface HTMLElementTagNameMap {
+    "cleave-viewer": CleaveViewer;
+  }
+}
