@@ -17,21 +17,27 @@ OnProgress = Callable[[str, float], None]
 
 
 class ProgressReporter:
-    """An ``on_progress`` callback that reports the progress of a job to the queue; errors are ignored."""
+    """An ``on_progress`` callback that reports the progress of a job to the queue; errors are ignored.
+
+    The beginning of a stage is always reported, progress within it at intervals.
+    """
 
     def __init__(self, queue: JobQueue, job_id: str) -> None:
         self._queue = queue
         self._job_id = job_id
-        self._next_at = 0.0
+        self._stage: str | None = None  # that was reported last
+        self._next_at = 0.0  # for the same stage
+        self._paused_until = 0.0  # for any
 
     def __call__(self, stage: str, fraction: float) -> None:
-        if time.monotonic() < self._next_at:
+        if time.monotonic() < (self._next_at if stage == self._stage else self._paused_until):
             return
         try:
             self._queue.publish(self._job_id, Progress(stage, fraction))
             self._next_at = time.monotonic() + _INTERVAL_S
         except QueueError:
-            self._next_at = time.monotonic() + _PAUSE_AFTER_ERROR_S
+            self._next_at = self._paused_until = time.monotonic() + _PAUSE_AFTER_ERROR_S
+        self._stage = stage
 
 
 class StageClock:

@@ -21,17 +21,18 @@ def test_a_stage_clock_measures_every_stage_and_calls_the_other_callback() -> No
     assert seen == [("reading", 0.0), ("cut", 0.1), ("cut", 0.2)]
 
 
-def test_reports_go_to_the_queue_a_few_times_a_second(queue: JobQueue) -> None:
+def test_reports_go_to_the_queue_at_every_stage_and_a_few_times_a_second(queue: JobQueue) -> None:
     job_id = new_job_id()
     queue.take(job_id, "worker", lease_s=30)
     report = ProgressReporter(queue, job_id)
     report("clean", 0.1)
     report("coarsen", 0.2)
-    assert queue.activity(job_id).progress == Progress("clean", 0.1)
+    report("coarsen", 0.25)
+    assert queue.activity(job_id).progress == Progress("coarsen", 0.2)
 
     def is_reported() -> bool:
-        report("cut", 0.3)
-        return queue.activity(job_id).progress == Progress("cut", 0.3)
+        report("coarsen", 0.3)
+        return queue.activity(job_id).progress == Progress("coarsen", 0.3)
 
     wait_until(is_reported, within_s=10)
 
