@@ -114,6 +114,7 @@ class FormatsDocument(BaseModel):
     models: list[FormatDocument] = Field(description="Formats of the segmented mesh.")
     max_upload_bytes: int
     max_faces: int
+    keys_required: bool = Field(description="Whether requests for jobs need an API key.")
     version: str = Field(description="Of the software; results depend on it.")
 
 

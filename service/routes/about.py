@@ -28,6 +28,7 @@ async def get_formats(context: ContextOf) -> FormatsDocument:
         models=[_result_format(name, writer) for name, writer in MODELS.items()],
         max_upload_bytes=context.settings.max_upload_bytes,
         max_faces=context.settings.max_faces,
+        keys_required=context.keys_required,
         version=context.version,
     )
 

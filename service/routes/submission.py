@@ -1,4 +1,4 @@
-"""Submission of one mesh, optionally with the labels in the response."""
+"""Submission of one mesh, or of that of an earlier job, optionally with the labels in the response."""
 
 from typing import Any
 
@@ -11,11 +11,12 @@ from service.answer.label_formats import compact_json
 from service.answer.waiting import wait_for_end
 from service.context import Context, ContextOf
 from service.guard.callers import CallerOf
-from service.lookup import describe, result_of
+from service.lookup import JOB_PROBLEMS, JobId, describe, find_job, result_of
 from service.problems import documented
-from service.submit.contract import JOB_BODY, JOB_RESPONSES, JSON, SUBMISSION_PROBLEMS
-from service.submit.options import JobOptionsOf
+from service.submit.contract import JOB_BODY, JOB_RESPONSES, JSON, RERUN_BODY, SUBMISSION_PROBLEMS
+from service.submit.options import JobOptionsOf, RerunOptionsOf
 from service.submit.preference import Preference, read_preference
+from service.submit.rerun import submit_again
 from service.submit.submission import Submission, submit_mesh
 
 router = APIRouter(prefix="/v1/jobs", tags=["jobs"])
@@ -36,7 +37,30 @@ async def create_job(request: Request, context: ContextOf, caller: CallerOf, opt
     With `Prefer: wait=10` the response is sent when the job has ended, and contains its labels.
     """
     submission = await submit_mesh(request, context, caller, options)
-    preference = read_preference(options.prefer, context.settings.max_wait_s)
+    return await _answer(context, submission, options.prefer)
+
+
+@router.post(
+    "/{job_id}/rerun",
+    status_code=202,
+    response_class=Response,
+    openapi_extra=RERUN_BODY,
+    responses=JOB_RESPONSES
+    | documented(*SUBMISSION_PROBLEMS, *JOB_PROBLEMS, "input_lost", "idempotency_key_spent", "idempotency_key_reused"),
+)
+async def rerun_job(
+    job_id: JobId, request: Request, context: ContextOf, caller: CallerOf, options: RerunOptionsOf
+) -> Response:
+    """Submit the mesh of a job again, with other parameters: the server has its file.
+
+    The earlier job may have ended in any way, or be unfinished; it does not change.
+    """
+    job = await run_in_threadpool(find_job, context, caller, job_id)
+    return await _answer(context, await submit_again(request, context, caller, job, options), options.prefer)
+
+
+async def _answer(context: Context, submission: Submission, prefer: str | None) -> Response:
+    preference = read_preference(prefer, context.settings.max_wait_s)
     if preference.wait_s:
         await wait_for_end(context.store, submission.receipt.job.id, preference.wait_s)
     return await run_in_threadpool(_response, context, submission, preference)

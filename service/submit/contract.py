@@ -67,6 +67,13 @@ JOB_BODY: dict[str, Any] = {
         },
     },
 }
+RERUN_BODY: dict[str, Any] = {
+    "requestBody": {
+        "required": False,
+        "description": "The parameters; those that are missing have their defaults.",
+        "content": {JSON: {"schema": PARAMETERS, "example": {"structure": "shells"}}},
+    },
+}
 BATCH_BODY: dict[str, Any] = {
     "parameters": [_PARAMETERS_IN_QUERY],
     "requestBody": {
@@ -94,6 +101,7 @@ _JOB_OPERATIONS = (
     "get_glb",
     "get_preview",
     "cancel_job",
+    "rerun_job",
     "delete_job",
 )
 _LINKS = {

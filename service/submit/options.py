@@ -43,6 +43,16 @@ UpOfMesh = Annotated[
         examples=["z"],
     ),
 ]
+Prefer = Annotated[str | None, Header(description="wait=N: respond when the job has ended, or after N seconds.")]
+IdempotencyKey = Annotated[
+    str | None,
+    Header(
+        min_length=1,
+        max_length=255,
+        description="Any text that is unique per job: a repeated request with it creates no second job.",
+    ),
+]
+CacheControl = Annotated[str | None, Header(description="no-cache: compute the result again.")]
 
 
 @dataclass(frozen=True, slots=True)
@@ -67,18 +77,9 @@ class JobOptions:
     granularity: Granularity = None
     file_name: Annotated[str | None, Query(max_length=1000, description="The name of the mesh.")] = None
     webhook: Webhook = None
-    prefer: Annotated[str | None, Header(description="wait=N: respond when the job has ended, or after N seconds.")] = (
-        None
-    )
-    idempotency_key: Annotated[
-        str | None,
-        Header(
-            min_length=1,
-            max_length=255,
-            description="Any text that is unique per job: a repeated request with it creates no second job.",
-        ),
-    ] = None
-    cache_control: Annotated[str | None, Header(description="no-cache: compute the result again.")] = None
+    prefer: Prefer = None
+    idempotency_key: IdempotencyKey = None
+    cache_control: CacheControl = None
 
     def fineness(self) -> Fineness:
         """Return the level of the labels in the response.
@@ -109,8 +110,18 @@ class JobOptions:
             file_name=self.file_name,
             webhook_url=self.webhook,
             idempotency_key=self.idempotency_key,
-            may_reuse="no-cache" not in (self.cache_control or "").lower(),
+            may_reuse=may_reuse(self.cache_control),
         )
+
+
+@dataclass(frozen=True, slots=True)
+class RerunOptions:
+    """The options of a job that has the mesh of an earlier one."""
+
+    webhook: Webhook = None
+    prefer: Prefer = None
+    idempotency_key: IdempotencyKey = None
+    cache_control: CacheControl = None
 
 
 @dataclass(frozen=True, slots=True)
@@ -138,5 +149,11 @@ class BatchOptions:
         )
 
 
+def may_reuse(cache_control: str | None) -> bool:
+    """Whether a request may share the result of an earlier job."""
+    return "no-cache" not in (cache_control or "").lower()
+
+
 JobOptionsOf = Annotated[JobOptions, Depends()]
+RerunOptionsOf = Annotated[RerunOptions, Depends()]
 BatchOptionsOf = Annotated[BatchOptions, Depends()]

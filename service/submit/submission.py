@@ -69,10 +69,16 @@ async def check_service(context: Context, webhook: str | None) -> None:
 
 
 def _accept(context: Context, caller: Caller, mesh: ReceivedMesh, wanted: JobRequest) -> Receipt:
-    receipt = accept_job(context, caller, mesh, wanted)
-    note_job(receipt.job.id)
-    context.metrics.jobs.labels("accepted" if receipt.is_new and not receipt.shares_result else "reused").inc()
+    receipt = accept_counted(context, caller, mesh, wanted)
     context.metrics.upload_bytes.inc(mesh.upload.size_bytes)
     if context.settings.key_upload_bytes_per_hour is not None:
         context.quota.add(caller.owner, mesh.upload.size_bytes)
+    return receipt
+
+
+def accept_counted(context: Context, caller: Caller, mesh: ReceivedMesh, wanted: JobRequest) -> Receipt:
+    """Accept a job, and note it in the log and the metrics; errors as in :func:`accept_job`."""
+    receipt = accept_job(context, caller, mesh, wanted)
+    note_job(receipt.job.id)
+    context.metrics.jobs.labels("accepted" if receipt.is_new and not receipt.shares_result else "reused").inc()
     return receipt
