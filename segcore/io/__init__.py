@@ -16,7 +16,7 @@ from segcore.io.keeping import Original, PartFormat, write_kept, write_kept_part
 from segcore.io.labels import hierarchy_document, labels_document, runs_document, write_json, write_npy, write_seg
 from segcore.io.limits import ReadLimits
 from segcore.io.mesh_writer import write_mesh
-from segcore.io.names import SegmentNames
+from segcore.io.names import DEFAULT_SEGMENT_NAME, SegmentNames
 from segcore.io.obj.materials_writer import write_mtl, write_obj_archive
 from segcore.io.obj.writer import write_obj
 from segcore.io.parts.writer import write_parts
@@ -29,6 +29,7 @@ from segcore.io.threemf.writer import write_3mf
 from segcore.io.writing import WRITE_OPTIONS, WRITERS, WriteOption, Writer, writer_for
 
 __all__ = [
+    "DEFAULT_SEGMENT_NAME",
     "FORMATS",
     "WRITERS",
     "WRITE_OPTIONS",

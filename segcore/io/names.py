@@ -1,4 +1,4 @@
-"""Unique names of segments in files: the given names, else ``segment`` and the label."""
+"""Unique names of segments in files and on the page: the given names, else ``segment`` and the label."""
 
 import re
 from collections.abc import Mapping
@@ -6,6 +6,7 @@ from typing import TypeAlias
 
 SegmentNames: TypeAlias = Mapping[int, str]  # by label; labels that do not exist are ignored
 
+DEFAULT_SEGMENT_NAME = "segment"  # followed by the label
 _LONGEST = 60  # characters; file names are limited to 255 bytes, and UTF-8 takes up to four for a character
 
 
@@ -19,7 +20,7 @@ def segment_names(names: SegmentNames | None, count: int, separator: str = " ") 
     taken: set[str] = set()
     result = []
     for label in range(count):
-        words = one_line(given.get(label, "")).split() or ["segment", str(label)]
+        words = one_line(given.get(label, "")).split() or [DEFAULT_SEGMENT_NAME, str(label)]
         name = separator.join(words)[:_LONGEST]
         while name.casefold() in taken:
             name += f"{separator}{label}"
@@ -38,7 +39,10 @@ def file_stems(names: SegmentNames | None, count: int) -> list[str]:
     """The same for file names: safe on every system, and their alphabetical order is that of the labels."""
     digits = len(str(count - 1))
     words = {label: re.findall(r"\w+", name) for label, name in (names or {}).items()}
-    return ["_".join([f"segment_{label:0{digits}}", *words.get(label, [])])[:_LONGEST] for label in range(count)]
+    return [
+        "_".join([f"{DEFAULT_SEGMENT_NAME}_{label:0{digits}}", *words.get(label, [])])[:_LONGEST]
+        for label in range(count)
+    ]
 
 
 def comment(text: str) -> str:

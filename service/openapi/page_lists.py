@@ -1,8 +1,8 @@
-"""The lists that the page shows: formats of uploads, formats of models, and stages of a job."""
+"""What the page shows: formats of uploads and of models, stages of a job, and the name of a part that has none."""
 
 from typing import Any
 
-from segcore.io import FORMATS
+from segcore.io import DEFAULT_SEGMENT_NAME, FORMATS
 from service.answer.model_formats import MODELS, model_file
 from worker.process.progress import REPORTED_STAGES
 
@@ -28,4 +28,5 @@ def page_lists() -> dict[str, Any]:
             if name not in {one.companion for one in MODELS.values()}
         ],
         "stages": [{"name": stage, "title": _STAGE_TITLES[stage]} for stage in REPORTED_STAGES],
+        "segmentName": DEFAULT_SEGMENT_NAME,
     }

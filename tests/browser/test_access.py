@@ -93,6 +93,7 @@ def test_parts_are_selected_and_split_with_the_keyboard(visit: Visit, job: str) 
 
 def test_the_tree_is_navigated_with_arrows_and_parts_are_renamed(visit: Visit, job: str) -> None:
     visit.open_job(job)
+    visit.show_tree()
     first = visit.page.locator("#tree [role=treeitem]").first
     first.focus()
     visit.page.keyboard.press("ArrowDown")
@@ -115,7 +116,7 @@ def test_controls_are_large_enough_for_touch_on_a_phone(new_visit: NewVisit, job
     visit = new_visit(**PHONE)
     visit.open_job(job)
     small = visit.page.evaluate(
-        """() => [...document.querySelectorAll('button, input, [role=treeitem]')]
+        """() => [...document.querySelectorAll('button, input, [role=option]')]
           .filter((e) => e.checkVisibility() && !e.classList.contains('unseen'))
           .map((e) => [e.id, e.getBoundingClientRect()])
           .filter(([, box]) => box.width < 24 || box.height < 24).map(([id]) => id)"""

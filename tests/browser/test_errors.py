@@ -146,3 +146,76 @@ def test_a_running_job_can_be_stopped(visit: Visit, installation: Installation) 
     assert job["status"] in ("canceled", "succeeded")  # succeeded if it had ended before it was stopped
     for route in held:
         route.abort()
+
+
+def test_an_error_of_a_download_is_shown_above_the_dialog(visit: Visit, job: str) -> None:
+    detail = {"code": "job_deleted", "detail": "The job was deleted.", "status": 410}
+    visit.open_job(job)
+    visit.page.click("#open-take-away")
+    visit.page.route("**/model.glb?segments=*", lambda route: route.fulfill(status=410, json=detail))
+    visit.page.click("[data-format=glb]")
+    note = visit.page.locator(".toast", has_text="This job was deleted")
+    note.wait_for()
+    x, y = note.evaluate("(e) => [e.getBoundingClientRect().x + 8, e.getBoundingClientRect().y + 8]")
+    assert visit.page.evaluate("([x, y]) => document.elementsFromPoint(x, y)[0].closest('dialog')?.id", [x, y])
+    assert visit.page.locator("#take-away #announcer").inner_text() == note.inner_text()
+    visit.page.keyboard.press("Escape")
+    assert visit.page.locator("body > #announcer").count() == 1
+    visit.faults = [fault for fault in visit.faults if "410" not in fault]
+
+
+def test_a_browser_without_webgl_is_told_so(visit: Visit, job: str) -> None:
+    visit.page.add_init_script(
+        """const get = HTMLCanvasElement.prototype.getContext;
+        HTMLCanvasElement.prototype.getContext = function (kind, ...more) {
+          return kind.startsWith('webgl') ? null : get.call(this, kind, ...more);
+        };"""
+    )
+    visit.open(f"#job={job}")
+    code, text, _ = problem(visit)
+    assert code == "no_webgl"
+    assert "WebGL 2" in text
+    visit.faults = [fault for fault in visit.faults if "WebGL" not in fault]
+
+
+def test_a_job_that_is_computed_is_found_again_by_a_reload(visit: Visit, installation: Installation) -> None:
+    visit.open()
+    (worker,) = installation.children("worker.process small")
+    os.kill(worker, signal.SIGSTOP)  # so that the job does not end before the reload
+    try:
+        visit.drop("reloaded.ply", small_burr() + b"        ")
+        visit.address("job=")
+        visit.page.reload()
+        visit.page.wait_for_selector("#progress:not([hidden])")
+        assert visit.page.inner_text("#progress-name") == "reloaded.ply"
+    finally:
+        os.kill(worker, signal.SIGCONT)
+    visit.wait_for_parts()
+    assert visit.page.inner_text("#title") == "reloaded.ply"
+    visit.faults = [fault for fault in visit.faults if "net::ERR" not in fault]
+
+
+def test_the_page_says_why_a_job_waits_and_what_runs(visit: Visit) -> None:
+    """The kernels are compiled before the first worker is ready."""
+    held: list[Route] = []
+    missing = {"ready": False, "queue": True, "store": True, "workers": 0, "missing": ["No worker is ready."]}
+    visit.open()
+    visit.page.route("**/v1/jobs/*/events", lambda route: held.append(route))
+    visit.page.route("**/readyz", lambda route: route.fulfill(status=503, json=missing))
+    visit.page.route("**/v1/jobs", lambda route: waiting(route))
+    visit.drop("first.ply", small_burr() + b"         ")
+    visit.page.wait_for_selector("#progress-wait:has-text('compiles the numerical kernels')")
+    now = visit.page.locator("#stages [data-state=now]")
+    assert now.get_attribute("data-stage") == "queued"
+    assert now.locator(".icon").evaluate("(e) => getComputedStyle(e).opacity") == "0"
+    assert visit.page.locator("#stages [data-stage=upload] .icon").evaluate("(e) => getComputedStyle(e).opacity") == "1"
+    for route in held:
+        route.abort()
+    visit.page.click("#stop")
+    visit.faults = [fault for fault in visit.faults if "503" not in fault and "net::ERR" not in fault]
+
+
+def waiting(route: Route) -> None:
+    """Answer a submission as if its job was waiting."""
+    answer = route.fetch()
+    route.fulfill(status=202, json=answer.json() | {"status": "queued", "finished_at": None})

@@ -42,6 +42,9 @@ def test_a_wrong_key_is_refused_and_a_valid_one_is_stored(visit: Visit, installa
     visit.open()
     visit.page.click("[data-sample=dumbbell]")
     enter(visit, "cleave_nobody")
+    visit.page.wait_for_selector("#problem:not([hidden])[data-code=unauthorized]")
+    sent = [url for url in visit.requests if url.endswith("/v1/jobs")]
+    assert sent == []  # the key is asked for before the upload
     enter(visit, ANNA)
     visit.wait_for_parts()
     visit.page.reload()
@@ -57,6 +60,12 @@ def test_a_wrong_key_is_refused_and_a_valid_one_is_stored(visit: Visit, installa
     assert "Authorization: Bearer $CLEAVE_KEY" in visit.page.inner_text("#curl")
     assert ANNA not in visit.page.inner_text("#curl")
     assert httpx.get(f"{installation.url}/v1/jobs/{job}").status_code == 401
+    visit.page.keyboard.press("Escape")
+    visit.page.click("#open-jobs")
+    assert "of the API key that this browser stores" in visit.page.inner_text("#jobs-owner")
+    visit.page.click("#jobs-forget")
+    visit.page.wait_for_selector("#key-state:has-text('This server requires an API key.')")
+    assert visit.page.evaluate("localStorage.getItem('cleave.key')") is None
     ignore_unauthorized(visit)
 
 

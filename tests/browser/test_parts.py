@@ -3,11 +3,11 @@
 from helpers.browser.visit import Visit
 
 
-def test_selection_is_the_same_in_the_picture_and_in_the_tree(visit: Visit, job: str) -> None:
+def test_selection_is_the_same_in_the_picture_and_in_the_list(visit: Visit, job: str) -> None:
     visit.open_job(job)
     part = visit.parts()[3]
     visit.page.mouse.move(*visit.place_of(part))
-    visit.page.wait_for_function("(id) => document.querySelector(`[data-id='${id}'].is-hovered`)", arg=part)
+    visit.page.wait_for_function("(id) => document.querySelector(`#list [data-id='${id}'].is-hovered`)", arg=part)
     visit.page.mouse.click(*visit.place_of(part))
     assert visit.selected() == [part]
     visit.settle()
@@ -25,7 +25,7 @@ def test_the_details_of_a_part_are_those_of_the_service(visit: Visit, job: str) 
     for part in visit.parts()[:3]:
         visit.row(part).click()
         visit.settle()
-        assert visit.page.input_value("#part-name") == f"Part {nodes[part]['label'] + 1}"
+        assert visit.page.input_value("#part-name") == f"segment {nodes[part]['label']}"
         assert visit.page.inner_text("#detail-faces") == f"{nodes[part]['faces']:,}"
         area = 100 * nodes[part]["area"] / nodes[0]["area"]
         assert abs(float(visit.page.inner_text("#detail-area").rstrip("%")) - area) <= 0.051
@@ -56,6 +56,7 @@ def test_split_merge_undo_and_redo_change_only_the_part(visit: Visit, job: str) 
 
 def test_equal_parts_are_siblings_and_the_buttons_go_from_step_to_step(visit: Visit, job: str) -> None:
     visit.open_job(job)
+    visit.show_tree()
     document = visit.page.evaluate("(path) => fetch(path).then((a) => a.json())", f"v1/jobs/{job}/hierarchy")
     ball_and_arms = document["nodes"][0]["nary_children"]
     assert visit.parts() == ball_and_arms

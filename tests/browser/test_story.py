@@ -7,7 +7,7 @@ import httpx
 from cleave.settings import Settings
 from helpers.browser.meshes import small_burr
 from helpers.browser.visit import Visit
-from helpers.files.samples import TWO_SQUARES
+from helpers.files.samples import OFF, TWO_SQUARES
 from helpers.installation import Installation
 from helpers.jobs import accepted
 from worker.jobs.store.opening import open_store
@@ -74,6 +74,7 @@ def test_a_job_is_listed_with_its_picture_until_it_is_deleted(visit: Visit, inst
     visit.page.click("#open-jobs")
     visit.page.fill("#job-search", "TO-DEL")
     row = visit.page.locator(f".job-row[data-id='{submitted['id']}']")
+    assert visit.page.inner_text("#jobs-owner") == "Everybody who can open this page sees these jobs."
     row.locator("img[src^=blob]").wait_for()
     assert visit.page.evaluate("(id) => document.querySelector(`[data-job='${id}']`).naturalWidth", submitted["id"]) > 0
     assert visit.page.locator(".job-row:visible").count() == 1
@@ -105,6 +106,21 @@ def test_a_mesh_can_be_segmented_again_with_other_parameters_and_compared(visit:
     assert len(visit.parts()) == 7
     visit.page.click("#close-beside")
     assert "beside" not in visit.address("job=") or visit.page.locator("#beside").is_hidden()
+    assert len([url for url in visit.requests if url.endswith("/v1/jobs")]) == 1  # the file was sent once
+
+
+def test_a_new_mesh_after_a_comparison_is_shown_alone(visit: Visit) -> None:
+    visit.open()
+    visit.drop("first.ply", small_burr() + b"   ")
+    visit.wait_for_parts()
+    visit.page.click("#open-parameters")
+    visit.page.fill("#parameter-max_segments", "11")
+    visit.page.click("text=Run and compare")
+    visit.page.wait_for_function("() => document.querySelector('#beside-level').max === '11'")
+    visit.drop("second.off", OFF)
+    visit.page.wait_for_function("() => document.getElementById('title').textContent === 'second.off'")
+    visit.settle()
+    assert visit.page.locator("#beside").is_hidden()
 
 
 def test_the_structure_of_a_file_is_shown_and_followed_if_asked(visit: Visit) -> None:

@@ -63,7 +63,7 @@ class Visit:
         self.wait_for_parts()
 
     def wait_for_parts(self) -> None:
-        self.page.wait_for_selector("#work:not([hidden]) #tree [role=treeitem]")
+        self.page.wait_for_selector("#work:not([hidden]) #side [data-id]")
 
     def drop(self, name: str, content: bytes) -> None:
         self.page.evaluate(_DROP, [name, base64.b64encode(content).decode()])
@@ -133,8 +133,8 @@ class Visit:
         return list(self.viewer("[...v.selected]"))
 
     def rows(self) -> list[str]:
-        """Return the names in the rows of the tree."""
-        return self.page.locator("#tree .name:not(.is-group)").all_inner_texts()
+        """Return the names in the list of parts."""
+        return self.page.locator("#list .name").all_inner_texts()
 
     def address(self, holding: str = "") -> dict[str, str]:
         """Wait until the address contains a text, and return the values of its fragment."""
@@ -143,7 +143,11 @@ class Visit:
         return {name: found[0] for name, found in values.items()}
 
     def row(self, part: int) -> Any:
-        return self.page.locator(f"#tree [data-id='{part}']")
+        return self.page.locator(f"#side [data-id='{part}']:visible")
+
+    def show_tree(self) -> None:
+        """Show the parts as a tree instead of a list."""
+        self.page.click("#arrangement label:has([value=tree])")
 
 
 NewVisit = Callable[..., Visit]

@@ -4,6 +4,7 @@ import type { CleaveViewer as Declared, ErrorDetail, LoadDetail, ViewerState } f
 import { Drawing, type Inks } from "./drawing";
 import { InvalidModel, parseModel, type Model } from "./glb";
 import { loadOriginal, lookNamed, NoOriginal, type Look } from "./look";
+import { segmentName } from "../page/lists.json";
 import { FIRST_VIEW, Stage, type View } from "./stage";
 import { reasonOf, Status, unreachable } from "./status";
 import { buildSurface } from "./surface";
@@ -403,7 +404,7 @@ export class CleaveViewer extends HTMLElement implements Declared {
   }
 
   #nameOf(id: number): string {
-    return this.#names.get(id) ?? `Part ${this.#model!.tree.node(id).label + 1}`;
+    return this.#names.get(id) ?? `${segmentName} ${this.parts.indexOf(id)}`;
   }
 
   #newCanvas(): HTMLCanvasElement {

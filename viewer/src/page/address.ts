@@ -1,64 +1,71 @@
-/** Reads and writes the state of the page as the fragment of its URL, so that a link shows the same view. */
+/** Reads and writes the state of a job as the fragment of the URL, so that a link shows the same view. */
 
 import type { View } from "../component/element";
 import type { Axis } from "./api";
-import { LOOKS, type Modes, type Session, type Work } from "./session";
+import { LOOKS, type Modes } from "./session";
+import { FIRST_STATE, type JobState } from "./state";
 
 export interface Address {
   readonly job: string | null;
-  /** A second job to show beside the first. */
-  readonly beside: string | null;
-  readonly view: View | null;
-  readonly values: URLSearchParams;
+  /** Null if the address names the job alone. */
+  readonly state: JobState | null;
+  /** The splits of a link of an earlier version, in place of level and cuts by hand. */
+  readonly splits: readonly number[] | null;
 }
 
 export function readAddress(hash: string): Address {
   const values = new URLSearchParams(hash.replace(/^#/, ""));
-  return { job: values.get("job"), beside: values.get("beside"), view: readView(values.get("view")), values };
-}
-
-/** Return the edits and the display modes that a fragment contains. */
-export function readState({ values }: Address, { tree, firstModes }: Session): { work: Partial<Work>; modes: Partial<Modes> } {
-  const level = values.get("k");
   const splits = values.get("cut");
-  const cut = splits !== null ? tree.cutOfSplits(integers(splits)) : level !== null ? tree.cutAt(Number(level) || 1) : null;
-  const show = new Set((values.get("show") ?? "").split("."));
-  const names = [...values].flatMap(([key, name]) => (/^n\d+$/.test(key) ? [[Number(key.slice(1)), name] as const] : []));
-  return {
-    work: {
-      ...(cut === null ? {} : { cut }),
-      hidden: new Set(integers(values.get("hide")).filter((id) => id < tree.nodes.length)),
-      names: new Map(names.filter(([id]) => id < tree.nodes.length)),
-    },
-    modes: {
-      selected: integers(values.get("sel")),
-      explode: Math.min(Math.max(Number(values.get("explode")) || 0, 0), 1),
-      wireframe: show.has("wires"),
-      concavity: show.has("concavity"),
-      lines: !show.has("nolines"),
-      up: axisNamed(values.get("up")) ?? firstModes.up,
-      look: LOOKS.find((look) => look === values.get("look")) ?? firstModes.look,
-    },
-  };
+  const isBare = [...values.keys()].every((key) => key === "job");
+  return { job: values.get("job"), state: isBare ? null : stateIn(values), splits: splits === null ? null : integers(splits) };
 }
 
-export function writeAddress(job: string, session: Session, view: View | null, beside: string | null): string {
-  const { tree, work, modes } = session;
+export function writeAddress(job: string, state: JobState): string {
+  const { level, split, merged, hidden, names, modes, view, beside } = state;
   const values = new URLSearchParams({ job });
-  const level = tree.levelOf(work.cut);
-  if (level === null) values.set("cut", tree.splitsOf(work.cut).join("."));
-  else if (level !== session.automaticSegments) values.set("k", String(level));
-  if (work.hidden.size > 0) values.set("hide", [...work.hidden].join("."));
-  if (modes.selected.length > 0) values.set("sel", modes.selected.join("."));
-  if (modes.explode > 0) values.set("explode", modes.explode.toFixed(2));
-  const show = [modes.wireframe && "wires", modes.concavity && "concavity", !modes.lines && "nolines"].filter(Boolean);
+  if (level !== null) values.set("k", String(level));
+  for (const [key, ids] of [["split", split], ["merge", merged], ["hide", hidden], ["sel", modes.selected ?? []]] as const)
+    if (ids.length > 0) values.set(key, ids.join("."));
+  if (modes.explode !== undefined) values.set("explode", modes.explode.toFixed(2));
+  const show = [modes.wireframe && "wires", modes.concavity && "concavity", modes.lines === false && "nolines"].filter(Boolean);
   if (show.length > 0) values.set("show", show.join("."));
-  if (modes.up !== session.firstModes.up) values.set("up", modes.up);
-  if (modes.look !== session.firstModes.look) values.set("look", modes.look);
-  for (const [id, name] of work.names) values.set(`n${id}`, name);
+  if (modes.up !== undefined) values.set("up", modes.up);
+  if (modes.look !== undefined) values.set("look", modes.look);
+  for (const [id, name] of Object.entries(names)) values.set(`n${id}`, name);
   if (view !== null) values.set("view", writeView(view));
   if (beside !== null) values.set("beside", beside);
   return `#${values}`;
+}
+
+function stateIn(values: URLSearchParams): JobState {
+  const level = values.get("k");
+  const names = [...values].flatMap(([key, name]) => (/^n\d+$/.test(key) ? [[Number(key.slice(1)), name] as const] : []));
+  return {
+    ...FIRST_STATE,
+    level: level === null ? null : Number(level) || 1,
+    split: integers(values.get("split")),
+    merged: integers(values.get("merge")),
+    hidden: integers(values.get("hide")),
+    names: Object.fromEntries(names),
+    modes: modesIn(values),
+    view: readView(values.get("view")),
+    beside: values.get("beside"),
+  };
+}
+
+function modesIn(values: URLSearchParams): Partial<Modes> {
+  const show = new Set((values.get("show") ?? "").split("."));
+  const up = axisNamed(values.get("up"));
+  const look = LOOKS.find((look) => look === values.get("look"));
+  return {
+    selected: integers(values.get("sel")),
+    explode: Math.min(Math.max(Number(values.get("explode")) || 0, 0), 1),
+    wireframe: show.has("wires"),
+    concavity: show.has("concavity"),
+    lines: !show.has("nolines"),
+    ...(up === null ? {} : { up }),
+    ...(look === undefined ? {} : { look }),
+  };
 }
 
 function writeView({ azimuth, polar, distance, target }: View): string {

@@ -13,7 +13,12 @@ export interface Job {
   readonly queue_position: number | null;
   readonly created_at: string;
   readonly finished_at: string | null;
-  readonly input: { readonly file_name: string | null; readonly format: string | null; readonly size_bytes: number };
+  readonly input: {
+    readonly file_name: string | null;
+    readonly format: string | null;
+    readonly size_bytes: number;
+    readonly sha256: string;
+  };
   readonly parameters: Readonly<Record<string, unknown>>;
   readonly mesh: { readonly faces: number; readonly vertices: number; readonly report: Report | null } | null;
   readonly max_segments: number | null;
@@ -49,6 +54,12 @@ export interface JobPage {
 
 export interface Formats {
   readonly max_upload_bytes: number;
+  readonly keys_required: boolean;
+}
+
+export interface Readiness {
+  readonly ready: boolean;
+  readonly missing: readonly string[];
 }
 
 export interface ParameterSchema {
@@ -56,6 +67,7 @@ export interface ParameterSchema {
 }
 
 export interface Parameter {
+  readonly title?: string;
   readonly type?: string | string[];
   readonly enum?: (string | number | null)[];
   readonly anyOf?: Parameter[];
@@ -74,6 +86,7 @@ const KEY = "cleave.key";
 export const apiKey = {
   get: (): string => localStorage.getItem(KEY) ?? "",
   set: (key: string): void => localStorage.setItem(KEY, key),
+  forget: (): void => localStorage.removeItem(KEY),
 };
 
 export function headers(): Record<string, string> {
@@ -81,11 +94,18 @@ export function headers(): Record<string, string> {
   return key === "" ? {} : { Authorization: `Bearer ${key}` };
 }
 
+let formats: Promise<Formats> | null = null;
+
+function forgetFormats(error: unknown): never {
+  formats = null;
+  throw error;
+}
+
 /** Return the path of a job, relative to the page. */
 export const jobPath = (id: string, rest = ""): string => `v1/jobs/${encodeURIComponent(id)}${rest}`;
 
 export const getJob = (id: string): Promise<Job> => get(jobPath(id));
-export const getFormats = (): Promise<Formats> => get("v1/formats");
+export const getFormats = (): Promise<Formats> => (formats ??= get<Formats>("v1/formats").catch(forgetFormats));
 export const getMethods = (): Promise<ParameterSchema> => get("v1/methods");
 
 export function listJobs(cursor: string | null): Promise<JobPage> {
@@ -98,6 +118,23 @@ export async function deleteJob(id: string): Promise<void> {
 
 export async function cancelJob(id: string): Promise<void> {
   await request(jobPath(id, "/cancel"), { method: "POST" });
+}
+
+/** Check the API key before something is sent. Throws ApiError if the server requires another one. */
+export async function checkKey(): Promise<void> {
+  if ((await getFormats()).keys_required) await request("v1/jobs?limit=1");
+}
+
+/** Run a job again with other parameters; the server has its file. */
+export async function rerun(id: string, parameters: Readonly<Record<string, unknown>>): Promise<Job> {
+  const headers = { "Content-Type": "application/json" };
+  return (await (await request(jobPath(id, "/rerun"), { method: "POST", headers, body: JSON.stringify(parameters) })).json()) as Job;
+}
+
+/** Return what the server lacks to run jobs; null if it does not respond. */
+export async function getReadiness(): Promise<Readiness | null> {
+  const answer = await fetch("readyz").catch(() => null);
+  return answer === null ? null : ((await answer.json().catch(() => null)) as Readiness | null);
 }
 
 export async function getBlob(path: string, signal?: AbortSignal): Promise<Blob> {

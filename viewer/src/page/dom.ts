@@ -39,20 +39,29 @@ export function icon(name: string): SVGSVGElement {
 
 /** Announce a text to screen readers. */
 export function announce(text: string): void {
-  byId("announcer").textContent = text;
+  inFront(byId("announcer")).textContent = text;
 }
 
 /** Show a short message for four seconds. */
 export function toast(text: string): void {
   const note = h("p", { className: "toast" }, text);
-  byId("toasts").append(note);
+  inFront(byId("toasts")).append(note);
   announce(text);
   setTimeout(() => note.remove(), 4000);
+}
+
+/** Move an element into the open dialog: the page behind it is covered, and screen readers do not read it. */
+function inFront(element: HTMLElement): HTMLElement {
+  const dialogs = document.querySelectorAll("dialog[open]");
+  const front = dialogs.item(dialogs.length - 1) ?? document.body;
+  if (element.parentElement !== front) front.append(element);
+  return element;
 }
 
 /** Open a modal dialog; a click on its backdrop closes it. */
 export function openDialog(dialog: HTMLDialogElement): void {
   dialog.showModal();
+  dialog.onclose = () => ["toasts", "announcer"].forEach((id) => inFront(byId(id)));
   dialog.onclick = (event) => {
     if (event.target === dialog) dialog.close();
   };

@@ -31,7 +31,7 @@ export class JobList {
 
   async open(purpose: Purpose): Promise<void> {
     this.#purpose = purpose;
-    byId("jobs-title").textContent = purpose === "open" ? "Your jobs" : "Compare with";
+    byId("jobs-title").textContent = purpose === "open" ? "Jobs" : "Compare with";
     this.#search.value = "";
     this.#jobs = [];
     this.#cursor = null;

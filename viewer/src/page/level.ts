@@ -25,6 +25,7 @@ export class LevelSlider {
       const now = session();
       now?.showLevel(now.automaticSegments);
     });
+    byId("discard-edits").addEventListener("click", () => session()?.discardEdits());
     byId("level-less").addEventListener("click", () => session()?.showStep(-1));
     byId("level-more").addEventListener("click", () => session()?.showStep(1));
   }
@@ -54,17 +55,17 @@ export class LevelSlider {
   update(): void {
     const session = this.#session();
     if (session === null) return;
-    const segments = session.parts.length;
-    const isLevel = session.tree.levelOf(session.work.cut) !== null;
-    this.#range.value = String(segments);
-    this.#number.value = String(segments);
-    this.#unit.textContent = segments === 1 ? "part" : "parts";
-    this.#range.setAttribute("aria-valuetext", `${plural(segments, "part")}${isLevel ? "" : ", edited by hand"}`);
-    const isAutomatic = isLevel && segments === session.automaticSegments;
-    this.#automatic.setAttribute("aria-pressed", String(isAutomatic));
-    const state = isLevel ? nextCut(session, segments) : "Edited by hand. Moving the slider replaces the edits.";
+    const { level } = session.work;
+    const parts = session.parts.length;
+    this.#range.value = String(level);
+    this.#number.value = String(parts);
+    this.#unit.textContent = parts === 1 ? "part" : "parts";
+    this.#range.setAttribute("aria-valuetext", `${plural(parts, "part")}${session.isEdited ? ", with cuts by hand" : ""}`);
+    this.#automatic.setAttribute("aria-pressed", String(level === session.automaticSegments && !session.isEdited));
+    const state = session.isEdited ? "Cut by hand: these cuts stay if you move the slider." : nextCut(session, level);
     this.#note.textContent = [state, ...this.#notes].join(" ");
-    this.#chart.querySelector("#level-clip rect")!.setAttribute("width", String(segments - 1));
+    byId("discard-edits").hidden = !session.isEdited;
+    this.#chart.querySelector("#level-clip rect")!.setAttribute("width", String(level - 1));
   }
 }
 

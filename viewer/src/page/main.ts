@@ -2,19 +2,22 @@
 
 import { CleaveViewer, type LoadDetail, type View } from "../component/element";
 import { about, usualUp } from "./about";
-import { readAddress, readState, writeAddress, type Address } from "./address";
+import { readAddress, writeAddress, type Address } from "./address";
 import { getJob, headers, jobPath, type Job } from "./api";
 import { Beside } from "./beside";
 import { announce, byId, openDialog, toast } from "./dom";
 import { hasEnded } from "./follow";
+import { hasGraphics } from "./graphics";
 import { JobList } from "./jobs";
+import { forgetState, keepState, keptState } from "./kept";
+import { listenToKeys } from "./keys";
 import { LevelSlider } from "./level";
 import { ParameterDrawer, type Run } from "./parameters";
 import { PartsPanel } from "./parts";
 import { explain, problemOf, type Problem, type Remedy } from "./problems";
 import { Session } from "./session";
-import type { Model } from "./sets";
-import { Start } from "./start";
+import { Start, type Purpose } from "./start";
+import { FIRST_STATE, showState, stateOf, withSplits, type JobState } from "./state";
 import { TakeAway } from "./takeaway";
 import { plural, stem } from "./text";
 import { listenToTheme } from "./theme";
@@ -23,27 +26,27 @@ import { Tools } from "./tools";
 const SAVE_PAUSE_MS = 250; // browsers limit how often a page may change its URL
 
 class Page {
+  #session: Session | null = null;
+  #job: Job | null = null;
   readonly #viewer = byId<CleaveViewer>("viewer");
   readonly #start = new Start({
-    onFinished: (job, model) => this.#finished(job, model),
+    onAccepted: (job, purpose) => this.#accepted(job, purpose),
+    onFinished: (job, purpose) => this.#finished(job, purpose),
     onRemedy: (remedy) => this.#applyRemedy(remedy),
     onLeave: () => this.#leave(),
   });
   readonly #level = new LevelSlider(() => this.#session);
   readonly #parts = new PartsPanel(this.#viewer, () => this.#session);
   readonly #tools = new Tools(this.#viewer, () => this.#session);
-  readonly #drawer = new ParameterDrawer((run) => void this.#run(run));
+  readonly #drawer = new ParameterDrawer((run) => this.#run(run));
   readonly #jobs = new JobList(
     (job, purpose) => this.#chosen(job, purpose === "beside"),
     (id) => this.#deleted(id),
   );
   readonly #beside = new Beside(this.#viewer, () => this.#save());
-  #session: Session | null = null;
-  #job: Job | null = null;
-  /** The files of the mesh, if they were uploaded from this page. */
-  #model: Model | null = null;
   #opening: Address | null = null;
-  #next: { segments: number | null; isBeside: boolean } = { segments: null, isBeside: false };
+  /** The number of parts that a result is to begin with; null for the automatic number. */
+  #segments: number | null = null;
   #view: View | null = null;
   /** Whether the user has moved the camera. */
   #isMoved = false;
@@ -97,12 +100,14 @@ class Page {
     for (const button of document.querySelectorAll<HTMLElement>("[data-close]"))
       button.addEventListener("click", () => button.closest("dialog")?.close());
     addEventListener("popstate", () => void this.#openAddress());
+    listenToKeys();
     listenToTheme([viewer, this.#beside.viewer]);
   }
 
   /** Show the state in the URL. */
   async #openAddress(): Promise<void> {
     const address = readAddress(location.hash);
+    this.#start.rest();
     if (address.job === null) return this.#close();
     this.#opening = address;
     try {
@@ -114,89 +119,102 @@ class Page {
     }
   }
 
-  #finished(job: Job, model: Model | null): void {
-    this.#model = model ?? this.#model;
-    if (this.#next.isBeside && this.#job !== null) {
-      this.#start.show("none");
-      this.#showWork(true);
-      this.#beside.open(job);
-    } else {
-      if (readAddress(location.hash).job !== job.id) {
-        this.#opening = null;
-        history.pushState(null, "", `#job=${job.id}`);
-      }
-      this.#show(job);
+  /** Name an accepted job in the address, so that a reload finds it. */
+  #accepted(job: Job, { isBeside }: Purpose): void {
+    clearTimeout(this.#saving);
+    if (isBeside && this.#session !== null && this.#job !== null) {
+      const state = { ...stateOf(this.#session, this.#view, null), beside: job.id };
+      history.replaceState(null, "", writeAddress(this.#job.id, state));
+    } else if (readAddress(location.hash).job !== job.id) {
+      this.#opening = null;
+      history.pushState(null, "", `#job=${job.id}`);
     }
+  }
+
+  #finished(job: Job, { segments, isBeside }: Purpose): void {
+    if (isBeside && this.#session !== null) {
+      this.#showWork(true);
+      return this.#beside.open(job);
+    }
+    if (readAddress(location.hash).job !== job.id) {
+      this.#opening = null;
+      history.pushState(null, "", `#job=${job.id}`);
+    }
+    this.#segments = segments;
+    this.#show(job);
   }
 
   #chosen(job: Job, isBeside: boolean): void {
     if (isBeside) return this.#beside.open(job);
-    this.#model = null;
     location.hash = `job=${job.id}`;
   }
 
   #show(job: Job): void {
-    const isSame = this.#job?.id === job.id && this.#viewer.tree !== null;
+    if (!hasGraphics()) return this.#failed({ code: "no_webgl", detail: "This browser shows no 3D graphics." });
+    const isSame = this.#job?.id === job.id && this.#session !== null;
     this.#job = job;
     if (isSame) return this.#restore();
     this.#session = null;
     this.#view = null;
     this.#isMoved = false;
     const source = jobPath(job.id, "/model.glb?levels=all");
+    const { view } = this.#wanted(job);
     this.#viewer.requestHeaders = headers();
-    if (this.#opening?.view) this.#viewer.clear();
-    if (this.#opening?.view) this.#viewer.view = this.#opening.view;
+    if (view !== null) {
+      this.#viewer.clear();
+      this.#viewer.view = view;
+    }
     this.#viewer.setAttribute("look", "parts"); // until the state of the page is restored
     this.#viewer.setAttribute("original-src", `${source}&keep=all`);
     this.#viewer.removeAttribute("src");
     this.#viewer.setAttribute("src", source);
   }
 
+  /** Return the state that a job is to be shown in: that of the address, or that in which it was left. */
+  #wanted(job: Job): JobState {
+    return this.#opening?.state ?? keptState(job.id) ?? { ...FIRST_STATE, level: this.#segments };
+  }
+
   #loaded(detail: LoadDetail): void {
     const job = this.#job!;
     const name = job.input.file_name ?? "mesh";
-    this.#session = new Session(this.#viewer.tree!, detail, usualUp(job), () => this.#changed());
+    this.#session = new Session(this.#viewer.tree!, detail, usualUp(job), (news) => this.#changed(news));
     this.#viewer.setAttribute("label", name);
     byId("title").textContent = name;
     byId("about").textContent = about(job, detail.faces);
     document.title = `${stem(name)} – Cleave`;
-    this.#start.show("none");
-    this.#showWork(true);
     this.#level.open(this.#session, job.notes);
-    if (this.#next.segments !== null) this.#session.restore({ cut: this.#session.tree.cutAt(this.#next.segments) }, {});
-    this.#next = { segments: null, isBeside: false };
     this.#restore();
     announce(`${name}: ${plural(this.#session.parts.length, "part")}.`);
   }
 
   #restore(): void {
-    const { tree } = this.#viewer;
-    if (tree === null || this.#session === null) return;
-    const address = this.#opening;
-    this.#opening = null;
-    if (address !== null) {
-      const { work, modes } = readState(address, this.#session);
-      this.#view = address.view;
-      this.#session.restore(work, modes);
-      if (address.beside !== null) void this.#openBeside(address.beside);
-      else this.#beside.close();
-    } else {
-      this.#beside.close();
-    }
+    if (this.#session === null || this.#job === null) return;
+    const state = this.#wanted(this.#job);
+    const splits = this.#opening?.splits ?? null;
+    this.#opening = this.#segments = null;
+    this.#showWork(true);
+    this.#view = state.view;
+    showState(this.#session, splits === null ? state : withSplits(state, this.#session, splits));
+    if (state.beside === null) this.#beside.close();
+    else if (state.beside !== this.#beside.job) void this.#openBeside(state.beside);
     this.#update();
   }
 
   async #openBeside(id: string): Promise<void> {
     try {
-      this.#beside.open(await getJob(id));
+      const job = await getJob(id);
+      if (hasEnded(job)) this.#beside.open(job);
+      else await this.#start.resume(job, { segments: null, isBeside: true });
     } catch (error) {
       toast(explain(problemOf(error)).title);
     }
   }
 
   /** Update the viewer at once after a change, the rest of the page with the next frame. */
-  #changed(): void {
+  #changed(news?: string): void {
     const { work, modes } = this.#session!;
+    if (news !== undefined) announce(news);
     this.#viewer.cut = work.cut;
     this.#viewer.hiddenParts = work.hidden;
     this.#viewer.selected = modes.selected;
@@ -218,21 +236,19 @@ class Page {
   #save(): void {
     clearTimeout(this.#saving);
     this.#saving = setTimeout(() => {
-      if (this.#session === null || this.#job === null) return;
-      const address = writeAddress(this.#job.id, this.#session, this.#view, this.#beside.job);
+      if (this.#session === null || this.#job === null || !byId("welcome").hidden) return;
+      const state = stateOf(this.#session, this.#view, this.#beside.job);
+      keepState(this.#job.id, state);
+      const address = writeAddress(this.#job.id, state);
       if (address !== location.hash) history.replaceState(null, "", address);
     }, SAVE_PAUSE_MS);
   }
 
-  async #run(run: Run): Promise<void> {
-    this.#next = { segments: run.segments, isBeside: run.isBeside };
-    if (this.#model === null) {
-      toast("Choose the mesh file again to run it with other parameters.");
-      this.#start.parameters = run.parameters;
-      this.#start.choose();
-    } else {
-      await this.#start.send(this.#model, run.parameters);
-    }
+  /** Run the shown mesh again, or the next one that is chosen, with other parameters. */
+  #run({ parameters, segments, isBeside }: Run): void {
+    if (this.#job !== null && this.#session !== null) return void this.#start.rerun(this.#job, parameters, { segments, isBeside });
+    this.#start.parameters = parameters;
+    this.#start.choose();
   }
 
   #openParameters(): void {
@@ -247,8 +263,10 @@ class Page {
 
   /** Return to the previous result, or to the start page. */
   #leave(): void {
-    this.#next = { segments: null, isBeside: false };
-    if (this.#session !== null) return this.#start.show("none");
+    if (this.#session !== null) {
+      this.#showWork(true);
+      return this.#save();
+    }
     if (location.hash !== "") history.pushState(null, "", location.pathname);
     this.#close();
   }
@@ -261,6 +279,7 @@ class Page {
   }
 
   #deleted(id: string): void {
+    forgetState(id);
     if (this.#beside.job === id) this.#beside.close();
     if (this.#job?.id !== id) return;
     history.replaceState(null, "", location.pathname);
@@ -271,7 +290,6 @@ class Page {
     clearTimeout(this.#saving);
     this.#session = null;
     this.#job = null;
-    this.#model = null;
     this.#beside.close();
     this.#viewer.removeAttribute("src");
     document.title = "Cleave";
@@ -282,6 +300,7 @@ class Page {
   #showWork(isShown: boolean): void {
     document.body.classList.toggle("has-result", isShown);
     byId("work").hidden = !isShown;
+    if (isShown) this.#start.show("none");
     for (const element of document.querySelectorAll<HTMLElement>(".with-result")) element.hidden = !isShown;
   }
 }

@@ -1,10 +1,17 @@
-/** The editing state of a result (cut, hidden parts, names) with undo, and its display modes. */
+/** The editing state of a result (level, cuts by hand, hidden parts, names) with undo, and its display modes. */
 
-import type { Axis } from "./api";
 import type { Cut, LoadDetail, Look, PartTree } from "../component/element";
+import type { Axis } from "./api";
+import { carryHidden, cutWith, editsOf, NO_EDITS, type Edits } from "./edits";
+import lists from "./lists.json";
+import { plural } from "./text";
 
 /** The state that undo restores. */
 export interface Work {
+  /** The number of parts before the edits. */
+  readonly level: number;
+  readonly edits: Edits;
+  /** Of the level with the edits. */
   readonly cut: Cut;
   readonly hidden: ReadonlySet<number>;
   readonly names: ReadonlyMap<number, string>;
@@ -40,20 +47,23 @@ export class Session {
   /** Whether the hierarchy ends at a limit although sensible cuts are left; null if that is not known. */
   readonly limitReached: boolean | null;
   readonly firstModes: Modes;
-  readonly #onChange: () => void;
+  readonly #onChange: (news?: string) => void;
   #work: Work;
   #modes: Modes;
   #past: Work[] = [];
   #future: Work[] = [];
   #slidingFrom: Work | null = null;
+  #numbers: { cut: Cut; byNode: ReadonlyMap<number, number> } | null = null;
 
-  constructor(tree: PartTree, { automaticSegments, limitReached }: LoadDetail, up: Axis, onChange: () => void) {
+  /** ``onChange`` is called after each change, with a sentence for screen readers if the control itself says nothing. */
+  constructor(tree: PartTree, { automaticSegments, limitReached }: LoadDetail, up: Axis, onChange: (news?: string) => void) {
     this.tree = tree;
     this.automaticSegments = automaticSegments;
     this.limitReached = limitReached;
     this.firstModes = this.#modes = { ...FIRST_MODES, up };
     this.#onChange = onChange;
-    this.#work = { cut: tree.cutAt(automaticSegments), hidden: new Set(), names: new Map() };
+    const cut = tree.cutAt(automaticSegments);
+    this.#work = { level: automaticSegments, edits: NO_EDITS, cut, hidden: new Set(), names: new Map() };
   }
 
   get work(): Work {
@@ -64,8 +74,14 @@ export class Session {
     return this.#modes;
   }
 
+  /** The parts in the order of their numbers. */
   get parts(): number[] {
-    return this.tree.parts(this.#work.cut);
+    return [...this.#numbersOfParts().keys()];
+  }
+
+  get isEdited(): boolean {
+    const { split, merged } = this.#work.edits;
+    return split.size + merged.size > 0;
   }
 
   get canUndo(): boolean {
@@ -76,17 +92,27 @@ export class Session {
     return this.#future.length > 0;
   }
 
+  /** Return the number of a part, which is its label in the files of this cut; null for a group. */
+  numberOf(id: number): number | null {
+    return this.#numbersOfParts().get(id) ?? null;
+  }
+
+  /** Return the name of a node: the given one, or that of the files. */
   nameOf(id: number): string {
-    const name = this.#work.names.get(id);
-    if (name !== undefined) return name;
-    const isPart = this.tree.partOf(this.#work.cut, id) === id;
-    return isPart ? `Part ${this.tree.node(id).label + 1}` : "Group";
+    return this.#work.names.get(id) ?? this.usualName(id);
+  }
+
+  /** Return the name of a node in the files if none is given. */
+  usualName(id: number): string {
+    const number = this.numberOf(id);
+    return number === null ? "Group" : `${lists.segmentName} ${number}`;
   }
 
   /** Replace the state by that of a link. */
-  restore(work: Partial<Work>, modes: Partial<Modes>): void {
-    this.#work = { ...this.#work, ...work };
-    this.#work = { ...this.#work, hidden: carryHidden(this.tree, this.#work.cut, this.#work.cut, this.#work.hidden) };
+  restore(work: Partial<Pick<Work, "level" | "edits" | "hidden" | "names">>, modes: Partial<Modes>): void {
+    const { level, edits, hidden, names } = { ...this.#work, ...work };
+    const cut = cutWith(this.tree, level, edits);
+    this.#work = { level, edits, cut, names, hidden: carryHidden(this.tree, cut, cut, hidden) };
     this.#modes = { ...this.#modes, ...modes };
     this.#modes = { ...this.#modes, selected: this.#carrySelected() };
     this.#onChange();
@@ -98,9 +124,9 @@ export class Session {
   }
 
   /** Show a level while the slider moves; all steps until endSlide are one undo step. */
-  slide(segments: number): void {
+  slide(level: number): void {
     this.#slidingFrom ??= this.#work;
-    this.#recut(this.tree.cutAt(segments));
+    this.#level(level);
     this.#onChange();
   }
 
@@ -110,26 +136,39 @@ export class Session {
     this.#onChange();
   }
 
-  showLevel(segments: number): void {
-    this.#change(() => this.#recut(this.tree.cutAt(segments)));
+  showLevel(level: number): void {
+    this.#change(() => this.#level(level), () => `${this.#count()}.`);
   }
 
   /** Show the next level at which a step is complete, or the one before. */
   showStep(by: 1 | -1): void {
-    this.showLevel(this.tree.stepEndBeside(this.parts.length, by));
+    this.showLevel(this.tree.stepEndBeside(this.#work.level, by));
   }
 
   split(ids: readonly number[]): void {
+    const names = ids.map((id) => this.nameOf(id)).join(", ");
     const cut = ids.reduce((cut, id) => this.tree.split(cut, id), this.#work.cut);
-    this.#change(() => this.#recut(cut));
+    if (cut.size > this.#work.cut.size) this.#change(() => this.#edit(cut), () => `${names} split: ${this.#count()}.`);
   }
 
   /** Merge all parts below a node into one. */
   mergeBelow(id: number): void {
-    this.#change(() => {
-      this.#recut(this.tree.merge(this.#work.cut, id));
-      this.#modes = { ...this.#modes, selected: [id] };
-    });
+    const merged = this.tree.partsBelow(this.#work.cut, id).length;
+    this.#change(
+      () => {
+        this.#edit(this.tree.merge(this.#work.cut, id));
+        this.#modes = { ...this.#modes, selected: [id] };
+      },
+      () => `${plural(merged, "part")} merged into ${this.nameOf(id)}: ${this.#count()}.`,
+    );
+  }
+
+  /** Undo all cuts by hand at once. */
+  discardEdits(): void {
+    this.#change(
+      () => this.#recut(this.tree.cutAt(this.#work.level), NO_EDITS),
+      () => `Cuts by hand discarded: ${this.#count()}.`,
+    );
   }
 
   setHidden(ids: readonly number[], isHidden: boolean): void {
@@ -138,47 +177,46 @@ export class Session {
       if (isHidden) hidden.add(id);
       else hidden.delete(id);
     }
-    this.#change(() => (this.#work = { ...this.#work, hidden }));
+    this.#hide(hidden);
   }
 
   isolate(ids: readonly number[]): void {
-    const hidden = new Set(this.parts.filter((part) => !ids.includes(part)));
-    this.#change(() => (this.#work = { ...this.#work, hidden }));
+    this.#hide(new Set(this.parts.filter((part) => !ids.includes(part))));
   }
 
   showAll(): void {
-    if (this.#work.hidden.size > 0) this.#change(() => (this.#work = { ...this.#work, hidden: new Set() }));
+    if (this.#work.hidden.size > 0) this.#hide(new Set());
   }
 
   rename(id: number, name: string): void {
     const names = new Map(this.#work.names);
-    if (name.trim() === "") names.delete(id);
+    if (name.trim() === "" || name.trim() === this.usualName(id)) names.delete(id);
     else names.set(id, name.trim());
     this.#change(() => (this.#work = { ...this.#work, names }));
   }
 
   undo(): void {
-    this.#moveHistory(this.#past, this.#future);
+    this.#moveHistory(this.#past, this.#future, "Undone");
   }
 
   redo(): void {
-    this.#moveHistory(this.#future, this.#past);
+    this.#moveHistory(this.#future, this.#past, "Redone");
   }
 
-  #moveHistory(from: Work[], to: Work[]): void {
+  #moveHistory(from: Work[], to: Work[], done: string): void {
     const work = from.pop();
     if (work === undefined) return;
     to.push(this.#work);
     this.#work = work;
     this.#modes = { ...this.#modes, selected: this.#carrySelected() };
-    this.#onChange();
+    this.#onChange(`${done}: ${this.#count()}.`);
   }
 
-  #change(make: () => void): void {
+  #change(make: () => void, news?: () => string): void {
     const before = this.#work;
     make();
     if (this.#work !== before) this.#remember(before);
-    this.#onChange();
+    this.#onChange(news?.());
   }
 
   #remember(work: Work): void {
@@ -186,10 +224,35 @@ export class Session {
     this.#future = [];
   }
 
-  #recut(cut: Cut): void {
+  #hide(hidden: ReadonlySet<number>): void {
+    const left = this.parts.length - hidden.size;
+    this.#change(() => (this.#work = { ...this.#work, hidden }), () => `${plural(left, "part")} of ${this.parts.length} shown.`);
+  }
+
+  #level(level: number): void {
+    this.#work = { ...this.#work, level };
+    this.#recut(cutWith(this.tree, level, this.#work.edits), this.#work.edits);
+  }
+
+  #edit(cut: Cut): void {
+    this.#recut(cut, editsOf(this.tree, this.#work.level, cut, this.#work.edits));
+  }
+
+  #recut(cut: Cut, edits: Edits): void {
     const { cut: before, hidden } = this.#work;
-    this.#work = { ...this.#work, cut, hidden: carryHidden(this.tree, before, cut, hidden) };
+    this.#work = { ...this.#work, cut, edits, hidden: carryHidden(this.tree, before, cut, hidden) };
     this.#modes = { ...this.#modes, selected: this.#carrySelected() };
+  }
+
+  #count(): string {
+    return plural(this.parts.length, "part");
+  }
+
+  #numbersOfParts(): ReadonlyMap<number, number> {
+    const { cut } = this.#work;
+    if (this.#numbers?.cut !== cut)
+      this.#numbers = { cut, byNode: new Map(this.tree.parts(cut).map((id, number) => [id, number])) };
+    return this.#numbers.byNode;
   }
 
   /** Return the selection, mapped to the parts of the present cut. */
@@ -202,15 +265,4 @@ export class Session {
     });
     return [...new Set(parts)];
   }
-}
-
-/** Hide a part of the new cut if it, its ancestor or all its descendants were hidden in the old one. */
-function carryHidden(tree: PartTree, before: Cut, after: Cut, hidden: ReadonlySet<number>): Set<number> {
-  if (hidden.size === 0) return new Set();
-  return new Set(
-    tree.parts(after).filter((part) => {
-      const above = tree.partOf(before, part);
-      return above >= 0 ? hidden.has(above) : tree.partsBelow(before, part).every((id) => hidden.has(id));
-    }),
-  );
 }

@@ -13,7 +13,7 @@ const POLLED = 4; // unfinished jobs that are asked for at a time: the queue run
 const FULL_PAUSE_MS = 5000; // until the next try if the server has enough jobs
 
 export interface SeveralEvents {
-  onOpen(job: Job, model: Model): void;
+  onOpen(job: Job): void;
   onClose(): void;
 }
 
@@ -109,7 +109,7 @@ export class Several {
 
   /** Add models to the list, and upload them one after the other; those of more bytes than ``mostBytes`` are refused. */
   add(models: readonly Model[], parameters: Parameters, mostBytes: number): void {
-    const rows = models.map((model) => new Row(model, parameters, (row) => this.#events.onOpen(row.job!, row.model)));
+    const rows = models.map((model) => new Row(model, parameters, (row) => this.#events.onOpen(row.job!)));
     this.#rows.push(...rows);
     byId("several-list").append(...rows.map(({ item }) => item));
     for (const row of rows) {

@@ -1,8 +1,13 @@
 /** The card with the progress of one job. */
 
-import type { Job } from "./api";
+import { getReadiness, type Job } from "./api";
 import { announce, byId, h, icon } from "./dom";
 import lists from "./lists.json";
+
+const UPLOAD = 0.1; // share of the bar; set by hand: most uploads are much shorter than their jobs
+const ASKED_MS = 2000; // between two questions whether workers are ready
+const STARTING =
+  "No worker is ready yet: the server is starting. The first start compiles the numerical kernels, which takes up to a minute.";
 
 /** Titles of the stages of a job, in order. */
 const STAGES: readonly [stage: string, title: string][] = [
@@ -30,9 +35,9 @@ export function titleOf(stage: string): string {
   return STAGES.find(([name]) => name === stage)?.[1] ?? stage;
 }
 
-/** Return the completed fraction of upload and job. The upload is the first third: upload and job both take seconds. */
+/** Return the completed fraction of upload and job. */
 export function shareOf(stage: string, done: number): number {
-  return stage === "upload" ? done / 3 : 1 / 3 + (2 / 3) * done;
+  return stage === "upload" ? UPLOAD * done : UPLOAD + (1 - UPLOAD) * done;
 }
 
 /** Mark the current stage; ``done`` is the completed fraction of the upload or of the job, 0..1. */
@@ -55,4 +60,19 @@ export function showProgress(job: Job): void {
   showStage(stageOf(job), job.progress);
   const place = job.status === "queued" && (job.queue_position ?? 0) > 1 ? `, ${job.queue_position! - 1} ahead of it` : "";
   byId("stages").querySelector("[data-stage=queued] span")!.textContent = `Waiting for a worker${place}`;
+}
+
+/** Say why a job waits while no worker is ready, until the signal is aborted. */
+export async function explainWaiting(signal: AbortSignal): Promise<void> {
+  const note = byId("progress-wait");
+  note.textContent = "";
+  while (!signal.aborted) {
+    await new Promise((resolve) => setTimeout(resolve, ASKED_MS));
+    const isWaiting = byId("stages").querySelector("[data-state=now]")?.getAttribute("data-stage") === "queued";
+    const readiness = isWaiting && !signal.aborted ? await getReadiness() : null;
+    const text = readiness?.ready === false ? STARTING : "";
+    if (signal.aborted || note.textContent === text) continue;
+    note.textContent = text;
+    if (text !== "") announce(text);
+  }
 }

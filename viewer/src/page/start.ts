@@ -1,21 +1,34 @@
 /** The start page: choosing a file or a sample, the upload, and the progress of the job. */
 
-import { apiKey, cancelJob, getBlob, getFormats, submit, type Job } from "./api";
+import { cancelJob, checkKey, getBlob, getFormats, rerun, submit, type Job } from "./api";
 import { announce, byId, h, toast } from "./dom";
 import { MOST_FILES, type Found } from "./files";
 import { follow, hasEnded } from "./follow";
 import { Intake } from "./intake";
+import { askForKey, describeKey } from "./keys";
 import lists from "./lists.json";
-import { ApiError, explain, problemOf, type Problem, type Remedy } from "./problems";
+import { explain, problemOf, type Problem, type Remedy } from "./problems";
 import { modelOfFile, sorted, type Model } from "./sets";
 import { Several } from "./several";
-import { openStages, showProgress, showStage } from "./stages";
+import { explainWaiting, openStages, showProgress, showStage } from "./stages";
 import { bytes, plural } from "./text";
 
 type Parameters = Readonly<Record<string, unknown>>;
 
+/** What is to be done with the result of a job. */
+export interface Purpose {
+  /** The number of parts to show; null for the automatic number. */
+  readonly segments: number | null;
+  /** Whether it is shown beside the present result. */
+  readonly isBeside: boolean;
+}
+
+const TO_SHOW: Purpose = { segments: null, isBeside: false };
+
 export interface StartEvents {
-  onFinished(job: Job, model: Model | null): void;
+  /** Called when the server has accepted a job. */
+  onAccepted(job: Job, purpose: Purpose): void;
+  onFinished(job: Job, purpose: Purpose): void;
   onRemedy(remedy: Remedy): void;
   /** Called if the user stops a job or goes back from an error. */
   onLeave(): void;
@@ -38,12 +51,12 @@ export class Start {
     onTooMany: () => this.fail({ code: "too_many_files", detail: `At most ${plural(MOST_FILES, "file")} are taken at a time.` }),
   });
   readonly #several = new Several({
-    onOpen: (job, model) => this.#events.onFinished(job, model),
+    onOpen: (job) => this.#events.onFinished(job, TO_SHOW),
     onClose: () => this.#events.onLeave(),
   });
   #running: AbortController | null = null;
   #job: Job | null = null;
-  #last: { model: Model; parameters: Parameters } | null = null;
+  #retry: (() => void) | null = null;
   #mostBytes = Infinity;
   /** Parameters for the next files that are chosen. */
   parameters: Parameters = {};
@@ -69,24 +82,22 @@ export class Start {
     for (const id of ["start", "progress", "several", "problem"]) byId(id).hidden = id !== shown;
   }
 
-  /** Upload a model and follow its job. */
-  async send(model: Model, parameters: Parameters): Promise<void> {
-    this.#last = { model, parameters };
-    if (model.bytes > this.#mostBytes) {
-      const with_ = model.files.length > 1 ? ` with its ${plural(model.files.length - 1, "file")}` : "";
-      const detail = `${model.name}${with_} has ${bytes(model.bytes)}; this server accepts at most ${bytes(this.#mostBytes)}.`;
-      return this.fail({ code: "too_large", detail });
-    }
-    await this.#run(model.name, model, (signal) => {
-      showStage("upload", 0);
-      return submit(model, parameters, signal, (sent) => showStage("upload", sent));
-    });
+  /** Run a job again with other parameters. */
+  async rerun(job: Job, parameters: Parameters, purpose: Purpose): Promise<void> {
+    this.#retry = () => void this.rerun(job, parameters, purpose);
+    await this.#run(nameOf(job), purpose, () => rerun(job.id, parameters));
   }
 
   /** Follow a job that was submitted earlier. */
-  async resume(job: Job): Promise<void> {
-    this.#last = null;
-    await this.#run(job.input.file_name ?? "mesh", null, () => Promise.resolve(job));
+  async resume(job: Job, purpose = TO_SHOW): Promise<void> {
+    this.#retry = () => void this.rerun(job, job.parameters, purpose);
+    await this.#run(nameOf(job), purpose, () => Promise.resolve(job));
+  }
+
+  /** Leave the job alone that the progress card shows; the server goes on with it. */
+  rest(): void {
+    this.#running?.abort();
+    this.#job = null;
   }
 
   fail(problem: Problem): void {
@@ -108,16 +119,23 @@ export class Start {
     try {
       const { models, leftOut } = await sorted(found);
       if (models.length === 0) return this.fail({ code: "no_mesh", detail: named(leftOut) });
-      this.#send(models, leftOut.length === 0 ? "" : `Left out, because no mesh refers to them: ${named(leftOut)}`);
+      await this.#send(models, leftOut.length === 0 ? "" : `Left out, because no mesh refers to them: ${named(leftOut)}`);
     } catch {
       this.fail({ code: "unreadable", detail: "The browser could not read the files." });
     }
   }
 
-  #send(models: readonly Model[], note: string): void {
+  /** Check the API key, then send one model, or show the list of several. */
+  async #send(models: readonly Model[], note: string): Promise<void> {
+    this.#retry = () => void this.#send(models, note);
+    try {
+      await checkKey();
+    } catch (error) {
+      return this.fail(problemOf(error));
+    }
     const { parameters } = this;
     this.parameters = {};
-    if (models.length === 1) void this.send(models[0]!, parameters);
+    if (models.length === 1) void this.#sendOne(models[0]!, parameters);
     else {
       this.#running?.abort();
       this.show("several");
@@ -127,28 +145,46 @@ export class Start {
     if (note !== "") toast(note);
   }
 
-  async #run(name: string, model: Model | null, begin: (signal: AbortSignal) => Promise<Job>): Promise<void> {
+  async #sendOne(model: Model, parameters: Parameters): Promise<void> {
+    this.#retry = () => void this.#sendOne(model, parameters);
+    if (model.bytes > this.#mostBytes) {
+      const with_ = model.files.length > 1 ? ` with its ${plural(model.files.length - 1, "file")}` : "";
+      const detail = `${model.name}${with_} has ${bytes(model.bytes)}; this server accepts at most ${bytes(this.#mostBytes)}.`;
+      return this.fail({ code: "too_large", detail });
+    }
+    await this.#run(model.name, TO_SHOW, (signal) => {
+      showStage("upload", 0);
+      return submit(model, parameters, signal, (sent) => showStage("upload", sent));
+    });
+  }
+
+  async #run(name: string, purpose: Purpose, begin: (signal: AbortSignal) => Promise<Job>): Promise<void> {
     this.#running?.abort();
     const running = (this.#running = new AbortController());
     openStages(name);
     this.show("progress");
+    void explainWaiting(running.signal);
     try {
       this.#job = await begin(running.signal);
+      if (running.signal.aborted) return;
+      this.#events.onAccepted(this.#job, purpose);
+      if (!hasEnded(this.#job)) showProgress(this.#job);
       const job = hasEnded(this.#job)
         ? this.#job
         : await follow(this.#job.id, { onJob: showProgress, onConnection: connection }, running.signal);
-      if (!running.signal.aborted) this.#ended(job, model);
+      if (!running.signal.aborted) this.#ended(job, purpose);
     } catch (error) {
       if (!running.signal.aborted) this.fail(problemOf(error));
     } finally {
+      running.abort();
       connection(true);
     }
   }
 
-  #ended(job: Job, model: Model | null): void {
+  #ended(job: Job, purpose: Purpose): void {
     if (job.status === "succeeded") {
       showStage("show", 1);
-      this.#events.onFinished(job, model);
+      this.#events.onFinished(job, purpose);
     } else {
       this.fail({ code: job.error?.code ?? job.status, detail: job.error?.message ?? "The job was stopped." });
     }
@@ -165,19 +201,9 @@ export class Start {
   #remedy(): void {
     const remedy = byId<HTMLButtonElement>("remedy").dataset["remedy"] as Remedy;
     if (remedy === "choose") this.choose();
-    else if (remedy === "key") this.#askForKey();
-    else if (remedy === "retry" && this.#last !== null) void this.send(this.#last.model, this.#last.parameters);
+    else if (remedy === "key") askForKey(this.#retry ?? (() => location.reload()));
+    else if (remedy === "retry" && this.#retry !== null) this.#retry();
     else this.#events.onRemedy(remedy);
-  }
-
-  #askForKey(): void {
-    const dialog = byId<HTMLDialogElement>("key-dialog");
-    dialog.showModal();
-    byId("key-form").onsubmit = () => {
-      apiKey.set(byId<HTMLInputElement>("key").value.trim());
-      if (this.#last !== null) void this.send(this.#last.model, this.#last.parameters);
-      else location.reload();
-    };
   }
 
   #fillSamples(): void {
@@ -200,7 +226,7 @@ export class Start {
   async #sendSample(name: string): Promise<void> {
     try {
       const blob = await getBlob(`samples/${name}.ply`);
-      this.#send([modelOfFile(new File([blob], `${name}.ply`))], "");
+      await this.#send([modelOfFile(new File([blob], `${name}.ply`))], "");
     } catch (error) {
       this.fail(problemOf(error));
     }
@@ -211,8 +237,9 @@ export class Start {
       const { max_upload_bytes } = await getFormats();
       this.#mostBytes = max_upload_bytes;
       byId("formats").textContent = `${FORMATS}, up to ${bytes(max_upload_bytes)}`;
-    } catch (error) {
-      if (error instanceof ApiError && error.status === 401) this.fail(problemOf(error));
+      await describeKey();
+    } catch {
+      // The server is away; what is chosen now explains that.
     }
   }
 }
@@ -235,4 +262,8 @@ function connection(isThere: boolean): void {
   if (note.hidden === isThere) return;
   note.hidden = isThere;
   announce(isThere ? "The server is responding again." : "The server is not responding. Retrying.");
+}
+
+function nameOf(job: Job): string {
+  return job.input.file_name ?? "mesh";
 }

@@ -106,7 +106,7 @@ export class Tools {
       this.#with((now) => {
         const [id] = now.modes.selected;
         if (id === undefined || name.value === now.nameOf(id)) return;
-        now.rename(id, name.value === `Part ${now.tree.node(id).label + 1}` ? "" : name.value);
+        now.rename(id, name.value);
       });
     name.addEventListener("change", rename);
     name.addEventListener("keydown", (event) => {

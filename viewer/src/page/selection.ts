@@ -1,0 +1,37 @@
+/** The panel below the parts: facts about the selected ones, their name, and what can be done with them. */
+
+import { byId } from "./dom";
+import type { Session } from "./session";
+import { count, figure, plural, share } from "./text";
+
+/** Show the facts about the selected parts. */
+export function describeSelection(session: Session): void {
+  const { tree, work, modes } = session;
+  const { selected } = modes;
+  byId("detail").hidden = selected.length === 0;
+  if (selected.length === 0) return;
+  const nodes = selected.map((id) => tree.node(id));
+  const one = nodes.length === 1 ? nodes[0]! : null;
+  const sum = (of: (node: (typeof nodes)[number]) => number) => nodes.reduce((total, node) => total + of(node), 0);
+  const name = byId<HTMLInputElement>("part-name");
+  name.hidden = one === null;
+  byId("many-parts").hidden = one !== null;
+  byId("many-parts").textContent = `${plural(selected.length, "part")} selected`;
+  if (one !== null && document.activeElement !== name) name.value = session.nameOf(one.id);
+  byId("detail-area").textContent = share(sum((node) => node.area) / tree.totalArea);
+  byId("detail-faces").textContent = count(sum((node) => node.faces));
+  byId("detail-made").textContent = one === null || one.parent < 0 ? "–" : figure(tree.node(one.parent).cutValue);
+  byId("detail-next").textContent = one === null || one.children.length === 0 ? "–" : figure(one.cutValue);
+  byId<HTMLButtonElement>("split").disabled = nodes.every((node) => node.children.length === 0);
+  describeMerge(session);
+  const isHidden = selected.every((id) => work.hidden.has(id));
+  byId("hide").querySelector("span")!.textContent = isHidden ? "Show" : "Hide";
+}
+
+function describeMerge({ tree, work, modes: { selected } }: Session): void {
+  const merged = tree.partsBelow(work.cut, tree.commonAncestor(selected)).length;
+  const merge = byId<HTMLButtonElement>("merge");
+  merge.disabled = merged < 2;
+  merge.querySelector("span")!.textContent = merged > selected.length ? `Merge ${merged}` : "Merge";
+  merge.title = merged > selected.length ? `Merges the smallest group that contains the selection: ${merged} parts` : "";
+}
