@@ -7,6 +7,7 @@ from functools import cache
 from typing import Any, Literal, TypeAlias, get_args, get_origin, get_type_hints
 
 from segcore.errors import InvalidParameters
+from segcore.parameter_words import words
 
 Graph: TypeAlias = Literal["faces", "vertices"]
 Affinity: TypeAlias = Literal["learned", "concavity", "minima_rule", "adjacency"]
@@ -184,8 +185,9 @@ _PRESETS: dict[str, dict[str, object]] = {
 
 
 def parameters_schema() -> dict[str, Any]:
-    """The JSON Schema (2020-12) of the argument of ``from_mapping``, with ranges, defaults and descriptions."""
+    """The JSON Schema (2020-12) of the argument of ``from_mapping``, with ranges, defaults, descriptions and titles."""
     preset = {
+        **words("preset"),
         "type": "string",
         "enum": sorted(_PRESETS),
         "description": "A named set of parameters; the others override its values.",
@@ -199,6 +201,7 @@ def _schemas() -> dict[str, dict[str, Any]]:
     return {
         parameter.name: {
             **_value_schema(types[parameter.name], parameter.metadata["limits"], parameter.metadata["exception"]),
+            **words(parameter.name),
             "default": parameter.default,
             "description": parameter.metadata["description"],
         }
