@@ -36,12 +36,13 @@ def take_pictures(browser: Browser, url: str, large_job: str, folder: Path) -> N
     folder.mkdir(parents=True, exist_ok=True)
     page = _page(browser, _DESKTOP)
     jobs = {name: _sample(page, url, name) for name in ("jack", "pawn", "stool")}
+    other = _rerun(page, url, jobs["pawn"], {"affinity": "concavity"})
     page.context.close()
-    for shot in _shots(jobs, large_job):
+    for shot in _shots(jobs, other, large_job):
         _take(browser, shot, f"{url}/{shot.fragment}", folder / f"{shot.name}.png")
 
 
-def _shots(jobs: dict[str, str], large_job: str) -> list[Shot]:
+def _shots(jobs: dict[str, str], other: str, large_job: str) -> list[Shot]:
     jack, pawn, stool = (f"#job={jobs[name]}" for name in ("jack", "pawn", "stool"))
     return [
         Shot("start"),
@@ -51,8 +52,10 @@ def _shots(jobs: dict[str, str], large_job: str) -> list[Shot]:
         Shot("thirty", f"{jack}&k=30"),
         Shot("concavity", f"{jack}&k=1&show=concavity.nolines"),
         Shot("wireframe", f"{stool}&show=wires&explode=0.5", _DARK),
-        Shot("compare", f"{pawn}&beside={jobs['stool']}"),
-        Shot("take-away", pawn, button="#open-take-away"),
+        Shot("compare", f"{pawn}&k=8&beside={other}"),
+        Shot("difference", f"{pawn}&k=8&beside={other}", button="#beside-difference"),
+        Shot("why", pawn, button="#open-why"),
+        Shot("download", pawn, button="#open-download"),
         Shot("jobs", stool, _DARK, "#open-jobs"),
         Shot("parameters", stool, button="#open-parameters"),
         Shot("phone", stool, _PHONE),
@@ -68,6 +71,12 @@ def _sample(page: Page, url: str, name: str) -> str:
     page.wait_for_selector("#work:not([hidden])")
     job: str = page.evaluate("() => new URLSearchParams(location.hash.slice(1)).get('job')")
     return job
+
+
+def _rerun(page: Page, url: str, job: str, parameters: dict[str, Any]) -> str:
+    """Run a job again and return the id of the new one when it has ended."""
+    answer = page.request.post(f"{url}/v1/jobs/{job}/rerun", data=parameters, headers={"Prefer": "wait=60"})
+    return str(answer.json()["id"])
 
 
 def _take(browser: Browser, shot: Shot, url: str, target: Path) -> None:

@@ -37,6 +37,22 @@ export interface TreeNode {
 /** The set of nodes that are split; it contains the parents of its nodes. The parts are the nodes just below. */
 export type Cut = ReadonlySet<number>;
 
+/** sRGB, 0..1. */
+export type Color = readonly [number, number, number];
+
+/** Colours by node. */
+export type Colors = ReadonlyMap<number, Color>;
+
+/** The faces of a model in the order in which it stores them. */
+export interface FaceTable {
+  /** (L) tree node of every leaf. */
+  readonly leafNodes: readonly number[];
+  /** (L + 1) leaf i has the faces leafStart[i] to leafStart[i + 1] - 1, in the order of the input. */
+  readonly leafStart: readonly number[];
+  /** (F) area of every face. */
+  readonly areas: Float32Array;
+}
+
 /** The tree of cuts. */
 export interface Tree {
   readonly nodes: readonly TreeNode[];
@@ -138,8 +154,18 @@ export declare class CleaveViewer extends HTMLElement {
   /** The camera. If it is set before a model is loaded, the model appears without an entrance. */
   view: View;
   resetView(): void;
+  /** Move the camera so that some parts fill the view. */
+  focusOn(parts: readonly number[]): void;
   /** Return the colour of a node as a CSS colour. */
   colorOf(node: number): string;
+  /** Return the colour of a node. */
+  shadeOf(node: number): Color;
+  /** Colours of nodes that have others than those of their labels. */
+  set colors(colors: Colors);
+  /** Null if no model is shown. */
+  readonly faces: FaceTable | null;
+  /** Cover some faces, numbered as in the model, with a colour; null for none. */
+  set marked(faces: Uint32Array | null);
   /** Return the part at a position in the window; -1 if there is none. */
   partAt(clientX: number, clientY: number): number;
   /** Return a PNG of the present view, without a background. */

@@ -31,7 +31,7 @@ def test_axe_finds_no_violation_on_the_pages(new_visit: NewVisit, job: str, axe:
 
 def test_axe_finds_no_violation_in_the_dialogs_or_with_an_error(visit: Visit, job: str, axe: str) -> None:
     visit.open_job(job)
-    for button in ("open-jobs", "open-parameters", "open-take-away", "open-keys"):
+    for button in ("open-jobs", "open-parameters", "open-download", "open-keys", "open-why"):
         visit.page.click(f"#{button}")
         visit.page.wait_for_timeout(100)
         assert violations(visit, axe) == []

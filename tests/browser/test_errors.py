@@ -151,14 +151,14 @@ def test_a_running_job_can_be_stopped(visit: Visit, installation: Installation) 
 def test_an_error_of_a_download_is_shown_above_the_dialog(visit: Visit, job: str) -> None:
     detail = {"code": "job_deleted", "detail": "The job was deleted.", "status": 410}
     visit.open_job(job)
-    visit.page.click("#open-take-away")
+    visit.page.click("#open-download")
     visit.page.route("**/model.glb?segments=*", lambda route: route.fulfill(status=410, json=detail))
     visit.page.click("[data-format=glb]")
     note = visit.page.locator(".toast", has_text="This job was deleted")
     note.wait_for()
     x, y = note.evaluate("(e) => [e.getBoundingClientRect().x + 8, e.getBoundingClientRect().y + 8]")
     assert visit.page.evaluate("([x, y]) => document.elementsFromPoint(x, y)[0].closest('dialog')?.id", [x, y])
-    assert visit.page.locator("#take-away #announcer").inner_text() == note.inner_text()
+    assert visit.page.locator("#download #announcer").inner_text() == note.inner_text()
     visit.page.keyboard.press("Escape")
     assert visit.page.locator("body > #announcer").count() == 1
     visit.faults = [fault for fault in visit.faults if "410" not in fault]

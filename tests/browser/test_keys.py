@@ -53,7 +53,7 @@ def test_a_wrong_key_is_refused_and_a_valid_one_is_stored(visit: Visit, installa
     visit.page.click("#open-jobs")
     visit.page.locator(f".job-row[data-id='{job}'] img[src^=blob]").wait_for()
     visit.page.keyboard.press("Escape")
-    visit.page.click("#open-take-away")
+    visit.page.click("#open-download")
     with visit.page.expect_download() as saved:
         visit.page.click("[data-format=glb]")
     assert saved.value.path().read_bytes().startswith(b"glTF")
@@ -65,7 +65,7 @@ def test_a_wrong_key_is_refused_and_a_valid_one_is_stored(visit: Visit, installa
     assert "of the API key that this browser stores" in visit.page.inner_text("#jobs-owner")
     visit.page.click("#jobs-forget")
     visit.page.wait_for_selector("#key-state:has-text('This server requires an API key.')")
-    assert visit.page.evaluate("localStorage.getItem('cleave.key')") is None
+    assert visit.page.evaluate("localStorage.getItem('cleave.key') ?? localStorage.getItem('cleave.states')") is None
     ignore_unauthorized(visit)
 
 

@@ -7,7 +7,7 @@ import pytest
 import trimesh
 
 from browser.test_access import PHONE
-from browser.test_take_away import download_as
+from browser.test_download import download_as
 from helpers.browser.visit import NewVisit, Visit
 
 

@@ -80,7 +80,7 @@ def test_the_memory_of_a_model_is_freed_with_it(visit: Visit, job: str) -> None:
 def _points_inside_leaves(visit: Visit) -> list[tuple[float, float]]:
     """Return points that are not near a border at any level; colours are mixed at borders."""
     visit.set_range("level", 64)
-    places = visit.grid(24)
+    places = visit.grid(12)
     around = [(0, 0), (2, 0), (-2, 0), (0, 2), (0, -2)]
     found = [visit.parts_at([(x + dx, y + dy) for x, y in places]) for dx, dy in around]
     visit.page.click("#level-automatic")

@@ -129,8 +129,12 @@ def test_the_structure_of_a_file_is_shown_and_followed_if_asked(visit: Visit) ->
     visit.wait_for_parts()
     assert visit.page.locator("#about").inner_text().endswith("2 shells · 2 groups · 1 material")
     assert "groups" not in visit.page.locator("#level-note").inner_text()
+    assert visit.page.locator("#structure-choices button").all_inner_texts() == ["2 shells", "2 groups"]
+    visit.page.click("[data-structure=groups]")
+    visit.page.wait_for_function("() => document.querySelector('#structure-hint').hidden")
+    assert len(visit.parts()) == 2
     visit.page.click("#open-parameters")
-    visit.page.select_option("#parameter-structure", "groups")
+    assert visit.page.input_value("#parameter-structure") == "groups"
     visit.page.fill("#parameter-max_segments", "2")
     visit.page.click("#parameters button[value=run]")
     visit.page.wait_for_function("() => document.querySelector('#level').max === '2'")

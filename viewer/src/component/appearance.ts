@@ -1,6 +1,7 @@
 /** A texture with three texels per leaf (colour, offset, part), rewritten when the cut or the selection changes. */
 
 import { DataTexture, FloatType, NearestFilter, RGBAFormat } from "three";
+import type { Colors } from "./cleave-viewer";
 import type { Model } from "./glb";
 import type { Surface } from "./surface";
 import type { Cut } from "./tree";
@@ -10,6 +11,8 @@ export interface Look {
   readonly hidden: ReadonlySet<number>;
   readonly selected: readonly number[];
   readonly hovered: number;
+  /** sRGB colours in 0..1 of nodes that have others than those of their labels. */
+  readonly colors: Colors;
   /** 0..1 */
   readonly explode: number;
 }
@@ -49,7 +52,7 @@ export class Appearance {
       let part = parts.get(node);
       if (part === undefined) parts.set(node, (part = tree.partOf(look.cut, node)));
       this.partOfLeaf[leaf] = part;
-      const color = palette[tree.node(part).label % palette.length] ?? [0.6, 0.6, 0.6];
+      const color = look.colors.get(part) ?? palette[tree.node(part).label % palette.length] ?? [0.6, 0.6, 0.6];
       const emphasis = part === look.hovered ? 1 : selected.size > 0 && !selected.has(part) ? -1 : 0;
       this.#write(leaf, 0, [...color, look.hidden.has(part) ? 0 : 1]);
       this.#write(leaf, 1, [...(offsets.get(part) ?? [0, 0, 0]), emphasis]);

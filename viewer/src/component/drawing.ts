@@ -43,6 +43,7 @@ export interface Inks {
   readonly line: readonly [number, number, number, number];
   readonly selected: readonly [number, number, number, number];
   readonly concave: readonly [number, number, number, number];
+  readonly mark: readonly [number, number, number, number];
   readonly wire: readonly [number, number, number, number];
   readonly sky: readonly [number, number, number];
 }
@@ -62,9 +63,11 @@ export class Drawing {
   readonly #surfaceMaterial: RawShaderMaterial;
   readonly #pickMaterial: RawShaderMaterial;
   readonly #surfaceMesh: Mesh;
+  #markMaterial: RawShaderMaterial | null = null;
   #wires: Mesh | null = null;
   #borders: Mesh | null = null;
   #concave: Mesh | null = null;
+  #marks: Mesh | null = null;
   #original: Original | null = null;
   #look: Look = "parts";
   #inks: Inks;
@@ -142,6 +145,7 @@ export class Drawing {
     setInk(this.#borders, "ink", this.#look === "original" ? CLEAR : inks.line);
     setInk(this.#borders, "selectedInk", inks.selected);
     setInk(this.#concave, "ink", inks.concave);
+    setInk(this.#marks, "ink", inks.mark);
   }
 
   /** Set the size of the canvas in device pixels, and the number of device pixels per CSS pixel. */
@@ -182,9 +186,26 @@ export class Drawing {
     if (this.#concave !== null) this.#concave.visible = isShown;
   }
 
+  /** Cover some faces, numbered as in the model, with the ink of marks; null for none. */
+  set marked(faces: Uint32Array | null) {
+    this.#marks?.geometry.dispose();
+    this.#marks?.removeFromParent();
+    this.#marks = null;
+    if (faces === null || faces.length === 0) return;
+    const geometry = new BufferGeometry();
+    for (const name of ["position", "normalAndLeaf"]) geometry.setAttribute(name, this.#geometry.getAttribute(name));
+    const { index } = this.#surface;
+    const corners = new Uint32Array(3 * faces.length);
+    faces.forEach((face, i) => corners.set(index.subarray(3 * face, 3 * face + 3), 3 * i));
+    geometry.setIndex(new BufferAttribute(corners, 1));
+    this.#markMaterial ??= this.#material(WIRE_VERTEX, PLAIN_FRAGMENT, { ink: { value: new Vector4() } }, true);
+    this.#marks = new Mesh(geometry, this.#markMaterial);
+    this.#add(this.#marks, 2);
+  }
+
   /** Call ``draw`` while the surface is drawn with leaf numbers as colours, for picking. */
   withPickMaterial(draw: () => void): void {
-    const others = [this.#wires, this.#borders, this.#concave, this.#original?.group].filter((one) => one?.visible) as Object3D[];
+    const others = [this.#wires, this.#borders, this.#concave, this.#marks, this.#original?.group].filter((one) => one?.visible) as Object3D[];
     for (const mesh of others) mesh.visible = false;
     this.#surfaceMesh.material = this.#pickMaterial;
     draw();
@@ -196,7 +217,7 @@ export class Drawing {
     this.appearance.dispose();
     this.#original?.dispose();
     this.#geometry.dispose();
-    for (const mesh of [this.#borders, this.#concave]) mesh?.geometry.dispose();
+    for (const mesh of [this.#borders, this.#concave, this.#marks]) mesh?.geometry.dispose();
     for (const material of this.#materials) material.dispose();
     this.group.removeFromParent();
   }

@@ -1,22 +1,25 @@
 /** The web component ``<cleave-viewer>``, which shows the GLB file of a job. docs/reference/viewer.md describes it. */
 
-import type { CleaveViewer as Declared, ErrorDetail, LoadDetail, ViewerState } from "./cleave-viewer";
+import type { CleaveViewer as Declared, Color, Colors, ErrorDetail, FaceTable, LoadDetail, ViewerState } from "./cleave-viewer";
 import { Drawing, type Inks } from "./drawing";
+import { faceTable } from "./faces";
+import { sphereAround } from "./framing";
 import { InvalidModel, parseModel, type Model } from "./glb";
 import { loadOriginal, lookNamed, NoOriginal, type Look } from "./look";
 import { segmentName } from "../page/lists.json";
 import { FIRST_VIEW, Stage, type View } from "./stage";
 import { reasonOf, Status, unreachable } from "./status";
-import { buildSurface } from "./surface";
+import { buildSurface, type Surface } from "./surface";
 import type { Cut, PartTree } from "./tree";
 
-export type { LoadDetail, Look, Model, View };
+export type { Color, Colors, FaceTable, LoadDetail, Look, Model, View };
 export { type Cut, type PartTree, type TreeNode } from "./tree";
 
 const LIGHT: Inks = {
   line: [0.09, 0.1, 0.13, 0.62],
   selected: [0.27, 0.25, 0.72, 1],
   concave: [0.78, 0.09, 0.16, 0.95],
+  mark: [0.78, 0.09, 0.16, 0.85],
   wire: [0.05, 0.06, 0.09, 0.2],
   sky: [0.93, 0.93, 0.95],
 };
@@ -24,6 +27,7 @@ const DARK: Inks = {
   line: [0.04, 0.04, 0.06, 0.75],
   selected: [1, 1, 1, 1],
   concave: [1, 0.36, 0.36, 1],
+  mark: [1, 0.36, 0.36, 0.85],
   wire: [0.02, 0.02, 0.03, 0.32],
   sky: [0.16, 0.17, 0.2],
 };
@@ -69,7 +73,9 @@ export class CleaveViewer extends HTMLElement implements Declared {
   #stage: Stage | null = null;
   #resizing: ResizeObserver | null = null;
   #model: Model | null = null;
+  #surface: Surface | null = null;
   #drawing: Drawing | null = null;
+  #colors: Colors = new Map();
   #loading: AbortController | null = null;
   #loadingLook: AbortController | null = null;
   #cut: Cut = new Set();
@@ -199,6 +205,23 @@ export class CleaveViewer extends HTMLElement implements Declared {
     this.#updateLeaves();
   }
 
+  /** Colours of nodes that have others than those of their labels; sRGB, 0..1. */
+  set colors(colors: Colors) {
+    this.#colors = colors;
+    this.#updateLeaves();
+  }
+
+  /** The faces in the order of the model; null if no model is shown. */
+  get faces(): FaceTable | null {
+    return this.#model === null ? null : faceTable(this.#model);
+  }
+
+  /** Cover some faces, numbered as in the model, with a colour; null for none. */
+  set marked(faces: Uint32Array | null) {
+    if (this.#drawing !== null) this.#drawing.marked = faces;
+    this.#stage?.changed();
+  }
+
   /** Names of nodes for the text alternative. */
   set names(names: ReadonlyMap<number, string>) {
     this.#names = names;
@@ -220,11 +243,25 @@ export class CleaveViewer extends HTMLElement implements Declared {
     this.view = FIRST_VIEW;
   }
 
+  /** Move the camera so that some parts fill the view. */
+  focusOn(parts: readonly number[]): void {
+    const [model, surface, drawing, stage] = [this.#model, this.#surface, this.#drawing, this.#stage];
+    if (model === null || surface === null || drawing === null || stage === null) return;
+    const inside = model.leafNodes.flatMap((node, leaf) => (parts.includes(model.tree.partOf(this.#cut, node)) ? [leaf] : []));
+    const sphere = sphereAround(drawing, surface, new Set(inside));
+    if (sphere === null) return;
+    stage.glideTo({ ...stage.view, distance: FIRST_VIEW.distance * sphere.radius, target: sphere.center.toArray() });
+  }
+
   /** Return the colour of a node as a CSS colour. */
   colorOf(node: number): string {
+    return `rgb(${this.shadeOf(node).map((channel) => Math.round(255 * channel)).join(" ")})`;
+  }
+
+  /** Return the colour of a node; sRGB, 0..1. */
+  shadeOf(node: number): Color {
     const model = this.#model;
-    const color = model?.palette[model.tree.node(node).label % model.palette.length] ?? [0.6, 0.6, 0.6];
-    return `rgb(${color.map((channel) => Math.round(255 * channel)).join(" ")})`;
+    return this.#colors.get(node) ?? model?.palette[model.tree.node(node).label % model.palette.length] ?? [0.6, 0.6, 0.6];
   }
 
   /** Return the part at a position in the window; -1 if there is none. */
@@ -263,7 +300,8 @@ export class CleaveViewer extends HTMLElement implements Declared {
     this.#loadingLook?.abort();
     this.#drawing?.dispose();
     this.#drawing = null;
-    this.#model = null;
+    this.#model = this.#surface = null;
+    this.#colors = new Map();
     this.#hovered = -1;
     this.#stage?.show(null);
     this.#describe();
@@ -302,6 +340,7 @@ export class CleaveViewer extends HTMLElement implements Declared {
     if (signal.aborted || this.#stage === null) return;
     this.#remove();
     this.#model = model;
+    this.#surface = surface;
     this.#drawing = new Drawing(model, surface, this.#inks());
     const segments = Number(this.getAttribute("segments") ?? model.automaticSegments);
     this.#cut = model.tree.cutAt(segments);
@@ -368,6 +407,7 @@ export class CleaveViewer extends HTMLElement implements Declared {
       hidden: this.#hidden,
       selected: this.#selected,
       hovered: this.#hovered,
+      colors: this.#colors,
       explode,
     });
     this.#drawing.explode = explode;

@@ -27,6 +27,7 @@ const ENTRANCE_MS = 1100;
 const LATE_MS = 45; // from the request of a frame to its start
 const LEAST_SHARPNESS = 0.35;
 const REST_MS = 350;
+const GLIDE_MS = 400;
 const KEY_STEP = Math.PI / 24;
 
 export class Stage {
@@ -123,17 +124,27 @@ export class Stage {
   /** Animate the camera into the first view, unless reduced motion is preferred. */
   enter(): void {
     if (matchMedia("(prefers-reduced-motion: reduce)").matches) return;
-    this.#endEntrance();
     const end = this.view;
-    const began = performance.now();
-    const step = () => {
-      const t = Math.min((performance.now() - began) / ENTRANCE_MS, 1);
+    this.#animate(ENTRANCE_MS, (t) => {
       const left = (1 - t) ** 4;
       this.view = { ...end, azimuth: end.azimuth - 1.2 * left, distance: end.distance * (1 + 0.35 * left) };
       if (this.#drawing !== null) this.#drawing.fadeIn = 1 - (1 - t) ** 3 * 0.9;
-      this.#entrance = t < 1 ? requestAnimationFrame(step) : 0;
-    };
-    step();
+    });
+  }
+
+  /** Move the camera to a view, at once if reduced motion is preferred. */
+  glideTo(end: View): void {
+    const start = this.view;
+    const between = (a: number, b: number, share: number) => a + (b - a) * share;
+    this.#animate(matchMedia("(prefers-reduced-motion: reduce)").matches ? 0 : GLIDE_MS, (t) => {
+      const share = 1 - (1 - t) ** 3;
+      this.view = {
+        azimuth: between(start.azimuth, end.azimuth, share),
+        polar: between(start.polar, end.polar, share),
+        distance: between(start.distance, end.distance, share),
+        target: end.target.map((value, k) => between(start.target[k]!, value, share)) as [number, number, number],
+      };
+    });
   }
 
   resize(): void {
@@ -143,9 +154,10 @@ export class Stage {
     this.#renderer.setPixelRatio(ratio);
     this.#renderer.setSize(width, height, false);
     this.#camera.aspect = width / height;
-    const narrow = Math.min(this.#camera.aspect, 1);
-    this.#camera.fov = (2 * Math.atan(Math.tan((FIELD_OF_VIEW * Math.PI) / 360) / narrow) * 180) / Math.PI;
-    this.#camera.updateProjectionMatrix();
+    const inset = insetOf(this.canvas, height);
+    const shorter = Math.min(width, height - inset);
+    this.#camera.fov = (2 * Math.atan((Math.tan((FIELD_OF_VIEW * Math.PI) / 360) * height) / shorter) * 180) / Math.PI;
+    this.#camera.setViewOffset(width, height, 0, inset / 2, width, height);
     this.#pickTarget.setSize(width, height);
     this.#drawing?.resize(width * ratio, height * ratio, ratio);
     this.changed();
@@ -246,6 +258,18 @@ export class Stage {
       }, REST_MS);
   }
 
+  /** Call ``show`` with the elapsed share of a time, 0..1, until it is over or the user moves the camera. */
+  #animate(duration_ms: number, show: (t: number) => void): void {
+    this.#endEntrance();
+    const began = performance.now();
+    const step = () => {
+      const t = duration_ms === 0 ? 1 : Math.min((performance.now() - began) / duration_ms, 1);
+      show(t);
+      this.#entrance = t < 1 ? requestAnimationFrame(step) : 0;
+    };
+    step();
+  }
+
   #endEntrance(): void {
     cancelAnimationFrame(this.#entrance);
     this.#entrance = 0;
@@ -264,4 +288,10 @@ export class Stage {
     this.#camera.far = distance + this.#reach;
     this.#camera.updateProjectionMatrix();
   }
+}
+
+/** Return the height in CSS pixels that something covers at the bottom of the canvas: the model is shown above it. */
+function insetOf(canvas: HTMLCanvasElement, height: number): number {
+  const inset = Number.parseFloat(getComputedStyle(canvas).getPropertyValue("--cleave-inset-bottom")) || 0;
+  return Math.min(Math.max(inset, 0), height / 2);
 }

@@ -1,7 +1,8 @@
 /** What the page says about the mesh of a job. */
 
-import type { Axis, Job, Report, Structure } from "./api";
-import { bytes, figure, plural } from "./text";
+import { nameOf, type Axis, type Job, type Report, type Structure } from "./api";
+import { byId } from "./dom";
+import { bytes, figure, plural, stem } from "./text";
 
 const SIGNS: Record<string, string> = {
   micron: "µm",
@@ -13,8 +14,16 @@ const SIGNS: Record<string, string> = {
 };
 const IN_Z_UP: readonly (string | null)[] = ["stl", "3mf"]; // formats of jobs without a report
 
+/** Write the name of a mesh and the facts about it into the head of the page. */
+export function entitle(job: Job, faces: number): void {
+  const name = nameOf(job);
+  byId("title").textContent = name;
+  byId("about").textContent = about(job, faces);
+  document.title = `${stem(name)} – Cleave`;
+}
+
 /** Return a line of facts: faces, bytes, size and structure. */
-export function about(job: Job, faces: number): string {
+function about(job: Job, faces: number): string {
   const report = job.mesh?.report ?? null;
   const size = report === null ? [] : [sizeOf(report)];
   return [plural(faces, "face"), bytes(job.input.size_bytes), ...size, ...structureOf(report?.structure ?? null)].join(" · ");

@@ -68,6 +68,11 @@ export interface ParameterSchema {
 
 export interface Parameter {
   readonly title?: string;
+  /** Titles of the values. */
+  readonly "x-choices"?: Readonly<Record<string, string>>;
+  readonly "x-about"?: string;
+  /** Whether only people who know the algorithm need it. */
+  readonly "x-advanced"?: boolean;
   readonly type?: string | string[];
   readonly enum?: (string | number | null)[];
   readonly anyOf?: Parameter[];
@@ -100,6 +105,9 @@ function forgetFormats(error: unknown): never {
   formats = null;
   throw error;
 }
+
+/** Return the name of the mesh of a job. */
+export const nameOf = (job: Job): string => job.input.file_name ?? "mesh";
 
 /** Return the path of a job, relative to the page. */
 export const jobPath = (id: string, rest = ""): string => `v1/jobs/${encodeURIComponent(id)}${rest}`;

@@ -1,6 +1,6 @@
 /** The drawer with the list of jobs: thumbnails, search, deletion. */
 
-import { deleteJob, getBlob, jobPath, listJobs, type Job } from "./api";
+import { deleteJob, getBlob, jobPath, listJobs, nameOf, type Job } from "./api";
 import { byId, h, icon, openDialog, toast } from "./dom";
 import { explain, problemOf } from "./problems";
 import { bytes, plural, when } from "./text";
@@ -144,10 +144,6 @@ export class JobList {
     this.#pictures.clear();
     this.#seen.disconnect();
   }
-}
-
-function nameOf(job: Job): string {
-  return job.input.file_name ?? "mesh";
 }
 
 function stateOf(job: Job): string {

@@ -21,6 +21,10 @@ export function forgetState(job: string): void {
   write(others);
 }
 
+export function forgetStates(): void {
+  localStorage.removeItem(KEY);
+}
+
 function read(): States {
   try {
     return JSON.parse(localStorage.getItem(KEY) ?? "{}") as States;

@@ -2,6 +2,7 @@
 
 import { apiKey, getFormats } from "./api";
 import { byId, openDialog } from "./dom";
+import { forgetStates } from "./kept";
 
 /** Ask for a key in a dialog; ``onEntered`` is called when it is stored. */
 export function askForKey(onEntered: () => void): void {
@@ -26,12 +27,13 @@ export async function describeKey(): Promise<void> {
     : "Everybody who can open this page sees these jobs.";
 }
 
-/** Listen to the buttons that enter and forget the key. */
+/** Listen to the buttons that enter and forget the key; the states of its jobs are forgotten with it. */
 export function listenToKeys(): void {
   byId("key-enter").addEventListener("click", () => askForKey(() => location.reload()));
   for (const id of ["key-forget", "jobs-forget"])
     byId(id).addEventListener("click", () => {
       apiKey.forget();
+      forgetStates();
       location.assign(location.pathname);
     });
 }

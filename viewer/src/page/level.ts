@@ -1,8 +1,10 @@
 /** The slider for the number of parts, over a chart of the cut values. */
 
+import type { Job } from "./api";
 import { byId } from "./dom";
 import type { Session } from "./session";
-import { figure, plural } from "./text";
+import { plural } from "./text";
+import { endOf, explainNumber } from "./why";
 
 const HEIGHT = 40;
 const HEADROOM = 3; // pixels above the highest value
@@ -15,7 +17,9 @@ export class LevelSlider {
   readonly #automatic = byId<HTMLButtonElement>("level-automatic");
   readonly #chart = byId<SVGSVGElement>("level-chart");
   readonly #session: () => Session | null;
+  /** Sentences on what limits the result. */
   #notes: readonly string[] = [];
+  #isLearned = true;
 
   constructor(session: () => Session | null) {
     this.#session = session;
@@ -25,14 +29,19 @@ export class LevelSlider {
       const now = session();
       now?.showLevel(now.automaticSegments);
     });
+    byId("open-why").addEventListener("click", () => {
+      const now = session();
+      if (now !== null) explainNumber(now, this.#isLearned);
+    });
     byId("discard-edits").addEventListener("click", () => session()?.discardEdits());
     byId("level-less").addEventListener("click", () => session()?.showStep(-1));
     byId("level-more").addEventListener("click", () => session()?.showStep(1));
   }
 
-  /** Draw the chart of a new result; ``notes`` are sentences on what limits it. */
-  open(session: Session, notes: readonly string[]): void {
+  /** Draw the chart of a new result. */
+  open(session: Session, { notes, parameters }: Job): void {
     this.#notes = notes;
+    this.#isLearned = parameters["order"] === "learned" && parameters["affinity"] === "learned";
     const values = session.tree.cutValues;
     const most = session.tree.maxSegments;
     this.#range.max = String(most);
@@ -75,14 +84,12 @@ function nextCut(session: Session, segments: number): string {
   const { tree } = session;
   if (!tree.stepEnds.includes(segments))
     return `Some of a group of equal parts are cut off: all of them are at ${plural(tree.stepEndBeside(segments, 1), "part")}.`;
-  return `Value of the next cut: ${figure(value)}. Low values are clear borders.`;
+  return clarity(session, value);
 }
 
-/** Return where the hierarchy ends and why. */
-function endOf({ limitReached, tree }: Session): string {
-  const most = plural(tree.maxSegments, "part");
-  if (limitReached === null) return `The hierarchy ends at ${most}.`;
-  return limitReached
-    ? `The hierarchy ends at the limit of ${most}: raise max_segments for more.`
-    : `The hierarchy ends at ${most}: no sensible cut is left.`;
+/** Say how clear the border of the next cut is, in comparison with the cuts that Cleave would make. */
+function clarity({ tree, automaticSegments }: Session, next: number | null): string {
+  const clear = tree.cutValues.slice(0, automaticSegments - 1).map((value) => value ?? 0);
+  if (next !== null && clear.length > 0 && next <= Math.max(...clear)) return "The next cut has a clear border.";
+  return "The next cut has a less clear border.";
 }

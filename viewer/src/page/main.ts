@@ -1,29 +1,30 @@
 /** The page: connects the viewer with the panels, the dialogs and the URL. */
 
-import { CleaveViewer, type LoadDetail, type View } from "../component/element";
-import { about, usualUp } from "./about";
+import { CleaveViewer, type LoadDetail } from "../component/element";
+import { entitle, usualUp } from "./about";
 import { readAddress, writeAddress, type Address } from "./address";
-import { getJob, headers, jobPath, type Job } from "./api";
+import { getJob, headers, jobPath, nameOf, type Job } from "./api";
 import { Beside } from "./beside";
+import { Camera } from "./camera";
 import { announce, byId, openDialog, toast } from "./dom";
 import { hasEnded } from "./follow";
 import { hasGraphics } from "./graphics";
 import { JobList } from "./jobs";
-import { forgetState, keepState, keptState } from "./kept";
+import { forgetState, keptState } from "./kept";
 import { listenToKeys } from "./keys";
 import { LevelSlider } from "./level";
 import { ParameterDrawer, type Run } from "./parameters";
 import { PartsPanel } from "./parts";
 import { explain, problemOf, type Problem, type Remedy } from "./problems";
-import { Session } from "./session";
+import { Saver, type Shown } from "./saver";
+import { Session, type Result } from "./session";
+import { offerStructure } from "./structure";
 import { Start, type Purpose } from "./start";
 import { FIRST_STATE, showState, stateOf, withSplits, type JobState } from "./state";
-import { TakeAway } from "./takeaway";
-import { plural, stem } from "./text";
+import { DownloadDialog } from "./download";
+import { plural } from "./text";
 import { listenToTheme } from "./theme";
 import { Tools } from "./tools";
-
-const SAVE_PAUSE_MS = 250; // browsers limit how often a page may change its URL
 
 class Page {
   #session: Session | null = null;
@@ -43,29 +44,26 @@ class Page {
     (job, purpose) => this.#chosen(job, purpose === "beside"),
     (id) => this.#deleted(id),
   );
-  readonly #beside = new Beside(this.#viewer, () => this.#save());
+  readonly #beside = new Beside(
+    this.#viewer,
+    () => this.#result,
+    () => this.#saver.later(),
+  );
   #opening: Address | null = null;
   /** The number of parts that a result is to begin with; null for the automatic number. */
   #segments: number | null = null;
-  #view: View | null = null;
-  /** Whether the user has moved the camera. */
-  #isMoved = false;
-  #saving = 0;
+  readonly #camera = new Camera(this.#viewer, () => this.#saver.later());
+  readonly #saver = new Saver(() => this.#state(this.#beside.job));
   #frame = 0;
 
   constructor() {
-    new TakeAway(this.#viewer, () =>
-      this.#session === null || this.#job === null
-        ? null
-        : {
-            job: this.#job.id,
-            fileName: this.#job.input.file_name ?? "mesh",
-            parameters: this.#job.parameters,
-            session: this.#session,
-          },
-    );
+    new DownloadDialog(this.#viewer, () => this.#result);
     this.#listen();
     void this.#openAddress();
+  }
+
+  get #result(): Result | null {
+    return this.#job === null || this.#session === null ? null : { job: this.#job, session: this.#session };
   }
 
   #listen(): void {
@@ -78,15 +76,6 @@ class Page {
       const { parts } = (event as CustomEvent<{ parts: number[] }>).detail;
       this.#session?.setModes({ selected: parts });
       if (parts.length === 1) announce(`${this.#session?.nameOf(parts[0]!)} selected.`);
-    });
-    // The camera is damped and moves on after the input, so every move after the first input counts.
-    for (const name of ["pointerdown", "wheel", "keydown"])
-      viewer.addEventListener(name, () => (this.#isMoved = true), { passive: true });
-    byId("reset-view").addEventListener("click", () => (this.#isMoved = true), { capture: true });
-    viewer.addEventListener("cleave-view", () => {
-      if (!this.#isMoved) return;
-      this.#view = viewer.view;
-      this.#save();
     });
     byId("home").addEventListener("click", (event) => {
       event.preventDefault();
@@ -121,9 +110,9 @@ class Page {
 
   /** Name an accepted job in the address, so that a reload finds it. */
   #accepted(job: Job, { isBeside }: Purpose): void {
-    clearTimeout(this.#saving);
+    this.#saver.stop();
     if (isBeside && this.#session !== null && this.#job !== null) {
-      const state = { ...stateOf(this.#session, this.#view, null), beside: job.id };
+      const state = { ...stateOf(this.#session, this.#camera.view, null), beside: job.id };
       history.replaceState(null, "", writeAddress(this.#job.id, state));
     } else if (readAddress(location.hash).job !== job.id) {
       this.#opening = null;
@@ -155,8 +144,8 @@ class Page {
     this.#job = job;
     if (isSame) return this.#restore();
     this.#session = null;
-    this.#view = null;
-    this.#isMoved = false;
+    this.#beside.close();
+    this.#camera.begin(null);
     const source = jobPath(job.id, "/model.glb?levels=all");
     const { view } = this.#wanted(job);
     this.#viewer.requestHeaders = headers();
@@ -177,13 +166,12 @@ class Page {
 
   #loaded(detail: LoadDetail): void {
     const job = this.#job!;
-    const name = job.input.file_name ?? "mesh";
+    const name = nameOf(job);
     this.#session = new Session(this.#viewer.tree!, detail, usualUp(job), (news) => this.#changed(news));
     this.#viewer.setAttribute("label", name);
-    byId("title").textContent = name;
-    byId("about").textContent = about(job, detail.faces);
-    document.title = `${stem(name)} – Cleave`;
-    this.#level.open(this.#session, job.notes);
+    entitle(job, detail.faces);
+    this.#level.open(this.#session, job);
+    offerStructure(job, (structure) => this.#run({ parameters: { ...job.parameters, structure }, segments: null, isBeside: false }));
     this.#restore();
     announce(`${name}: ${plural(this.#session.parts.length, "part")}.`);
   }
@@ -194,7 +182,7 @@ class Page {
     const splits = this.#opening?.splits ?? null;
     this.#opening = this.#segments = null;
     this.#showWork(true);
-    this.#view = state.view;
+    this.#camera.begin(state.view);
     showState(this.#session, splits === null ? state : withSplits(state, this.#session, splits));
     if (state.beside === null) this.#beside.close();
     else if (state.beside !== this.#beside.job) void this.#openBeside(state.beside);
@@ -229,19 +217,13 @@ class Page {
     this.#level.update();
     this.#parts.update();
     this.#tools.update();
-    this.#beside.show(this.#session.modes);
-    this.#save();
+    this.#beside.update();
+    this.#saver.later();
   }
 
-  #save(): void {
-    clearTimeout(this.#saving);
-    this.#saving = setTimeout(() => {
-      if (this.#session === null || this.#job === null || !byId("welcome").hidden) return;
-      const state = stateOf(this.#session, this.#view, this.#beside.job);
-      keepState(this.#job.id, state);
-      const address = writeAddress(this.#job.id, state);
-      if (address !== location.hash) history.replaceState(null, "", address);
-    }, SAVE_PAUSE_MS);
+  #state(beside: string | null): Shown | null {
+    if (this.#session === null || this.#job === null || !byId("welcome").hidden) return null;
+    return { job: this.#job.id, state: stateOf(this.#session, this.#camera.view, beside) };
   }
 
   /** Run the shown mesh again, or the next one that is chosen, with other parameters. */
@@ -265,14 +247,14 @@ class Page {
   #leave(): void {
     if (this.#session !== null) {
       this.#showWork(true);
-      return this.#save();
+      return this.#saver.later();
     }
     if (location.hash !== "") history.pushState(null, "", location.pathname);
     this.#close();
   }
 
   #failed(problem: Problem & { message?: string }): void {
-    clearTimeout(this.#saving);
+    this.#saver.stop();
     this.#session = null;
     this.#showWork(false);
     this.#start.fail({ code: problem.code, detail: problem.message ?? problem.detail });
@@ -287,7 +269,7 @@ class Page {
   }
 
   #close(): void {
-    clearTimeout(this.#saving);
+    this.#saver.stop();
     this.#session = null;
     this.#job = null;
     this.#beside.close();

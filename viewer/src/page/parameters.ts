@@ -3,10 +3,6 @@
 import { getMethods, type Parameter } from "./api";
 import { byId, h, openDialog, toast } from "./dom";
 import { explain, problemOf } from "./problems";
-import { capitalized } from "./text";
-
-/** Shown at once; all others are under "More". */
-const USUAL = ["structure", "affinity", "solver", "max_segments"];
 
 export interface Run {
   readonly parameters: Readonly<Record<string, unknown>>;
@@ -47,12 +43,12 @@ export class ParameterDrawer {
       const row = h(
         "div",
         { className: "field" },
-        h("label", { htmlFor: input.id }, title(name)),
+        h("label", { htmlFor: input.id }, schema.title ?? name, schema["x-advanced"] === true && h("code", {}, name)),
         input,
-        h("p", { id: `${input.id}-about`, className: "about" }, schema.description ?? ""),
+        h("p", { id: `${input.id}-about`, className: "about" }, schema["x-about"] ?? schema.description ?? ""),
       );
       input.setAttribute("aria-describedby", `${input.id}-about`);
-      byId(USUAL.includes(name) ? "usual-parameters" : "more-parameters").append(row);
+      byId(schema["x-advanced"] === true ? "more-parameters" : "usual-parameters").append(row);
     }
   }
 
@@ -105,7 +101,7 @@ function fieldFor(name: string, schema: Parameter): HTMLInputElement | HTMLSelec
       "select",
       { id },
       schema.default === undefined && h("option", { value: "" }, "None"),
-      ...choices.map((choice) => h("option", { value: String(choice) }, title(String(choice)))),
+      ...choices.map((choice) => h("option", { value: String(choice) }, schema["x-choices"]?.[String(choice)] ?? String(choice))),
     );
   const { minimum, maximum } = core(schema);
   const isWhole = typesOf(schema).includes("integer");
@@ -124,8 +120,4 @@ function valueOf(input: HTMLInputElement | HTMLSelectElement, schema: Parameter)
   const choices = choicesOf(schema);
   if (choices !== undefined) return choices.find((choice) => String(choice) === input.value);
   return Number(input.value);
-}
-
-function title(name: string): string {
-  return capitalized(name.replaceAll("_", " "));
 }

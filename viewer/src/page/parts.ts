@@ -36,7 +36,7 @@ export class PartsPanel {
     const { hidden } = session.work;
     byId("parts-heading").textContent = plural(session.parts.length, "part");
     byId("show-all").hidden = hidden.size === 0;
-    byId("show-all").textContent = `Show ${plural(hidden.size, "hidden part")}`;
+    byId("show-all").textContent = `Show ${hidden.size} hidden`;
     const focused = idOf(rowOf(document.activeElement));
     this.#shown.update();
     const { rows } = this.#shown;

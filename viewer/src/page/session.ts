@@ -1,8 +1,9 @@
 /** The editing state of a result (level, cuts by hand, hidden parts, names) with undo, and its display modes. */
 
 import type { Cut, LoadDetail, Look, PartTree } from "../component/element";
-import type { Axis } from "./api";
+import type { Axis, Job } from "./api";
 import { carryHidden, cutWith, editsOf, NO_EDITS, type Edits } from "./edits";
+import { History } from "./history";
 import lists from "./lists.json";
 import { plural } from "./text";
 
@@ -39,7 +40,11 @@ const FIRST_MODES: Modes = {
   look: "parts",
 };
 
-const MOST_STEPS = 200;
+/** A job and how it is shown. */
+export interface Result {
+  readonly job: Job;
+  readonly session: Session;
+}
 
 export class Session {
   readonly tree: PartTree;
@@ -50,8 +55,7 @@ export class Session {
   readonly #onChange: (news?: string) => void;
   #work: Work;
   #modes: Modes;
-  #past: Work[] = [];
-  #future: Work[] = [];
+  readonly #history = new History<Work>();
   #slidingFrom: Work | null = null;
   #numbers: { cut: Cut; byNode: ReadonlyMap<number, number> } | null = null;
 
@@ -85,11 +89,11 @@ export class Session {
   }
 
   get canUndo(): boolean {
-    return this.#past.length > 0;
+    return this.#history.canUndo;
   }
 
   get canRedo(): boolean {
-    return this.#future.length > 0;
+    return this.#history.canRedo;
   }
 
   /** Return the number of a part, which is its label in the files of this cut; null for a group. */
@@ -131,7 +135,7 @@ export class Session {
   }
 
   endSlide(): void {
-    if (this.#slidingFrom !== null && this.#slidingFrom.cut !== this.#work.cut) this.#remember(this.#slidingFrom);
+    if (this.#slidingFrom !== null && this.#slidingFrom.cut !== this.#work.cut) this.#history.remember(this.#slidingFrom);
     this.#slidingFrom = null;
     this.#onChange();
   }
@@ -196,17 +200,15 @@ export class Session {
   }
 
   undo(): void {
-    this.#moveHistory(this.#past, this.#future, "Undone");
+    this.#return(this.#history.undo(this.#work), "Undone");
   }
 
   redo(): void {
-    this.#moveHistory(this.#future, this.#past, "Redone");
+    this.#return(this.#history.redo(this.#work), "Redone");
   }
 
-  #moveHistory(from: Work[], to: Work[], done: string): void {
-    const work = from.pop();
-    if (work === undefined) return;
-    to.push(this.#work);
+  #return(work: Work | null, done: string): void {
+    if (work === null) return;
     this.#work = work;
     this.#modes = { ...this.#modes, selected: this.#carrySelected() };
     this.#onChange(`${done}: ${this.#count()}.`);
@@ -215,13 +217,8 @@ export class Session {
   #change(make: () => void, news?: () => string): void {
     const before = this.#work;
     make();
-    if (this.#work !== before) this.#remember(before);
+    if (this.#work !== before) this.#history.remember(before);
     this.#onChange(news?.());
-  }
-
-  #remember(work: Work): void {
-    this.#past = [...this.#past, work].slice(-MOST_STEPS);
-    this.#future = [];
   }
 
   #hide(hidden: ReadonlySet<number>): void {

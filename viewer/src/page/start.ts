@@ -1,6 +1,6 @@
 /** The start page: choosing a file or a sample, the upload, and the progress of the job. */
 
-import { cancelJob, checkKey, getBlob, getFormats, rerun, submit, type Job } from "./api";
+import { cancelJob, checkKey, getBlob, getFormats, nameOf, rerun, submit, type Job } from "./api";
 import { announce, byId, h, toast } from "./dom";
 import { MOST_FILES, type Found } from "./files";
 import { follow, hasEnded } from "./follow";
@@ -262,8 +262,4 @@ function connection(isThere: boolean): void {
   if (note.hidden === isThere) return;
   note.hidden = isThere;
   announce(isThere ? "The server is responding again." : "The server is not responding. Retrying.");
-}
-
-function nameOf(job: Job): string {
-  return job.input.file_name ?? "mesh";
 }

@@ -1,6 +1,6 @@
 /** The toolbar of the 3D view, the actions on selected parts, and their keyboard shortcuts. */
 
-import type { CleaveViewer, Look } from "../component/element";
+import type { CleaveViewer, Look, View } from "../component/element";
 import { announce, byId, openDialog, toast } from "./dom";
 import { LOOKS, type Modes, type Session } from "./session";
 
@@ -10,6 +10,8 @@ export class Tools {
   readonly #viewer: CleaveViewer;
   readonly #session: () => Session | null;
   readonly #explode = byId<HTMLInputElement>("explode");
+  /** The camera before parts were isolated; null if none are. */
+  #before: View | null = null;
 
   constructor(viewer: CleaveViewer, session: () => Session | null) {
     this.#viewer = viewer;
@@ -32,6 +34,10 @@ export class Tools {
     this.#explode.addEventListener("input", () =>
       this.#with((now) => now.setModes({ explode: this.#explode.valueAsNumber / 100 })),
     );
+    byId("open-view").addEventListener("click", () => {
+      const isOpen = byId("stage").classList.toggle("is-view-open");
+      byId("open-view").setAttribute("aria-expanded", String(isOpen));
+    });
     this.#listenToLook();
     this.#listenToName();
     viewer.addEventListener("keydown", (event) => this.#key(event));
@@ -50,6 +56,14 @@ export class Tools {
     this.#explode.value = String(Math.round(100 * modes.explode));
     this.#explode.setAttribute("aria-valuetext", `${this.#explode.value} %`);
     applyModes(this.#viewer, modes);
+    this.#returnFromIsolated(session);
+  }
+
+  /** Return to the camera before parts were isolated when all parts are shown again. */
+  #returnFromIsolated({ work }: Session): void {
+    if (this.#before === null || work.hidden.size > 0) return;
+    this.#viewer.view = this.#before;
+    this.#before = null;
   }
 
   #with(act: (session: Session) => void): void {
@@ -73,7 +87,13 @@ export class Tools {
   }
 
   #isolate(): void {
-    this.#with((now) => now.modes.selected.length > 0 && now.isolate(now.modes.selected));
+    this.#with((now) => {
+      const { selected } = now.modes;
+      if (selected.length === 0) return;
+      this.#before ??= this.#viewer.view;
+      now.isolate(selected);
+      this.#viewer.focusOn(selected);
+    });
   }
 
   #listenToLook(): void {

@@ -17,8 +17,8 @@ from helpers.installation import Installation
 
 def download_as(visit: Visit, form: str) -> tuple[str, bytes]:
     """Return the name and the content of a download."""
-    if visit.page.locator("#take-away").is_hidden():
-        visit.page.click("#open-take-away")
+    if visit.page.locator("#download").is_hidden():
+        visit.page.click("#open-download")
     with visit.page.expect_download() as download:
         visit.page.click(f"[data-format='{form}']")
     return download.value.suggested_filename, Path(download.value.path()).read_bytes()

@@ -1,11 +1,11 @@
-/** The dialog Take away: downloads of the present cut, a picture, and commands that produce the same result. */
+/** The dialog Download: downloads of the present cut, a picture, and commands that produce the same result. */
 
 import type { CleaveViewer } from "../component/element";
-import { apiKey, getBlob, getMethods, jobPath, request } from "./api";
+import { apiKey, getBlob, getMethods, jobPath, nameOf, request, type Job } from "./api";
 import { byId, h, icon, openDialog, save, toast } from "./dom";
 import lists from "./lists.json";
 import { explain, problemOf } from "./problems";
-import type { Session } from "./session";
+import type { Result, Session } from "./session";
 import { capitalized, plural, stem } from "./text";
 
 interface Download {
@@ -23,22 +23,15 @@ const DOWNLOADS: readonly Download[] = [
   { id: "json", title: "Labels", about: "The part of every face, as JSON", path: "labels", ending: "-labels.json" },
 ];
 
-export interface Shown {
-  readonly job: string;
-  readonly fileName: string;
-  readonly parameters: Readonly<Record<string, unknown>>;
-  readonly session: Session;
-}
-
-export class TakeAway {
-  readonly #dialog = byId<HTMLDialogElement>("take-away");
+export class DownloadDialog {
+  readonly #dialog = byId<HTMLDialogElement>("download");
   readonly #viewer: CleaveViewer;
-  readonly #shown: () => Shown | null;
+  readonly #shown: () => Result | null;
 
-  constructor(viewer: CleaveViewer, shown: () => Shown | null) {
+  constructor(viewer: CleaveViewer, shown: () => Result | null) {
     this.#viewer = viewer;
     this.#shown = shown;
-    byId("open-take-away").addEventListener("click", () => this.open());
+    byId("open-download").addEventListener("click", () => this.open());
     byId("copy-link").addEventListener("click", () => void copy(location.href, "Link copied."));
     for (const id of ["curl", "python"])
       byId(`copy-${id}`).addEventListener("click", () => void copy(byId(id).textContent, "Copied."));
@@ -47,17 +40,20 @@ export class TakeAway {
   open(): void {
     const shown = this.#shown();
     if (shown === null) return;
-    byId("take-away-title").textContent = `Take away ${plural(shown.session.parts.length, "part")}`;
+    byId("download-title").textContent = `Download ${plural(shown.session.parts.length, "part")}`;
     byId("downloads").replaceChildren(
       ...DOWNLOADS.map((item) => this.#row(item.id, item.title, item.about, () => this.#download(item))),
       this.#row("png", "Picture", "This view as PNG, without a background", () => this.#savePicture()),
     );
+    const hidden = shown.session.work.hidden.size;
+    byId("download-hidden").hidden = hidden === 0;
+    byId("download-hidden").textContent = `${plural(hidden, "hidden part")} ${hidden === 1 ? "is" : "are"} in the files, too.`;
     openDialog(this.#dialog);
     void this.#writeLines(shown);
   }
 
-  async #writeLines(shown: Shown): Promise<void> {
-    const chosen = await chosenParameters(shown.parameters);
+  async #writeLines(shown: Result): Promise<void> {
+    const chosen = await chosenParameters(shown.job.parameters);
     byId("curl").textContent = curlLines(shown, chosen);
     byId("python").textContent = pythonLines(shown, chosen);
   }
@@ -75,9 +71,9 @@ export class TakeAway {
   }
 
   async #download({ path, ending }: Download): Promise<void> {
-    const { job, fileName: from, session } = this.#shown()!;
-    const address = jobPath(job, `/${path}${query(session)}`);
-    const fileName = `${stem(from)}-${session.parts.length}${ending}`;
+    const { job, session } = this.#shown()!;
+    const address = jobPath(job.id, `/${path}${query(session)}`);
+    const fileName = `${stem(nameOf(job))}-${session.parts.length}${ending}`;
     if (path === "labels") {
       const document = (await (await request(address)).json()) as object;
       const names = session.parts.map((id) => session.nameOf(id));
@@ -88,7 +84,7 @@ export class TakeAway {
   }
 
   async #savePicture(): Promise<void> {
-    save(await this.#viewer.picture(), `${stem(this.#shown()!.fileName)}.png`);
+    save(await this.#viewer.picture(), `${stem(nameOf(this.#shown()!.job))}.png`);
   }
 }
 
@@ -113,23 +109,24 @@ function nameQuery({ parts, work }: Session): string {
 }
 
 /** Return the parameters that differ from the defaults; all of them if the defaults cannot be loaded. */
-async function chosenParameters(parameters: Shown["parameters"]): Promise<[string, unknown][]> {
+async function chosenParameters(parameters: Job["parameters"]): Promise<[string, unknown][]> {
   const schema = await getMethods().catch(() => null);
   return Object.entries(parameters).filter(([name, value]) => schema?.properties[name]?.default !== value);
 }
 
-function curlLines({ job, fileName, session }: Shown, chosen: [string, unknown][]): string {
+function curlLines({ job, session }: Result, chosen: [string, unknown][]): string {
+  const fileName = nameOf(job);
   const root = new URL(".", document.baseURI).href;
   const key = apiKey.get() === "" ? "" : ` -H "Authorization: Bearer $CLEAVE_KEY"`;
   const form = [`mesh=@${fileName}`, ...(chosen.length === 0 ? [] : [`parameters=${JSON.stringify(Object.fromEntries(chosen))}`])];
   return [
     `curl --fail-with-body${key} ${form.map((field) => `-F ${shellWord(field)}`).join(" ")} ${root}v1/jobs`,
-    `curl --fail-with-body${key} -o ${shellWord(`${stem(fileName)}.glb`)} "${root}${jobPath(job)}/model.glb${query(session)}${nameQuery(session)}"`,
-    `curl --fail-with-body${key} "${root}${jobPath(job)}/labels${query(session)}"`,
+    `curl --fail-with-body${key} -o ${shellWord(`${stem(fileName)}.glb`)} "${root}${jobPath(job.id)}/model.glb${query(session)}${nameQuery(session)}"`,
+    `curl --fail-with-body${key} "${root}${jobPath(job.id)}/labels${query(session)}"`,
   ].join("\n");
 }
 
-function pythonLines({ fileName, session }: Shown, chosen: [string, unknown][]): string {
+function pythonLines({ job, session }: Result, chosen: [string, unknown][]): string {
   const { tree, work } = session;
   const level = tree.levelOf(work.cut);
   const values = chosen.map(([name, value]) => `${name}=${literal(value)}`).join(", ");
@@ -137,7 +134,7 @@ function pythonLines({ fileName, session }: Shown, chosen: [string, unknown][]):
   return [
     "import segcore",
     "",
-    `mesh = segcore.read_mesh(${JSON.stringify(fileName)})`,
+    `mesh = segcore.read_mesh(${JSON.stringify(nameOf(job))})`,
     `hierarchy = segcore.segment(${call})`,
     ...(level === null ? [`hierarchy = segcore.keep_splits(hierarchy, [${tree.splitsOf(work.cut).join(", ")}])`] : []),
     `labels = hierarchy.labels(${level ?? ""})  # (F,) part 0..${session.parts.length - 1} of every face`,
