@@ -154,10 +154,10 @@ export class Stage {
     this.#renderer.setPixelRatio(ratio);
     this.#renderer.setSize(width, height, false);
     this.#camera.aspect = width / height;
-    const inset = insetOf(this.canvas, height);
-    const shorter = Math.min(width, height - inset);
+    const [top, bottom] = ["top", "bottom"].map((side) => insetOf(this.canvas, side)) as [number, number];
+    const shorter = Math.max(Math.min(width, height - top - bottom), height / 3);
     this.#camera.fov = (2 * Math.atan((Math.tan((FIELD_OF_VIEW * Math.PI) / 360) * height) / shorter) * 180) / Math.PI;
-    this.#camera.setViewOffset(width, height, 0, inset / 2, width, height);
+    this.#camera.setViewOffset(width, height, 0, (bottom - top) / 2, width, height);
     this.#pickTarget.setSize(width, height);
     this.#drawing?.resize(width * ratio, height * ratio, ratio);
     this.changed();
@@ -290,8 +290,7 @@ export class Stage {
   }
 }
 
-/** Return the height in CSS pixels that something covers at the bottom of the canvas: the model is shown above it. */
-function insetOf(canvas: HTMLCanvasElement, height: number): number {
-  const inset = Number.parseFloat(getComputedStyle(canvas).getPropertyValue("--cleave-inset-bottom")) || 0;
-  return Math.min(Math.max(inset, 0), height / 2);
+/** Return the height in CSS pixels that something covers at the top or the bottom of the canvas. */
+function insetOf(canvas: HTMLCanvasElement, side: string): number {
+  return Math.max(Number.parseFloat(getComputedStyle(canvas).getPropertyValue(`--cleave-inset-${side}`)) || 0, 0);
 }

@@ -13,12 +13,13 @@ export interface Side {
 }
 
 export interface Comparison {
-  /** The part of A that each part of B overlaps most, and the other way round. */
+  /** The part of A that each part of B overlaps most. */
   readonly toA: ReadonlyMap<number, number>;
-  readonly toB: ReadonlyMap<number, number>;
+  /** The part of A that each part of B corresponds to: each of the two overlaps the other most. */
+  readonly pairs: ReadonlyMap<number, number>;
   /** 1 - Rand index: the share of pairs of points that are in one part in one result only; 0..1. */
   readonly rand: number;
-  /** Share of the area that lies outside of the corresponding part; 0..1. */
+  /** Share of the area that lies outside of corresponding parts; 0..1. */
   readonly share: number;
 }
 
@@ -59,12 +60,12 @@ export class Overlap {
     return comparisonOf(table);
   }
 
-  /** Return the faces of each side, as its model numbers them, whose part of B does not correspond to that of A. */
-  differing(cutA: Cut, cutB: Cut, { toA }: Comparison): { a: Uint32Array; b: Uint32Array } {
+  /** Return the faces of each side, as its model numbers them, whose parts do not correspond. */
+  differing(cutA: Cut, cutB: Cut, { pairs }: Comparison): { a: Uint32Array; b: Uint32Array } {
     const [partsA, partsB] = [partsOf(this.#a, cutA), partsOf(this.#b, cutB)];
     const found: [number[], number[]] = [[], []];
     this.#a.leaf.forEach((leafA, face) => {
-      if (toA.get(partsB[this.#b.leaf[face]!]!) === partsA[leafA]) return;
+      if (pairs.get(partsB[this.#b.leaf[face]!]!) === partsA[leafA]) return;
       found[0].push(this.#a.place[face]!);
       found[1].push(this.#b.place[face]!);
     });
@@ -94,10 +95,11 @@ function comparisonOf(table: ReadonlyMap<number, ReadonlyMap<number, number>>): 
     }
   }
   squares += sum([...areaB.values()].map((area) => area ** 2));
-  const agreed = sum([...best.values()].map(([, area]) => area));
+  const mutual = [...best].filter(([b, [a]]) => toB.get(a) === b);
+  const agreed = sum(mutual.map(([, [, area]]) => area));
   return {
     toA: new Map([...best].map(([b, [a]]) => [b, a])),
-    toB,
+    pairs: new Map(mutual.map(([b, [a]]) => [b, a])),
     rand: total === 0 ? 0 : Math.max(squares - 2 * both, 0) / total ** 2,
     share: total === 0 ? 0 : Math.max(1 - agreed / total, 0),
   };
