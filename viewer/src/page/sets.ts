@@ -33,7 +33,7 @@ export async function sorted(found: readonly Found[]): Promise<Sorted> {
     for (const companion of companions) used.add(companion);
     models.push(modelOf([mesh, ...companions]));
   }
-  return { models, leftOut: [...others.values()].filter((file) => !used.has(file)).map(({ path }) => path) };
+  return { models, leftOut: [...others.values()].filter((file) => !used.has(file)).map(({ path }) => path).sort() };
 }
 
 /** Return a model of one file. */

@@ -11,7 +11,7 @@ export class Tools {
   readonly #session: () => Session | null;
   readonly #explode = byId<HTMLInputElement>("explode");
   /** The camera before parts were isolated; null if none are. */
-  #before: View | null = null;
+  #before: { session: Session; view: View } | null = null;
 
   constructor(viewer: CleaveViewer, session: () => Session | null) {
     this.#viewer = viewer;
@@ -60,9 +60,9 @@ export class Tools {
   }
 
   /** Return to the camera before parts were isolated when all parts are shown again. */
-  #returnFromIsolated({ work }: Session): void {
-    if (this.#before === null || work.hidden.size > 0) return;
-    this.#viewer.view = this.#before;
+  #returnFromIsolated(session: Session): void {
+    if (this.#before === null || session.work.hidden.size > 0) return;
+    if (this.#before.session === session) this.#viewer.view = this.#before.view;
     this.#before = null;
   }
 
@@ -90,7 +90,7 @@ export class Tools {
     this.#with((now) => {
       const { selected } = now.modes;
       if (selected.length === 0) return;
-      this.#before ??= this.#viewer.view;
+      this.#before ??= { session: now, view: this.#viewer.view };
       now.isolate(selected);
       this.#viewer.focusOn(selected);
     });
