@@ -8,7 +8,6 @@ import { Beside } from "./beside";
 import { Camera } from "./camera";
 import { announce, byId, openDialog, toast } from "./dom";
 import { hasEnded } from "./follow";
-import { hasGraphics } from "./graphics";
 import { JobList } from "./jobs";
 import { forgetState, keptState } from "./kept";
 import { listenToKeys } from "./keys";
@@ -139,7 +138,8 @@ class Page {
   }
 
   #show(job: Job): void {
-    if (!hasGraphics()) return this.#failed({ code: "no_webgl", detail: "This browser shows no 3D graphics." });
+    const { error } = this.#viewer;
+    if (error?.code === "no_webgl") return this.#failed({ code: error.code, detail: error.message });
     const isSame = this.#job?.id === job.id && this.#session !== null;
     this.#job = job;
     if (isSame) return this.#restore();
