@@ -10,8 +10,7 @@ from redis import Redis
 from cleave.settings import Settings
 from helpers.api import AGAIN
 from helpers.jobs import sphere
-from helpers.remembered import remembered_segmentations
-from helpers.servers import serving
+from helpers.servers import remembered_segmentations, serving
 from worker.jobs.store.store import JobStore
 from worker.process.perform import perform
 
