@@ -11,7 +11,11 @@ from bench.errors import BenchmarkError
 
 
 def main(arguments: Sequence[str]) -> int:
-    """Run a command and return its exit status: 0 on success, 2 on a BenchmarkError, 130 if it is interrupted."""
+    """Run a command and return its exit status.
+
+    It is 0 on success, 1 if a command that checks something finds it wrong, 2 on a BenchmarkError, and 130 if it is
+    interrupted.
+    """
     names = command_names()
     if not arguments or arguments[0] in ("-h", "--help"):
         print(_list(names))
@@ -53,13 +57,12 @@ def parser_of(name: str) -> argparse.ArgumentParser:
 def _run(name: str, arguments: Sequence[str]) -> int:
     options = parser_of(name).parse_args(arguments)
     try:
-        import_module(f"bench.commands.{name}").run(options)
+        return import_module(f"bench.commands.{name}").run(options) or 0
     except BenchmarkError as error:
         print(f"bench {name}: {error}", file=sys.stderr)
         return 2
     except KeyboardInterrupt:
         return 130
-    return 0
 
 
 if __name__ == "__main__":

@@ -8,6 +8,7 @@ from segcore.io.off.reader import read_off
 from segcore.io.picture import draw
 from segcore.mesh import Mesh
 from segcore.method import segment
+from segcore.parameters import SegmentationParameters
 from segcore.shapes import box, burr, icosphere, joined
 
 
@@ -16,13 +17,17 @@ def warm_up() -> None:
 
     A process that forks workers calls this first, so that its children start with the kernels in memory.
     """
-    arms = burr(subdivisions=4).mesh
-    draw(arms, segment(arms).labels(), size=16)
-    segment(joined(icosphere(1), icosphere(2)).mesh)
-    segment(joined(box(), box(centre=(1.001, 0.0, 0.0))).mesh)  # faces to be divided, and bodies that touch
-    segment(_cracked(icosphere(2)))
+    arms = burr(subdivisions=3).mesh
+    draw(arms, segment(arms, SegmentationParameters(clusters=300)).labels(), size=16)  # fewer clusters than faces
+    segment(_bodies())
     read_obj(b"v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n", ReadLimits())
     read_off(b"OFF 3 1 0\n0 0 0\n1 0 0\n0 1 0\n3 0 1 2\n", ReadLimits())
+
+
+def _bodies() -> Mesh:
+    """A ball with a crack, and two boxes that touch, whose faces are so large that they are divided."""
+    first, second = box(centre=(4.0, 0.0, 0.0)), box(centre=(5.001, 0.0, 0.0))
+    return joined(_cracked(icosphere(2)), joined(first, second).mesh).mesh
 
 
 def _cracked(mesh: Mesh) -> Mesh:

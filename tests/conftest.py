@@ -69,6 +69,7 @@ _COMPILERS = (
     "import segcore; segcore.warm_up()",
     "from bench.cheeger.measurements import warm_up; from segcore.solvers.solvers import SOLVERS as all; warm_up(all)",
 )
+_compiling: list[subprocess.Popen[bytes]] = []
 # Measured with --durations=0; the order only shortens the run.
 _LONGEST = (
     "end_to_end/test_soak.py",
@@ -127,12 +128,15 @@ def pytest_configure(config: pytest.Config) -> None:
 
 
 def pytest_sessionstart(session: pytest.Session) -> None:
-    """Compile the kernels once, in two processes at a time, before the processes of the tests start."""
+    """Begin to compile the kernels once, in two processes, while the processes of the tests collect the tests."""
     if session.config.getoption("numprocesses", None):
-        compiling = [
-            subprocess.Popen([sys.executable, "-c", program], cwd=session.config.rootpath) for program in _COMPILERS
-        ]
-        assert [process.wait() for process in compiling] == [0] * len(_COMPILERS)
+        root = session.config.rootpath
+        _compiling.extend(subprocess.Popen([sys.executable, "-c", program], cwd=root) for program in _COMPILERS)
+
+
+def pytest_xdist_node_collection_finished() -> None:
+    """Give no process a test before all kernels are compiled."""
+    assert [process.wait() for process in _compiling] == [0] * len(_compiling)
 
 
 def pytest_ignore_collect(collection_path: Path, config: pytest.Config) -> bool | None:

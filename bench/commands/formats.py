@@ -17,8 +17,9 @@ import tempfile
 from pathlib import Path
 from typing import Any
 
+from bench.checkout import checked_out
 from bench.formats.samples import LOOKED_AT, MORE, READ, write_more, write_usual
-from bench.formats.versions import checked_out, compare
+from bench.formats.versions import compare
 
 _WRITTEN = ("glb", "ply", "obj", "3mf", "zip", "seg", "npy", "json", "cleave")
 _RUNS = 9  # of each version

@@ -2,16 +2,14 @@
 
 import hashlib
 import time
-from collections.abc import Callable
 from concurrent.futures import Future, ThreadPoolExecutor
-from contextlib import suppress
 from dataclasses import dataclass
 
 import httpx
 
-from bench.errors import BenchmarkError
 from bench.load.installation import Installation
 from bench.load.meshes import wavy_torus
+from bench.load.retries import until_answered
 from cleave.settings import Settings
 from worker.jobs.attempts import Attempt
 from worker.jobs.store.opening import open_store
@@ -19,8 +17,7 @@ from worker.jobs.store.opening import open_store
 LARGE_JOB_BYTES = 300_000  # between the sizes of the meshes, so that the last of them are large jobs
 _FACES = (1_000, 2_500, 5_000, 8_000, 12_000, 25_000, 40_000)
 _WAVES = (3, 4, 5)
-_RETRY_S = 0.2
-_GIVE_UP_S = 120.0  # longer than any fault makes the service unavailable
+_POLL_S = 0.2
 _ENDED = ("succeeded", "failed", "canceled")
 
 
@@ -53,7 +50,7 @@ class Client:
         """Submit a job, with retries until it is accepted."""
         mesh = number % self.different
         headers = {"Content-Type": "model/ply", "Idempotency-Key": f"soak-{number}", "Cache-Control": "no-cache"}
-        response = self._retry(
+        response = until_answered(
             lambda: self._http.post("/v1/jobs", content=self._meshes[mesh], headers=headers), {200, 202}
         )
         return Submitted(mesh, response.headers["Location"])
@@ -78,7 +75,7 @@ class Client:
         found: dict[str, str] = {}
         query: dict[str, str | int] = {"limit": 100}
         while True:
-            page = self._retry(lambda: self._http.get("/v1/jobs", params=query), {200}).json()
+            page = until_answered(lambda: self._http.get("/v1/jobs", params=query), {200}).json()
             found |= {job["id"]: job["status"] for job in page["jobs"]}
             if page["next_cursor"] is None:
                 return found
@@ -89,7 +86,7 @@ class Client:
         deadline = time.monotonic() + within_s
         statuses = self.statuses()
         while time.monotonic() < deadline and not set(statuses.values()) <= set(_ENDED):
-            time.sleep(_RETRY_S)
+            time.sleep(_POLL_S)
             statuses = self.statuses()
         return statuses
 
@@ -111,16 +108,3 @@ class Client:
     def close(self) -> None:
         """Close the connections."""
         self._http.close()
-
-    def _retry(self, send: Callable[[], httpx.Response], expected: set[int]) -> httpx.Response:
-        """Send a request until the response has an expected status code; client errors raise BenchmarkError."""
-        deadline = time.monotonic() + _GIVE_UP_S
-        while time.monotonic() < deadline:
-            with suppress(httpx.TransportError):
-                response = send()
-                if response.status_code in expected:
-                    return response
-                if response.status_code < 500:
-                    raise BenchmarkError(f"The service rejects a request of the soak: {response.text}")
-            time.sleep(_RETRY_S)
-        raise BenchmarkError(f"The service does not respond within {_GIVE_UP_S:.0f} s: see its log.")

@@ -45,6 +45,7 @@ class Forest:
     def mean(self, features: FloatArray) -> FloatArray:
         """(N,) mean of the trees for features (N, M)."""
         nodes = self.nodes
+        features = np.ascontiguousarray(features)  # in one order, so that the kernel is compiled once
         return _means(features, *(np.ascontiguousarray(nodes[name]) for name in ("feature", "second", "number")))
 
 

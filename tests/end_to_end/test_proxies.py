@@ -3,68 +3,18 @@
 import os
 import re
 import shutil
-import socket
-import subprocess
 import time
-from collections.abc import Callable, Iterator
-from contextlib import contextmanager
+from collections.abc import Iterator
 from pathlib import Path
 
 import httpx
 import pytest
 
+from bench.day.proxies import caddy, nginx, proxied
 from helpers.api import AGAIN
 from helpers.installation import Installation
 from helpers.jobs import sphere
 from helpers.waiting import wait_until
-
-GUIDE = Path(__file__).parents[2] / "docs" / "how-to" / "proxies.md"
-
-
-def configuration(language: str, backend: str, port: int) -> str:
-    found = re.search(rf"```{language}\n(.*?)```", GUIDE.read_text(), re.DOTALL)
-    assert found, language
-    text = found[1].replace("127.0.0.1:8000", backend.removeprefix("http://"))
-    return text.replace("listen 80", f"listen 127.0.0.1:{port}").replace("localhost:80", f"localhost:{port}")
-
-
-def nginx(folder: Path, backend: str, port: int) -> list[str]:
-    paths = [f"{kind}_temp_path {folder}/{kind};" for kind in ("client_body", "proxy", "fastcgi", "uwsgi", "scgi")]
-    server = configuration("nginx", backend, port)
-    text = f"daemon off; pid {folder}/pid; error_log {folder}/log; events {{}}\n"
-    text += f"http {{ access_log off; {' '.join(paths)}\n{server} }}"
-    (folder / "nginx.conf").write_text(text)
-    return ["nginx", "-p", str(folder), "-c", str(folder / "nginx.conf")]
-
-
-def caddy(folder: Path, backend: str, port: int) -> list[str]:
-    (folder / "Caddyfile").write_text("{\n admin off\n}\n" + configuration("caddy", backend, port))
-    return ["caddy", "run", "--adapter", "caddyfile", "--config", str(folder / "Caddyfile")]
-
-
-@contextmanager
-def proxy(command: Callable[[Path, str, int], list[str]], folder: Path, backend: str) -> Iterator[str]:
-    """Run a proxy and yield the URL below which it shows the service."""
-    name = command.__name__
-    if shutil.which(name) is None and "CI" not in os.environ:
-        pytest.skip(f"the test needs {name}")
-    with socket.create_server(("127.0.0.1", 0)) as free:
-        port = free.getsockname()[1]
-    environment = os.environ | {"HOME": str(folder), "XDG_DATA_HOME": str(folder), "XDG_CONFIG_HOME": str(folder)}
-    with subprocess.Popen(command(folder, backend, port), env=environment, stderr=subprocess.DEVNULL) as process:
-        try:
-            url = f"http://localhost:{port}/cleave"
-            wait_until(lambda: _answers(f"{url}/healthz"))
-            yield url
-        finally:
-            process.terminate()
-
-
-def _answers(url: str) -> bool:
-    try:
-        return httpx.get(url).status_code == 200
-    except httpx.TransportError:
-        return False
 
 
 @pytest.fixture(scope="module")
@@ -75,7 +25,9 @@ def installation() -> Iterator[Installation]:
 
 @pytest.fixture(params=[nginx, caddy], ids=["nginx", "caddy"])
 def url(request: pytest.FixtureRequest, installation: Installation, tmp_path: Path) -> Iterator[str]:
-    with proxy(request.param, tmp_path, installation.url) as shown:
+    if shutil.which(request.param.__name__) is None and "CI" not in os.environ:
+        pytest.skip(f"the test needs {request.param.__name__}")
+    with proxied(request.param, tmp_path, installation.url) as shown:
         yield shown
 
 

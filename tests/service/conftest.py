@@ -10,9 +10,16 @@ from redis import Redis
 from cleave.settings import Settings
 from helpers.api import AGAIN
 from helpers.jobs import sphere
-from helpers.servers import serving
+from helpers.servers import remembered_segmentations, serving
 from worker.jobs.store.store import JobStore
 from worker.process.perform import perform
+
+
+@pytest.fixture(scope="session", autouse=True)
+def segmentations() -> Iterator[None]:
+    """Segment each small mesh once."""
+    with remembered_segmentations():
+        yield
 
 
 @pytest.fixture

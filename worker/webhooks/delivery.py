@@ -2,11 +2,13 @@
 
 import logging
 import os
+import signal
 import socket
 import time
 from concurrent.futures import ThreadPoolExecutor
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from datetime import UTC, datetime
+from threading import Event
 
 from cleave.logs import about, configure_logging
 from cleave.settings import Settings, load_settings
@@ -38,6 +40,7 @@ class WebhookSender:
     locks: Locks
     settings: Settings
     name: str  # of this process, unique in the installation
+    stop: Event = field(default_factory=Event)  # if it is set, no further delivery begins
 
     def send_due(self, at_s: float) -> None:
         """Send the messages that are due at a time in seconds since 1970, each from one process of the installation."""
@@ -47,6 +50,8 @@ class WebhookSender:
             list(pool.map(lambda job_id: self._deliver(job_id, at_s), due))
 
     def _deliver(self, job_id: str, at_s: float) -> None:
+        if self.stop.is_set():
+            return
         job, outcome = self.store.records.job(job_id), self.store.records.outcome(job_id)
         if job is None or job.webhook_url is None:
             self.store.outbox.remove_old(job_id, _WITHOUT_JOB_S)  # a new one is written a moment before its job
@@ -91,15 +96,18 @@ def webhook_secret(secret: InstallationSecret, owner: str | None) -> bytes:
 
 
 def main() -> None:
+    """Deliver webhooks until SIGTERM; a message that is on its way then is not sent again after the next start."""
     settings = load_settings()
     configure_logging(settings.log_level, settings.log_format, _LOGGED_AS)
     logging.getLogger("httpx").setLevel(logging.WARNING)
     assert settings.redis_url, "the parent process sets CLEAVE_REDIS_URL"
     store = open_store(settings)
     sender = WebhookSender(store, Locks(connect(settings.redis_url)), settings, f"{socket.gethostname()}.{os.getpid()}")
-    while True:
+    for number in (signal.SIGINT, signal.SIGTERM):
+        signal.signal(number, lambda *_: sender.stop.set())
+    while not sender.stop.is_set():
         try:
             sender.send_due(time.time())
         except (QueueError, OSError) as error:
             log.warning("webhooks cannot be sent at the moment: %s", error)
-        time.sleep(max(_POLL_S, store.objects.poll_interval_s))
+        sender.stop.wait(max(_POLL_S, store.objects.poll_interval_s))

@@ -4,9 +4,10 @@ from pathlib import Path
 
 import pytest
 
+from bench.checkout import checked_out
 from bench.errors import BenchmarkError
 from bench.formats.samples import LOOKED_AT, MORE, READ, write_more, write_usual
-from bench.formats.versions import checked_out, compare
+from bench.formats.versions import compare
 from segcore.io import read_mesh
 
 ROOT = Path(__file__).parents[3]

@@ -1,6 +1,9 @@
 """Webhooks: signed as in the standard, retried, and never sent to private addresses."""
 
+import os
 import socket
+import subprocess
+import sys
 import threading
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
@@ -16,6 +19,7 @@ from cleave.settings import Settings
 from helpers.api import problem
 from helpers.jobs import sphere
 from helpers.servers import serving
+from helpers.waiting import wait_until
 from worker.jobs.job import now
 from worker.jobs.queue.locks import Locks
 from worker.jobs.queue.queue import JobQueue
@@ -30,6 +34,7 @@ class Receiver:
     """An HTTP server that records requests and responds with the given statuses, then with 200."""
 
     def __init__(self, *statuses: int) -> None:
+        self.answers = threading.Lock()  # whoever holds it delays the answers
         self.received: list[tuple[dict[str, str], bytes]] = []
         left = list(statuses)
 
@@ -37,7 +42,8 @@ class Receiver:
             def do_POST(handler) -> None:  # noqa: N805
                 body = handler.rfile.read(int(handler.headers["Content-Length"]))
                 self.received.append((dict(handler.headers.items()), body))
-                handler.send_response(left.pop(0) if left else 200)
+                with self.answers:
+                    handler.send_response(left.pop(0) if left else 200)
                 handler.send_header("Location", "http://127.0.0.1:1/")
                 handler.end_headers()
 
@@ -136,6 +142,32 @@ def test_no_message_is_sent_before_the_job_has_ended(sender: WebhookSender, insi
         client.post(f"{answer.headers['Location']}/cancel")
         sender.send_due(now().timestamp())
     assert b"job.canceled" in receiver.received[0][1]
+
+
+def test_a_deleted_job_leaves_no_message(
+    sender: WebhookSender, finished_with_webhook: Callable[[str], tuple[str, str]], inside: Settings
+) -> None:
+    job_id, _ = finished_with_webhook("http://127.0.0.1:1/nobody")
+    with serving(inside) as client:
+        client.delete(f"/v1/jobs/{job_id}").raise_for_status()
+    assert sender.store.outbox.deliveries() == {}
+
+
+def test_a_message_on_its_way_when_the_sender_is_stopped_is_not_sent_again(
+    sender: WebhookSender, finished_with_webhook: Callable[[str], tuple[str, str]], inside: Settings
+) -> None:
+    settings = {"CLEAVE_DATA_DIR": str(inside.data_dir), "CLEAVE_REDIS_URL": str(inside.redis_url)}
+    settings["CLEAVE_WEBHOOK_PRIVATE_TARGETS"] = "true"
+    with receiving() as receiver, receiver.answers:  # so that none is answered
+        finished_with_webhook(receiver.url)
+        with subprocess.Popen([sys.executable, "-m", "worker.webhooks"], env=os.environ | settings) as process:
+            wait_until(lambda: receiver.received)
+            process.terminate()
+            receiver.answers.release()
+            assert process.wait(30) == 0
+            receiver.answers.acquire()
+    assert len(receiver.received) == 1
+    assert sender.store.outbox.deliveries() == {}
 
 
 @pytest.mark.parametrize(

@@ -144,4 +144,5 @@ class JobStore:
         self.index.remove(job)
         self.computed.remove(job)
         self.pending.remove(job)
+        self.outbox.remove(job.id)
         self.deletions.end(job)
