@@ -15,12 +15,13 @@ from segcore.io.result import write_result
 from segcore.io.threemf.writer import write_3mf
 
 WriteOption: TypeAlias = Literal[
-    "names", "all_levels", "features", "layout", "keep", "capped", "part_format", "colors", "unit", "up"
+    "names", "part_colors", "all_levels", "features", "layout", "keep", "capped", "part_format", "colors", "unit", "up"
 ]
 
 # What each option of a writer does, in the order of the command line.
 WRITE_OPTIONS: dict[WriteOption, str] = {
     "names": "the name of each segment, by its label",
+    "part_colors": "the colour of each segment, by its label",
     "all_levels": "every number of segments in one file",
     "features": "the hierarchy as EXT_structural_metadata, with EXT_mesh_features",
     "layout": "nodes as nested as the hierarchy (tree), or all parts below the root (flat)",
@@ -32,6 +33,7 @@ WRITE_OPTIONS: dict[WriteOption, str] = {
     "up": "the axis that points up, y or z, if that of the mesh is known",
 }
 _MODEL: frozenset[WriteOption] = frozenset({"names"})
+_COLORED: frozenset[WriteOption] = _MODEL | {"part_colors"}
 # Of formats whose coordinates have no unit and no axis of their own.
 _FREE: frozenset[WriteOption] = _MODEL | {"unit", "up"}
 
@@ -60,25 +62,27 @@ WRITERS: dict[str, Writer] = {
         ".glb",
         "model/gltf-binary",
         write_glb_as,
-        _MODEL | {"all_levels", "features", "layout", "keep"},
+        _COLORED | {"all_levels", "features", "layout", "keep"},
     ),
-    "ply": Writer("PLY, coloured vertices and a label per face", ".ply", "model/ply", write_ply, _FREE | {"colors"}),
+    "ply": Writer(
+        "PLY, coloured vertices and a label per face", ".ply", "model/ply", write_ply, _FREE | {"colors", "part_colors"}
+    ),
     "obj": Writer("OBJ, an object per segment", ".obj", "model/obj", write_obj, _FREE, companion="mtl"),
     "mtl": Writer(
         "MTL, the colours for the OBJ file",
         ".mtl",
         "model/mtl",
         lambda target, _, hierarchy, segments, **options: write_mtl(target, hierarchy, segments, **options),
-        _MODEL,
+        _COLORED,
     ),
     "objzip": Writer(
         "OBJ with MTL, an object and a colour per segment as ZIP",
         ".obj.zip",
         "application/zip",
         write_obj_archive_as,
-        _FREE | {"keep"},
+        _FREE | {"keep", "part_colors"},
     ),
-    "3mf": Writer("3MF, a closed object per segment", ".3mf", "model/3mf", write_3mf, _MODEL | {"capped"}),
+    "3mf": Writer("3MF, a closed object per segment", ".3mf", "model/3mf", write_3mf, _COLORED | {"capped"}),
     "zip": Writer(
         "ZIP archive, a closed STL file per segment",
         ".zip",

@@ -13,6 +13,7 @@
              /attempt-<n>.json
              /result.cleave         mesh and hierarchy; jobs with the same input share its bytes in a folder
              /manifest.json         the outcome, written last and once: the job is finished
+             /revisions/<c>         the parts after an edit; c is the complement of the number 1, 2, ... of the revision
 
 Only the objects under ``jobs`` count. The others are indexes: they are written before a job and removed after it, so a
 crash between two writes leaves an entry without a job, never a job without an entry.
@@ -26,7 +27,11 @@ BEING_DELETED = "doomed"
 RECORD = "job.json"
 MANIFEST = "manifest.json"
 RESULT = "result.cleave"
+REVISIONS = "revisions"
 MESH = "mesh"  # in folders of earlier versions
+
+_DIGITS = 8
+_LAST_REVISION = 99_999_999  # the complement of 0
 
 TIME_FORMAT = "%Y%m%dT%H%M%S%f"  # UTC
 NO_OWNER = "_"  # the folder of jobs without an owner; no API key can have this name
@@ -50,3 +55,16 @@ def mesh_name(job: Job) -> str:
 def entry_name(job: Job) -> str:
     """Return a name that sorts by the time of acceptance."""
     return f"{job.created_at:{TIME_FORMAT}}-{job.id}"
+
+
+def is_revision_number(number: int) -> bool:
+    return 0 < number < _LAST_REVISION
+
+
+def revision_key(job_id: str, number: int) -> str:
+    """Return a key with the complement of the number, so that a list begins with the newest revision."""
+    return job_key(job_id, f"{REVISIONS}/{_LAST_REVISION - number:0{_DIGITS}}")
+
+
+def revision_number(key: str) -> int:
+    return _LAST_REVISION - int(key[-_DIGITS:])

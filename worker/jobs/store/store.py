@@ -25,6 +25,7 @@ from worker.jobs.store.pending import PendingJobs
 from worker.jobs.store.records import Records
 from worker.jobs.store.records import UnknownJob as UnknownJob
 from worker.jobs.store.results import ResultFiles
+from worker.jobs.store.revisions import Revisions
 from worker.jobs.store.spool import Spool
 from worker.jobs.store.upload import MeshUpload
 
@@ -47,6 +48,7 @@ class JobStore:
         self.spool = spool
         self.records = Records(objects)
         self.results = ResultFiles(objects, self.records, spool, cache)
+        self.revisions = Revisions(objects, self.records)
         self.pending = PendingJobs(objects)
         self.index = JobIndex(objects)
         self.computed = ComputedIndex(objects)

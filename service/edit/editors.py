@@ -1,0 +1,102 @@
+"""The processes in which the service computes edits, so that its event loop and other requests do not wait for them."""
+
+import asyncio
+from collections.abc import Sequence
+from concurrent.futures import Future, ThreadPoolExecutor
+from dataclasses import dataclass, field
+
+from cleave.settings import Settings
+from service.edit.editor_process import EditorFailed, EditorProcess
+from service.edit.messages import Message
+
+PROGRAM: Sequence[str] = ("-m", "service.edit.program")
+
+
+class GuideNotReady(Exception):  # noqa: N818
+    """The Guide of a job is still being made."""
+
+
+@dataclass(slots=True, eq=False)
+class _Desk:
+    """A process, the thread that talks to it, and what is known about it."""
+
+    process: EditorProcess
+    thread: ThreadPoolExecutor = field(default_factory=lambda: ThreadPoolExecutor(1, "editor"))
+    held: frozenset[str] = frozenset()  # jobs whose Guides it has in memory
+    waiting: int = 0  # messages that are not answered
+
+
+class Editors:
+    """Several processes; the edits of a job go to the one that has its Guide in memory."""
+
+    def __init__(self, settings: Settings) -> None:
+        self._settings = settings
+        self._desks = [_Desk(EditorProcess(settings, PROGRAM)) for _ in range(settings.edit_processes)]
+        self._warming: dict[str, Future[Message]] = {}
+
+    def holds(self, job_id: str) -> bool:
+        """Whether a Guide of a job is in memory."""
+        return any(job_id in desk.held for desk in self._desks)
+
+    async def ask(self, job_id: str, message: Message) -> Message:
+        """Return the answer to a message about a job, whose Guide is made first if it is not in memory.
+
+        Raises
+        ------
+        GuideNotReady
+            If the Guide is not made within the time of the settings; the process goes on.
+        EditorFailed
+            If there is no answer within that time, that for edits before it included.
+        """
+        limit_s = self._settings.edit_timeout_s
+        if not self.holds(job_id):
+            try:
+                made = await asyncio.wait_for(asyncio.shield(asyncio.wrap_future(self._warm_up(job_id))), limit_s)
+            except TimeoutError:
+                raise GuideNotReady from None
+            if "code" in made.document:
+                return made
+        future = self._submit(self._desk_for(job_id), message, limit_s)
+        try:
+            return await asyncio.wait_for(asyncio.wrap_future(future), limit_s)
+        except TimeoutError:
+            raise EditorFailed from None
+
+    def _warm_up(self, job_id: str) -> "Future[Message]":
+        """Begin to make the Guide of a job, unless that has begun."""
+        if job_id not in self._warming:
+            future = self._submit(
+                self._desk_for(job_id), Message({"job_id": job_id, "edit": None}), self._settings.job_timeout_s
+            )
+            self._warming[job_id] = future
+            future.add_done_callback(lambda _: self._warming.pop(job_id, None))
+        return self._warming[job_id]
+
+    def stop(self) -> None:
+        """End the processes."""
+        for desk in self._desks:
+            desk.process.stop()
+            desk.thread.shutdown(wait=False, cancel_futures=True)
+
+    def _desk_for(self, job_id: str) -> _Desk:
+        holding = [desk for desk in self._desks if job_id in desk.held]
+        return min(holding or self._desks, key=lambda desk: desk.waiting)
+
+    def _submit(self, desk: _Desk, message: Message, limit_s: float) -> "Future[Message]":
+        def ask() -> Message:
+            try:
+                answer = desk.process.ask(message, limit_s)
+            except EditorFailed:
+                desk.held = frozenset()
+                raise
+            desk.held = frozenset(answer.document["held"])
+            return answer
+
+        desk.waiting += 1
+        future = desk.thread.submit(ask)
+        future.add_done_callback(lambda _: _leave(desk))
+        return future
+
+
+def _leave(desk: _Desk) -> None:
+    desk.waiting -= 1
