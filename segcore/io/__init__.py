@@ -9,7 +9,8 @@ edited parts as bytes (``encode_partition``, ``decode_partition``) and pictures 
 """
 
 from segcore.io.converting import with_coordinates
-from segcore.io.edited import Edited, RevisionNote
+from segcore.io.edited.partition_file import decode_partition, encode_partition, part_document
+from segcore.io.edited.result_members import Edited, RevisionNote
 from segcore.io.file_sets import is_hidden, is_mesh_name, model_in_folder, name_in_set
 from segcore.io.formats import FORMATS, Format, declared_format
 from segcore.io.gltf.writer import Layout, write_glb
@@ -29,7 +30,6 @@ from segcore.io.names import SegmentNames
 from segcore.io.obj.materials_writer import write_mtl, write_obj_archive
 from segcore.io.obj.writer import write_obj
 from segcore.io.palette import SegmentColors, segment_color_names
-from segcore.io.partition_file import decode_partition, encode_partition, part_document
 from segcore.io.parts.writer import write_parts
 from segcore.io.picture import draw, write_png
 from segcore.io.ply.writer import PlyColors, write_ply

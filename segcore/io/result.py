@@ -49,8 +49,8 @@ from segcore.coordinates import Axis, Coordinates, Unit
 from segcore.errors import InvalidMesh, InvalidParameters
 from segcore.hierarchy import Hierarchy
 from segcore.io.archive import member, write_array
-from segcore.io.cleave_members import read_array, read_json
-from segcore.io.edited import Edited, read_edited, write_edited
+from segcore.io.edited.members import read_array, read_json
+from segcore.io.edited.result_members import Edited, read_edited, write_edited
 from segcore.mesh import Mesh
 from segcore.nary import numbered_steps
 

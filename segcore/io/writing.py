@@ -15,7 +15,18 @@ from segcore.io.result import write_result
 from segcore.io.threemf.writer import write_3mf
 
 WriteOption: TypeAlias = Literal[
-    "names", "part_colors", "all_levels", "features", "layout", "keep", "capped", "part_format", "colors", "unit", "up"
+    "names",
+    "part_colors",
+    "all_levels",
+    "features",
+    "layout",
+    "keep",
+    "capped",
+    "part_format",
+    "colors",
+    "unit",
+    "up",
+    "edited",
 ]
 
 # What each option of a writer does, in the order of the command line.
@@ -31,6 +42,7 @@ WRITE_OPTIONS: dict[WriteOption, str] = {
     "colors": "the colours of segments on vertices, divided between segments, or on faces alone",
     "unit": "the unit of the coordinates, such as mm, if that of the mesh is known",
     "up": "the axis that points up, y or z, if that of the mesh is known",
+    "edited": "parts that a person has edited, beside the hierarchy",
 }
 _MODEL: frozenset[WriteOption] = frozenset({"names"})
 _COLORED: frozenset[WriteOption] = _MODEL | {"part_colors"}
@@ -112,7 +124,8 @@ WRITERS: dict[str, Writer] = {
         "mesh and hierarchy, to be opened again",
         ".cleave",
         "application/vnd.cleave",
-        lambda target, mesh, hierarchy, _: write_result(target, mesh, hierarchy),
+        lambda target, mesh, hierarchy, _, edited=None: write_result(target, mesh, hierarchy, edited),
+        frozenset({"edited"}),
     ),
 }
 

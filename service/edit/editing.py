@@ -76,4 +76,4 @@ def _parts_in(answer: Message) -> Partition:
     if code is None:
         return decode_partition(answer.data)
     code = {"out_of_memory": "edit_too_large"}.get(code, code)
-    raise Problem(code if code in STATUS else "invalid_parameters", answer.document["message"] or None)
+    raise Problem(code if code in STATUS else "invalid_parameters", answer.document["message"])

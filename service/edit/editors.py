@@ -17,7 +17,7 @@ class GuideNotReady(Exception):  # noqa: N818
 
 
 @dataclass(slots=True, eq=False)
-class _Desk:
+class _Slot:
     """A process, the thread that talks to it, and what is known about it."""
 
     process: EditorProcess
@@ -31,12 +31,12 @@ class Editors:
 
     def __init__(self, settings: Settings) -> None:
         self._settings = settings
-        self._desks = [_Desk(EditorProcess(settings, PROGRAM)) for _ in range(settings.edit_processes)]
+        self._slots = [_Slot(EditorProcess(settings, PROGRAM)) for _ in range(settings.edit_processes)]
         self._warming: dict[str, Future[Message]] = {}
 
     def holds(self, job_id: str) -> bool:
         """Whether a Guide of a job is in memory."""
-        return any(job_id in desk.held for desk in self._desks)
+        return any(job_id in slot.held for slot in self._slots)
 
     async def ask(self, job_id: str, message: Message) -> Message:
         """Return the answer to a message about a job, whose Guide is made first if it is not in memory.
@@ -44,7 +44,8 @@ class Editors:
         Raises
         ------
         GuideNotReady
-            If the Guide is not made within the time of the settings; the process goes on.
+            If the Guide is not made within the time of the settings, and the process goes on; or if the process was
+            ended by an edit before this one.
         EditorFailed
             If there is no answer within that time, that for edits before it included.
         """
@@ -56,7 +57,7 @@ class Editors:
                 raise GuideNotReady from None
             if "code" in made.document:
                 return made
-        future = self._submit(self._desk_for(job_id), message, limit_s)
+        future = self._submit(self._slot_for(job_id), message, limit_s)
         try:
             return await asyncio.wait_for(asyncio.wrap_future(future), limit_s)
         except TimeoutError:
@@ -66,7 +67,7 @@ class Editors:
         """Begin to make the Guide of a job, unless that has begun."""
         if job_id not in self._warming:
             future = self._submit(
-                self._desk_for(job_id), Message({"job_id": job_id, "edit": None}), self._settings.job_timeout_s
+                self._slot_for(job_id), Message({"job_id": job_id, "edit": None}), self._settings.job_timeout_s
             )
             self._warming[job_id] = future
             future.add_done_callback(lambda _: self._warming.pop(job_id, None))
@@ -74,29 +75,31 @@ class Editors:
 
     def stop(self) -> None:
         """End the processes."""
-        for desk in self._desks:
-            desk.process.stop()
-            desk.thread.shutdown(wait=False, cancel_futures=True)
+        for slot in self._slots:
+            slot.process.stop()
+            slot.thread.shutdown(wait=False, cancel_futures=True)
 
-    def _desk_for(self, job_id: str) -> _Desk:
-        holding = [desk for desk in self._desks if job_id in desk.held]
-        return min(holding or self._desks, key=lambda desk: desk.waiting)
+    def _slot_for(self, job_id: str) -> _Slot:
+        holding = [slot for slot in self._slots if job_id in slot.held]
+        return min(holding or self._slots, key=lambda slot: slot.waiting)
 
-    def _submit(self, desk: _Desk, message: Message, limit_s: float) -> "Future[Message]":
+    def _submit(self, slot: _Slot, message: Message, limit_s: float) -> "Future[Message]":
         def ask() -> Message:
+            if message.document["edit"] is not None and message.document["job_id"] not in slot.held:
+                raise GuideNotReady
             try:
-                answer = desk.process.ask(message, limit_s)
+                answer = slot.process.ask(message, limit_s)
             except EditorFailed:
-                desk.held = frozenset()
+                slot.held = frozenset()
                 raise
-            desk.held = frozenset(answer.document["held"])
+            slot.held = frozenset(answer.document["held"])
             return answer
 
-        desk.waiting += 1
-        future = desk.thread.submit(ask)
-        future.add_done_callback(lambda _: _leave(desk))
+        slot.waiting += 1
+        future = slot.thread.submit(ask)
+        future.add_done_callback(lambda _: _leave(slot))
         return future
 
 
-def _leave(desk: _Desk) -> None:
-    desk.waiting -= 1
+def _leave(slot: _Slot) -> None:
+    slot.waiting -= 1

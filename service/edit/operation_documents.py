@@ -240,6 +240,12 @@ class OperationsDocument(_Document):
         return Level() if self.level is None else self.level.level()
 
 
+class LocalEditDocument(OperationsDocument):
+    """An edit of the parts in a file."""
+
+    base: int | None = Field(default=None, ge=0, lt=2**31, description="The revision in the file, to be checked.")
+
+
 class EditDocument(OperationsDocument):
     """An edit of the newest revision."""
 
@@ -265,7 +271,7 @@ def _said(text: str) -> str:
         If nothing is left.
     """
     if not text.strip():
-        raise InvalidParameters("A name has at least one letter: use delete_name, or the class null, to remove one.")
+        raise InvalidParameters("A name is not blank: use delete_name, or the class null, to remove one.")
     return text.strip()
 
 

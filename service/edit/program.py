@@ -71,7 +71,8 @@ class Editor:
         try:
             after = self._edited(message)
         except (CleaveError, UnknownRevision, RevisionDamaged, UnknownJob, MemoryError) as error:
-            return Message({"code": _code_of(error), "message": str(error), "held": self._guides.job_ids()})
+            sentence = str(error) if isinstance(error, CleaveError) else None
+            return Message({"code": _code_of(error), "message": sentence, "held": self._guides.job_ids()})
         return Message({"held": self._guides.job_ids()}, b"" if after is None else encode_partition(after))
 
     def _edited(self, message: Message) -> Partition | None:

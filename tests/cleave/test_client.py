@@ -160,3 +160,30 @@ def test_the_api_key_is_sent() -> None:
     with Client(api_key="k", transport=httpx.MockTransport(answer)) as client, pytest.raises(RequestRefused):
         client.job("1")
     assert seen[0].headers["Authorization"] == "Bearer k"
+
+
+def test_parts_are_edited_and_labels_replaced(url: str, mesh: Path, tmp_path: Path) -> None:
+    merge = [{"op": "merge", "parts": [0, 2]}]
+
+    async def restored(job_id: str) -> list[int]:
+        async with AsyncClient(url) as client:
+            await client.edit(job_id, [{"op": "restore", "revision": 1}])
+            return [one.number for one in await client.revisions(job_id)]
+
+    with Client(url) as client:
+        job = client.segment(mesh, segments=4).job
+        shown = client.edit(job.id, merge, level={"segments": 4}, preview=True)
+        assert shown.revision is None
+        edited = client.edit(job.id, [*merge, {"op": "name", "part": 0, "name": "body"}], level={"segments": 4})
+        assert edited.revision is not None
+        assert (edited.revision.number, edited.parts[0].name, len(edited.parts)) == (1, "body", 3)
+        labels = client.labels(job, revision="latest").labels
+        assert client.put_labels(job.id, np.zeros_like(labels)).parts[0].faces == len(labels)
+        assert client.labels(job, revision=2).segments == 1
+        assert asyncio.run(restored(job.id)) == [3, 2, 1]
+        assert np.array_equal(client.labels(job, revision=3).labels, labels)
+        client.download(job.id, "model.glb", tmp_path / "a.glb", revision="latest")
+        assert b'"body"' in (tmp_path / "a.glb").read_bytes()
+        with pytest.raises(RequestRefused) as refused:
+            client.edit(job.id, merge, base=1)
+        assert refused.value.code == "revision_conflict"

@@ -7,7 +7,7 @@ import pytest
 
 from segcore.errors import InvalidMesh, InvalidParameters
 from segcore.io import hierarchy_document
-from segcore.io.partition_file import decode_partition, encode_partition
+from segcore.io.edited.partition_file import decode_partition, encode_partition
 from segcore.mesh import face_normals_and_areas
 from segcore.partition import MOST_PARTS, Part, Partition, partition_of
 from segcore.shapes import icosphere

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from helpers.edits import faces, tools
+from helpers.edits.guide import faces, tools
 from segcore.edit.operations import (
     Assign,
     Border,

@@ -50,6 +50,7 @@ def test_a_writer_takes_the_options_that_it_lists_and_no_others(kind: str) -> No
         "colors": "faces",
         "unit": "mm",
         "up": "z",
+        "edited": None,
     }
     assert set(values) == set(WRITE_OPTIONS)
     mesh, hierarchy = two_strips()

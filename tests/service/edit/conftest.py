@@ -8,7 +8,7 @@ import pytest
 from redis import Redis
 
 from cleave.settings import Settings
-from helpers.edited import KEY, OTHER_KEY
+from helpers.edits.requests import KEY, OTHER_KEY
 from helpers.jobs import sphere
 from helpers.servers import serving
 from service.edit import editors
@@ -26,7 +26,7 @@ def edit_settings(tmp_path_factory: pytest.TempPathFactory, queue_url: str) -> S
         data_dir=tmp_path_factory.mktemp("edits"),
         redis_url=queue_url,
         api_keys=f"anna:{key_digest(KEY)},ben:{key_digest(OTHER_KEY)}",
-        edit_timeout_s=20.0,
+        edit_timeout_s=3.0,
     )
 
 
@@ -39,7 +39,7 @@ def edit_store(edit_settings: Settings) -> JobStore:
 def api(edit_settings: Settings) -> Iterator[httpx.Client]:
     """A client of a service whose processes of edits use a stand-in for a Guide."""
     with pytest.MonkeyPatch.context() as patch:
-        patch.setattr(editors, "PROGRAM", ("-m", "helpers.edit_program"))
+        patch.setattr(editors, "PROGRAM", ("-m", "helpers.edits.program"))
         patch.setenv("PYTHONPATH", ":".join(path for path in sys.path if path))
         with serving(edit_settings) as client:
             client.headers["Authorization"] = f"Bearer {KEY}"

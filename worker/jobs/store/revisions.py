@@ -1,7 +1,7 @@
 """The revisions of a job: an object for each, written once and never changed.
 
 An object contains the SHA-256 of the rest in hexadecimal and a line end, the record as JSON and a line end, and the
-parts as of :mod:`segcore.io.partition_file`. Whoever creates the object of a number has made that revision.
+parts as of :mod:`segcore.io.edited.partition_file`. Whoever creates the object of a number has made that revision.
 """
 
 import hashlib

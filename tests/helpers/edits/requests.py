@@ -11,7 +11,10 @@ KEY, OTHER_KEY = new_key(), new_key()  # of anna and ben
 
 def edit(api: httpx.Client, job: str, base: int, *operations: dict[str, Any], **said: Any) -> dict[str, Any]:
     """Make the next revision and return the document of the response."""
-    answer = api.post(f"{job}/edits", json={"base": base, "operations": list(operations), **said})
+    body = {"base": base, "operations": list(operations), **said}
+    answer = api.post(f"{job}/edits", json=body)
+    while answer.status_code == 503 and answer.json()["code"] == "guide_not_ready":
+        answer = api.post(f"{job}/edits", json=body)
     assert answer.status_code == 201, answer.text
     document: dict[str, Any] = answer.json()
     return document

@@ -7,8 +7,8 @@ from typing import Any
 
 from segcore.errors import InvalidMesh, InvalidParameters
 from segcore.io.archive import member, write_array
-from segcore.io.cleave_members import read_array, read_json
-from segcore.io.partition_file import part_document, part_of
+from segcore.io.edited.members import read_array, read_json
+from segcore.io.edited.partition_file import part_document, part_of
 from segcore.partition import Partition
 
 _LABELS = "edited_labels"

@@ -3,7 +3,7 @@
 import os
 import time
 
-from helpers.edits import MarksOnly
+from helpers.edits.guide import MarksOnly
 from segcore.arrays import BoolArray, IntArray
 from segcore.edit.tools import PartFinder
 from segcore.io import Segmentation
