@@ -21,8 +21,8 @@ Public are the names of this package:
 
 and the modules that define them, ``segcore.io`` (readers and writers), ``segcore.edit.operations`` and
 ``segcore.edit.tools``, ``segcore.appearance``, ``segcore.structure``, ``segcore.progress`` and ``segcore.shapes``
-(procedural meshes). The packages of the stages (``clean``, ``affinity``, ``coarsen``, ``symmetry``, ``cut``, ``label``),
-the rest of ``edit``, and ``solvers``, ``graphs`` and ``learned`` are internal, except for ``Surface``,
+(procedural meshes). The packages of the stages (``clean``, ``affinity``, ``coarsen``, ``symmetry``, ``cut``,
+``label``), the rest of ``edit``, and ``solvers``, ``graphs`` and ``learned`` are internal, except for ``Surface``,
 ``build_surface`` and ``Guide``.
 """
 
