@@ -42,6 +42,7 @@ _CODES: dict[str, tuple[int, str]] = {
     "method_not_allowed": (405, "This path does not support this method: see the Allow header."),
     "not_acceptable": (406, "Labels are not available in this format: accept another one, or use ?format=."),
     "revision_not_found": (404, "The job has no revision of this number: GET its revisions lists them."),
+    "edit_not_found": (404, "The job has no edit of this id in the queue: edits within a request have none."),
     "too_slow": (408, "The upload stalled or is too slow: send it again over a better connection."),
     "not_finished": (409, "There is no result yet: poll the job until its status is succeeded."),
     "already_finished": (409, "The job has ended: delete it to remove its files."),
@@ -82,11 +83,11 @@ _CODES: dict[str, tuple[int, str]] = {
     "store_unavailable": (503, "The store does not answer: try again after Retry-After."),
     "guide_not_ready": (
         503,
-        "The mesh is large and is being prepared for its first edit: send the edit again after Retry-After.",
+        "The mesh is being prepared for its first preview: send the edit again after Retry-After.",
     ),
-    "edit_too_slow": (
+    "preview_too_slow": (
         503,
-        "The edit takes longer than this installation allows: send it again, or with fewer operations.",
+        "The preview takes longer than this installation allows: send the edit itself, which may wait in the queue.",
     ),
     "insufficient_storage": (507, "The disk of the server is full: try again later or inform the operator."),
 }
@@ -96,7 +97,7 @@ MEANING = {code: sentence for code, (_, sentence) in _CODES.items()}
 _RETRY_AFTER_S = {
     "not_finished": 1,
     "guide_not_ready": 2,
-    "edit_too_slow": 5,
+    "preview_too_slow": 5,
     "queue_unavailable": 5,
     "store_unavailable": 5,
     "insufficient_storage": 60,

@@ -82,7 +82,7 @@ class Edited:
 
     revision: Revision | None  # None for a preview
     parts: list[Part]
-    document: Mapping[str, Any]  # the complete JSON document, with the faces that have changed
+    document: Mapping[str, Any]  # the JSON document, with the faces that have changed if the edit did not wait
 
 
 def job_from(document: Mapping[str, Any]) -> Job:

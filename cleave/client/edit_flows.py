@@ -10,7 +10,8 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from cleave.client.documents import Edited, Revision, edited_from, revision_from
-from cleave.client.flows import Call, Flow
+from cleave.client.errors import RequestRefused
+from cleave.client.flows import POLL_S, Call, Flow
 
 _PAGE = 100  # revisions; the server allows up to 200
 
@@ -51,7 +52,23 @@ def edit(
         headers={"Content-Type": "application/json", "Idempotency-Key": secrets.token_urlsafe(16)},
         body=[json.dumps(body).encode()],
     )
+    if response.status_code == 202:
+        return (yield from _ended(job_id, response.headers["Location"]))
     return edited_from(response.json())
+
+
+def _ended(job_id: str, path: str) -> Flow[Edited]:
+    """Wait until an edit in the queue has ended, and return its revision."""
+    own_path = path[path.index("/v1/") :]  # without the prefix of a proxy, which the URL of the client has
+    while True:
+        response = yield Call(method="GET", path=own_path, params={"wait": f"{POLL_S:g}"}, wait_s=POLL_S)
+        queued = response.json()
+        if queued["error"] is not None:
+            raise RequestRefused(409, queued["error"]["code"], queued["error"]["message"])
+        if queued["revision"] is not None:
+            path = f"/v1/jobs/{job_id}/revisions/{queued['revision']['number']}"
+            parts = (yield Call(method="GET", path=path)).json()["parts"]
+            return edited_from({"revision": queued["revision"], "parts": parts})
 
 
 def put_labels(job_id: str, labels: ArrayLike, base: int | None) -> Flow[Edited]:

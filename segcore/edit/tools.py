@@ -13,7 +13,7 @@ from segcore.partition import Partition
 
 
 class PartFinder(Protocol):
-    """The methods of :class:`segcore.Guide` that operations call; face sets are input faces in the order of the marks."""
+    """The methods of :class:`segcore.Guide` that operations call; sets of faces are in the order of the marks."""
 
     def part(self, inside: IntArray, outside: IntArray) -> BoolArray:
         """(F,) the connected part that a person means who marked these faces."""

@@ -14,7 +14,7 @@ from segcore.io import Edited, RevisionNote, Segmentation, read_result
 from segcore.levels import Level
 from service.commands.inputs import STANDARD, standard_input
 from service.commands.outputs import add_outputs, check_outputs, output_options, write_edited
-from service.edit.operation_documents import LocalEditDocument, parsed_as
+from worker.edits.operation_documents import LocalEditDocument, parsed_as
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:

@@ -8,33 +8,40 @@ from service.context import Context
 from service.edit.editor_process import EditorFailed
 from service.edit.editors import GuideNotReady
 from service.edit.messages import Message
-from service.edit.operation_documents import EditDocument
+from service.edit.queueing import queue_edit, waiting_edit
 from service.edit.result_documents import EditedDocument, edited_document
 from service.edit.revising import Edit, RequestKey, Revised, applied, begin_edit, store_edit
 from service.guard.callers import Caller
 from service.problems import STATUS, Problem
+from worker.edits.operation_documents import EditDocument
 from worker.jobs.job import Job
+from worker.jobs.queued_edit import QueuedEdit
 
-EDITOR_PROBLEMS = ("guide_not_ready", "edit_too_slow", "edit_too_large")  # codes that parts_after raises
+PREVIEW_PROBLEMS = ("guide_not_ready", "preview_too_slow")  # codes that preview_edit raises, besides others
 
 
 async def preview_edit(context: Context, job: Job, document: EditDocument) -> EditedDocument:
     """Return the parts after an edit without storing them; errors as of :func:`make_edit`."""
     edit = await run_in_threadpool(begin_edit, context, job, document, None)
     assert isinstance(edit, Edit), "only a request with a key can have been made before"
-    after = await parts_after(context, edit)
+    try:
+        after = await parts_after(context, edit)
+    except GuideNotReady:
+        raise Problem("guide_not_ready") from None
+    except EditorFailed:
+        raise Problem("preview_too_slow") from None
     return await run_in_threadpool(edited_document, None, edit.before, after)
 
 
 async def make_edit(
     context: Context, caller: Caller, job: Job, document: EditDocument, request: RequestKey | None
-) -> Revised:
-    """Make the next revision of a job.
+) -> Revised | QueuedEdit:
+    """Make the next revision of a job, or enqueue an edit that takes longer than a request waits.
 
     Raises
     ------
     UnknownJob, Problem
-        If the job has no result, somebody else has made the next revision, or the edit cannot be computed now.
+        If the job has no result, or somebody else has made the next revision.
     UnknownRevision, RevisionDamaged
     InvalidParameters, PartLocked
         If an operation cannot be applied.
@@ -42,7 +49,13 @@ async def make_edit(
     edit = await run_in_threadpool(begin_edit, context, job, document, request)
     if isinstance(edit, Revised):
         return edit
-    after = await parts_after(context, edit)
+    queued = await run_in_threadpool(waiting_edit, context, edit)
+    if queued is not None:
+        return queued
+    try:
+        after = await parts_after(context, edit)
+    except (GuideNotReady, EditorFailed):
+        return await run_in_threadpool(queue_edit, context, caller, edit)
     return await run_in_threadpool(store_edit, context, caller, edit, after)
 
 
@@ -51,18 +64,15 @@ async def parts_after(context: Context, edit: Edit) -> Partition:
 
     Raises
     ------
+    GuideNotReady, EditorFailed
+        If the parts are not computed within the time of the settings.
     Problem
-        If an operation cannot be applied, or there is no answer in time.
+        If an operation cannot be applied.
     """
     if not edit.needs_guide:
         return await run_in_threadpool(applied, context.results, edit)
     message = await run_in_threadpool(_message, edit)
-    try:
-        answer = await context.editors.ask(edit.job.id, message)
-    except GuideNotReady:
-        raise Problem("guide_not_ready") from None
-    except EditorFailed:
-        raise Problem("edit_too_slow") from None
+    answer = await context.editors.ask(edit.job.id, message)
     return await run_in_threadpool(_parts_in, answer)
 
 

@@ -10,8 +10,8 @@ from pydantic import BaseModel, ConfigDict, Field
 
 from segcore import InvalidParameters, Part, Partition, partition_of
 from service.answer.label_formats import LABELS, LabelsFormat
-from service.edit.operation_documents import parsed_as
 from service.problems import Problem
+from worker.edits.operation_documents import parsed_as
 
 Integers = NDArray[np.integer[Any]]
 

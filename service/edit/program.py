@@ -13,18 +13,18 @@ from collections.abc import Callable
 from dataclasses import dataclass, field
 from typing import TypeAlias
 
-import segcore
 from cleave.logs import configure_logging
 from cleave.parent_death import die_with_parent
 from cleave.settings import Settings
-from segcore import CleaveError, Partition, SegmentationParameters
+from segcore import CleaveError, Partition
 from segcore.edit.operations import apply_all
 from segcore.edit.tools import PartFinder, Tools
 from segcore.io import Segmentation, decode_partition, encode_partition
 from service.edit.messages import Message, read_message, write_message
-from service.edit.operation_documents import EditDocument
 from service.edit.parts import parts_of
 from service.result_cache import ResultCache
+from worker.edits.operation_documents import EditDocument
+from worker.edits.perform import guide_of
 from worker.jobs.job import Job
 from worker.jobs.store.opening import open_store
 from worker.jobs.store.revisions import RevisionDamaged, UnknownRevision
@@ -93,12 +93,6 @@ class Editor:
             raise UnknownJob(job_id)
         result = self._results.get(job_id)
         return self._guide_of(result, job), _FACE_BYTES * len(result.mesh.faces)
-
-
-def guide_of(result: Segmentation, job: Job) -> PartFinder:
-    """Return the Guide of a job, with the weights of its segmentation."""
-    parameters = SegmentationParameters.from_mapping(job.parameters)
-    return segcore.Guide(result.mesh, result.hierarchy, parameters=parameters)
 
 
 def main(guide_of: GuideOf = guide_of) -> None:

@@ -9,18 +9,16 @@ from segcore.edit.operations import Operation, apply_all, in_words
 from segcore.edit.tools import PartFinder, Tools
 from segcore.levels import Level
 from service.context import Context
-from service.edit.operation_documents import EditDocument
 from service.edit.parts import parts_of
 from service.edit.result_documents import revision_document
 from service.guard.callers import Caller
 from service.lookup import check_succeeded
 from service.problems import Problem
 from service.result_cache import ResultCache
+from worker.edits.operation_documents import EditDocument
 from worker.jobs.job import Job, now
-from worker.jobs.revision import Revision
+from worker.jobs.revision import Revision, words_of_revision
 from worker.jobs.store.revisions import RevisionExists, UnknownRevision
-
-_LONGEST_WORDS = 300  # of a revision; set by hand
 
 EDIT_PROBLEMS = (
     "revision_conflict",
@@ -29,6 +27,7 @@ EDIT_PROBLEMS = (
     "part_locked",
     "invalid_parameters",
     "idempotency_key_reused",
+    "edit_too_large",
 )
 
 
@@ -57,8 +56,7 @@ class Edit:
 
     @property
     def words(self) -> str:
-        words = in_words(self.operations)
-        return words if len(words) <= _LONGEST_WORDS else words[: _LONGEST_WORDS - 1] + "…"
+        return words_of_revision(in_words(self.operations))
 
 
 @dataclass(frozen=True, slots=True, eq=False)

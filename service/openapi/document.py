@@ -11,8 +11,8 @@ from segcore.parameters import parameters_schema
 from service.answer.renditions import PARTIAL_CONTENT
 from service.documents import BatchJobs, HierarchyDocument, LabelsDocument, RunsDocument
 from service.edit.label_uploads import UploadedLabels, UploadedRuns
-from service.edit.operation_documents import EditDocument
 from service.problems import MEDIA_TYPE, ProblemDocument, documented
+from worker.edits.operation_documents import EditDocument
 
 # Models of requests and responses that the routes handle as bytes, so that FastAPI does not find them.
 _HIDDEN_MODELS: tuple[type[BaseModel], ...] = (

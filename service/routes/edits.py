@@ -1,21 +1,24 @@
 """Edits of the parts of a job, and the revisions that they make."""
 
+import asyncio
+import time
 from typing import Annotated, Any
 
 from fastapi import APIRouter, Header, Path, Query, Request
 from starlette.concurrency import run_in_threadpool
 from starlette.responses import Response
 
+from cleave.settings import LONGEST_WAIT_S
 from segcore.levels import Level
 from service.answer.label_formats import LABELS
 from service.answer.renditions import NOT_MODIFIED, answer_json
 from service.answer.revision import REVISION_PATTERN, REVISION_PROBLEMS, revision_number
 from service.context import ContextOf
 from service.edit.body import read_body
-from service.edit.editing import EDITOR_PROBLEMS, make_edit, preview_edit
+from service.edit.editing import PREVIEW_PROBLEMS, make_edit, preview_edit
 from service.edit.label_uploads import UploadedLabels, UploadedRuns
-from service.edit.operation_documents import EditDocument, parsed_as
 from service.edit.parts import parts_of
+from service.edit.queueing import QueuedEditDocument, describe_edit, edit_has_ended
 from service.edit.result_documents import (
     EditedDocument,
     RevisionPartsDocument,
@@ -27,11 +30,12 @@ from service.edit.result_documents import (
 from service.edit.revising import EDIT_PROBLEMS, Revised, request_key
 from service.edit.uploading import LabelUpload, store_labels
 from service.guard.callers import CallerOf
-from service.lookup import RESULT_PROBLEMS, JobId, face_count, find_job
+from service.lookup import JOB_PROBLEMS, RESULT_PROBLEMS, JobId, face_count, find_job
 from service.mount import public_path
 from service.openapi.document import ref
 from service.problems import documented
 from service.submit.body import media_type
+from worker.edits.operation_documents import EditDocument, parsed_as
 from worker.jobs.job import Job
 
 router = APIRouter(prefix="/v1/jobs/{job_id}", tags=["edits"])
@@ -62,6 +66,21 @@ _CREATED: dict[int | str, dict[str, Any]] = {
         "headers": {"Location": {"schema": {"type": "string"}, "description": "The path of the revision."}},
     }
 }
+_QUEUED: dict[int | str, dict[str, Any]] = {
+    202: {
+        "model": QueuedEditDocument,
+        "description": "The edit is stored and waits in the queue.",
+        "headers": {
+            "Location": {"schema": {"type": "string"}, "description": "The path of the edit."},
+            "Retry-After": {"schema": {"type": "integer"}, "description": "Seconds."},
+        },
+    }
+}
+_POLL_S = 0.1  # between two looks for the end of an edit; set by hand
+Wait = Annotated[
+    float,
+    Query(ge=0, le=LONGEST_WAIT_S, description="Seconds to wait for the end of the edit, up to a limit of the server."),
+]
 _EDIT_BODY = {"requestBody": {"required": True, "content": {_JSON: {"schema": ref(EditDocument)}}}}
 _LABELS_BODY: dict[str, Any] = {
     "requestBody": {
@@ -86,7 +105,7 @@ _LABELS_BODY: dict[str, Any] = {
     status_code=201,
     response_class=Response,
     openapi_extra=_EDIT_BODY,
-    responses=_CREATED | documented(*_PROBLEMS, *EDITOR_PROBLEMS),
+    responses=_CREATED | _QUEUED | documented(*_PROBLEMS),
 )
 async def create_edit(
     job_id: JobId,
@@ -98,20 +117,26 @@ async def create_edit(
     """Edit the parts of the newest revision, which makes the next one.
 
     Parts have the numbers 0, 1, ... in the order of their labels. The numbers of untouched parts do not change; if a
-    part vanishes, the part with the highest number takes its place and keeps its name, colour and class.
+    part vanishes, the part with the highest number takes its place and keeps its name, colour and class. An edit that
+    takes longer than the server lets a request wait goes through the queue: then poll the Location of the response.
     """
     job = await run_in_threadpool(find_job, context, caller, job_id)
     body = await read_body(request, context.settings, await run_in_threadpool(face_count, context, job))
     document = await run_in_threadpool(parsed_as, EditDocument, body)
     key = request_key(context, caller, job, idempotency_key, body)
-    return await run_in_threadpool(_created, job, await make_edit(context, caller, job, document, key))
+    made = await make_edit(context, caller, job, document, key)
+    if isinstance(made, Revised):
+        return await run_in_threadpool(_created, job, made)
+    queued = await run_in_threadpool(describe_edit, context, job, made.id)
+    headers = {"Location": queued.self, "Retry-After": "1"}
+    return Response(queued.model_dump_json(), 202, headers, _JSON)
 
 
 @router.post(
     "/edits/preview",
     response_model=EditedDocument,
     openapi_extra=_EDIT_BODY,
-    responses=documented(*_PROBLEMS, *EDITOR_PROBLEMS),
+    responses=documented(*_PROBLEMS, *PREVIEW_PROBLEMS),
 )
 async def preview(job_id: JobId, request: Request, context: ContextOf, caller: CallerOf) -> Response:
     """The parts that an edit would make, without storing them."""
@@ -120,6 +145,32 @@ async def preview(job_id: JobId, request: Request, context: ContextOf, caller: C
     document = await run_in_threadpool(parsed_as, EditDocument, body)
     edited = await preview_edit(context, job, document)
     return Response(edited.model_dump_json(by_alias=True), media_type=_JSON)
+
+
+@router.get(
+    "/edits/{edit_id}",
+    response_model=QueuedEditDocument,
+    responses=documented(*JOB_PROBLEMS, *REVISION_PROBLEMS, "edit_not_found", "invalid_request")
+    | {304: {"description": NOT_MODIFIED}},
+)
+async def get_edit(
+    job_id: JobId,
+    edit_id: Annotated[str, Path(description="As in the response to POST edits with the status 202.")],
+    request: Request,
+    context: ContextOf,
+    caller: CallerOf,
+    wait: Wait = 0,
+) -> Response:
+    """The state of an edit that went through the queue. With `wait` the response is sent when it has ended."""
+    job = await run_in_threadpool(find_job, context, caller, job_id)
+    document = await run_in_threadpool(describe_edit, context, job, edit_id)
+    ends_at = time.monotonic() + min(wait, context.settings.max_wait_s)
+    while document.ended_at is None and time.monotonic() < ends_at:
+        await asyncio.sleep(max(_POLL_S, context.store.objects.poll_interval_s))
+        if await run_in_threadpool(edit_has_ended, context, job, edit_id):
+            document = await run_in_threadpool(describe_edit, context, job, edit_id)
+    retry = {} if document.ended_at else {"Retry-After": "1"}
+    return answer_json(request, document.model_dump_json().encode(), headers=retry)
 
 
 @router.put(

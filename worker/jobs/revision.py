@@ -3,6 +3,8 @@
 from dataclasses import dataclass
 from datetime import datetime
 
+_LONGEST_WORDS = 300  # set by hand
+
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Revision:
@@ -16,3 +18,8 @@ class Revision:
     parts: int  # their number
     request: str | None = None  # identifies the request by its Idempotency-Key; None if it had none
     content: str | None = None  # a hash of what that request asked for
+
+
+def words_of_revision(words: str) -> str:
+    """Return what a revision has changed, shortened."""
+    return words if len(words) <= _LONGEST_WORDS else words[: _LONGEST_WORDS - 1] + "…"

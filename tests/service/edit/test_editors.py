@@ -44,7 +44,8 @@ def test_a_preview_of_marks_is_answered_from_the_same_guide(api: httpx.Client, j
 
 def test_a_process_that_dies_costs_one_edit(api: httpx.Client, job: str) -> None:
     edit(api, job, 0, marks(0))
-    problem(api.post(f"{job}/edits", json={"base": 1, "operations": [marks(DEADLY)]}), 503, "edit_too_slow")
+    deadly = {"base": 1, "operations": [marks(DEADLY)]}
+    problem(api.post(f"{job}/edits/preview", json=deadly), 503, "preview_too_slow")
     assert edit(api, job, 1, marks(3))["revision"]["number"] == 2
 
 
@@ -61,9 +62,8 @@ def test_errors_of_the_process_are_those_of_the_edit(api: httpx.Client, job: str
 def test_other_requests_are_answered_while_an_edit_takes_long(api: httpx.Client, job: str) -> None:
     edit(api, job, 0, marks(3))
     answers: list[httpx.Response] = []
-    slow = threading.Thread(
-        target=lambda: answers.append(api.post(f"{job}/edits", json={"base": 1, "operations": [marks(SLOW)]}))
-    )
+    body = {"base": 1, "operations": [marks(SLOW)]}
+    slow = threading.Thread(target=lambda: answers.append(api.post(f"{job}/edits/preview", json=body)))
     slow.start()
     time.sleep(0.2)
     for _ in range(5):
@@ -71,7 +71,7 @@ def test_other_requests_are_answered_while_an_edit_takes_long(api: httpx.Client,
     edit(api, job, 1, {"op": "merge", "parts": [0, 1]})
     assert slow.is_alive()
     slow.join()
-    problem(answers[0], 503, "edit_too_slow")
+    problem(answers[0], 503, "preview_too_slow")
     assert edit(api, job, 2, marks(3))["revision"]["number"] == 3
 
 

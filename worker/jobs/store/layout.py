@@ -4,6 +4,7 @@
     index/<owner>/<time>-<id>       empty: the job exists; for lists of jobs
     computed/<owner>/<fingerprint>/<id>  empty: the job has succeeded with this input
     outbox/<id>                     the state of the delivery of its webhook
+    edits/<edit>                    the edit waits in the queue; contains the id of its job
     batches/<id>.json               the jobs of a batch
     gone/<id>                       the job was deleted; contains its owner
     doomed/<id>                     the job is being deleted; contains its record
@@ -13,6 +14,7 @@
              /attempt-<n>.json
              /result.cleave         mesh and hierarchy; jobs with the same input share its bytes in a folder
              /manifest.json         the outcome, written last and once: the job is finished
+             /edits/<edit>.json     an edit that waits, or has waited, in the queue; .run-<n>, .ended: its outcome
              /revisions/<c>         the parts after an edit; c is the complement of the number 1, 2, ... of the revision
 
 Only the objects under ``jobs`` count. The others are indexes: they are written before a job and removed after it, so a
@@ -28,6 +30,7 @@ RECORD = "job.json"
 MANIFEST = "manifest.json"
 RESULT = "result.cleave"
 REVISIONS = "revisions"
+QUEUED_EDITS = "edits"
 MESH = "mesh"  # in folders of earlier versions
 
 _DIGITS = 8

@@ -22,6 +22,7 @@ from worker.jobs.store.layout import MESH, job_key, mesh_name
 from worker.jobs.store.outbox import Outbox
 from worker.jobs.store.pages import JobPage, read_page
 from worker.jobs.store.pending import PendingJobs
+from worker.jobs.store.queued_edits import QueuedEdits
 from worker.jobs.store.records import Records
 from worker.jobs.store.records import UnknownJob as UnknownJob
 from worker.jobs.store.results import ResultFiles
@@ -49,6 +50,7 @@ class JobStore:
         self.records = Records(objects)
         self.results = ResultFiles(objects, self.records, spool, cache)
         self.revisions = Revisions(objects, self.records)
+        self.queued_edits = QueuedEdits(objects, self.records)
         self.pending = PendingJobs(objects)
         self.index = JobIndex(objects)
         self.computed = ComputedIndex(objects)
