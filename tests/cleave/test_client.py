@@ -187,3 +187,35 @@ def test_parts_are_edited_and_labels_replaced(url: str, mesh: Path, tmp_path: Pa
         with pytest.raises(RequestRefused) as refused:
             client.edit(job.id, merge, base=1)
         assert refused.value.code == "revision_conflict"
+
+
+def test_an_edit_in_the_queue_is_waited_for() -> None:
+    revision = {
+        "number": 1,
+        "parent": 0,
+        "made_at": "2026-01-01T00:00:00Z",
+        "made_by": None,
+        "what": "smooth the borders",
+        "segments": 1,
+    }
+    part = {"name": "body", "color": "#102030", "class": "", "locked": False, "faces": 4}
+    states = iter([{"error": None, "revision": None}, {"error": None, "revision": revision}])
+    failed = {"error": {"code": "revision_conflict", "message": "Somebody was faster."}, "revision": None}
+    seen: list[str] = []
+
+    def answer(request: httpx.Request) -> httpx.Response:
+        seen.append(request.url.path)
+        match request.method, request.url.path:
+            case "POST", _:
+                return httpx.Response(202, headers={"Location": "/cleave/v1/jobs/a/edits/b"}, json={})
+            case _, "/cleave/v1/jobs/a/edits/b":
+                return httpx.Response(200, json=next(states, failed))
+        return httpx.Response(200, json={**revision, "parts": [part]})
+
+    with Client("http://localhost/cleave", transport=httpx.MockTransport(answer)) as client:
+        edited = client.edit("a", [{"op": "smooth"}], base=0)
+        assert edited.revision is not None
+        assert (edited.revision.number, edited.parts[0].name) == (1, "body")
+        assert seen[1:] == ["/cleave/v1/jobs/a/edits/b"] * 2 + ["/cleave/v1/jobs/a/revisions/1"]
+        with pytest.raises(RequestRefused, match="faster"):
+            client.edit("a", [{"op": "smooth"}], base=0)
