@@ -51,8 +51,10 @@ class Editors:
         """
         limit_s = self._settings.edit_timeout_s
         if not self.holds(job_id):
+            making = asyncio.wrap_future(self._warm_up(job_id))
+            making.add_done_callback(_note_error)
             try:
-                made = await asyncio.wait_for(asyncio.shield(asyncio.wrap_future(self._warm_up(job_id))), limit_s)
+                made = await asyncio.wait_for(asyncio.shield(making), limit_s)
             except TimeoutError:
                 raise GuideNotReady from None
             if "code" in made.document:
@@ -99,6 +101,12 @@ class Editors:
         future = slot.thread.submit(ask)
         future.add_done_callback(lambda _: _leave(slot))
         return future
+
+
+def _note_error(made: "asyncio.Future[Message]") -> None:
+    """Take the error of a Guide for which no request waits any longer."""
+    if not made.cancelled():
+        made.exception()
 
 
 def _leave(slot: _Slot) -> None:

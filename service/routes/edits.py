@@ -123,7 +123,7 @@ async def create_edit(
     job = await run_in_threadpool(find_job, context, caller, job_id)
     body = await read_body(request, context.settings, await run_in_threadpool(face_count, context, job))
     document = await run_in_threadpool(parsed_as, EditDocument, body)
-    key = request_key(context, caller, job, idempotency_key, body)
+    key = await run_in_threadpool(request_key, context, caller, job, idempotency_key, body)
     made = await make_edit(context, caller, job, document, key)
     if isinstance(made, Revised):
         return await run_in_threadpool(_created, job, made)
@@ -197,7 +197,7 @@ async def put_labels(
     """Store labels that were made elsewhere as the next revision."""
     job = await run_in_threadpool(find_job, context, caller, job_id)
     body = await read_body(request, context.settings, await run_in_threadpool(face_count, context, job))
-    key = request_key(context, caller, job, idempotency_key, body)
+    key = await run_in_threadpool(request_key, context, caller, job, idempotency_key, body)
     upload = LabelUpload(body, media_type(request), base, if_match, key)
     return await run_in_threadpool(_created, job, await run_in_threadpool(store_labels, context, caller, job, upload))
 
