@@ -93,6 +93,9 @@ _JOB_OPERATIONS = (
     "get_hierarchy",
     "get_glb",
     "get_preview",
+    "create_edit",
+    "put_labels",
+    "list_revisions",
     "cancel_job",
     "delete_job",
 )
