@@ -70,7 +70,6 @@ _CODES: dict[str, tuple[int, str]] = {
     ),
     "invalid_parameters": (422, "A parameter is out of range: see GET /v1/methods."),
     "invalid_request": (422, "A value in the path, the query or a header is not valid; detail names it."),
-    "edit_too_large": (422, "The edit needs more memory than this installation gives it: edit a simpler mesh."),
     "idempotency_key_reused": (
         422,
         "This Idempotency-Key was sent with another mesh, other parameters or another edit: use a new key.",
@@ -87,7 +86,7 @@ _CODES: dict[str, tuple[int, str]] = {
     ),
     "preview_too_slow": (
         503,
-        "The preview takes longer than this installation allows: send the edit itself, which may wait in the queue.",
+        "The preview takes more time or memory than a request may: send the edit itself, which may wait in the queue.",
     ),
     "insufficient_storage": (507, "The disk of the server is full: try again later or inform the operator."),
 }

@@ -65,7 +65,7 @@ async def parts_after(context: Context, edit: Edit) -> Partition:
     Raises
     ------
     GuideNotReady, EditorFailed
-        If the parts are not computed within the time of the settings.
+        If the parts are not computed within the time and the memory of the settings.
     Problem
         If an operation cannot be applied.
     """
@@ -85,5 +85,6 @@ def _parts_in(answer: Message) -> Partition:
     code = answer.document.get("code")
     if code is None:
         return decode_partition(answer.data)
-    code = {"out_of_memory": "edit_too_large"}.get(code, code)
+    if code == "out_of_memory":
+        raise EditorFailed
     raise Problem(code if code in STATUS else "invalid_parameters", answer.document["message"])

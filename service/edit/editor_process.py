@@ -14,7 +14,10 @@ log = logging.getLogger("cleave.service")
 
 
 class EditorFailed(Exception):  # noqa: N818
-    """The process was killed after its time was over, or it has died; it is started again for the next edit."""
+    """The process has no answer: it was killed after its time was over, it has died, or it has too little memory.
+
+    It is started again for the next edit if it has ended.
+    """
 
 
 class EditorProcess:

@@ -102,7 +102,8 @@ def main(guide_of: GuideOf = guide_of) -> None:
     os.dup2(2, 1)  # whatever prints does not disturb the answers
     settings = Settings.model_validate(read_message(source).document)
     configure_logging(settings.log_level, settings.log_format, "editor")
-    limit_resources(settings.model_copy(update={"job_cpu_s": _UNLIMITED_CPU_S}))
+    own_limits = {"job_memory_bytes": settings.edit_memory_bytes, "job_cpu_s": _UNLIMITED_CPU_S}
+    limit_resources(settings.model_copy(update=own_limits))
     editor = Editor(open_store(settings), settings, guide_of)
     while True:
         try:

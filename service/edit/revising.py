@@ -27,7 +27,6 @@ EDIT_PROBLEMS = (
     "part_locked",
     "invalid_parameters",
     "idempotency_key_reused",
-    "edit_too_large",
 )
 
 

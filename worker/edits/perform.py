@@ -47,7 +47,8 @@ def perform_edit(store: JobStore, edit_id: str) -> None:
 
 def _outcome(store: JobStore, edit: QueuedEdit) -> EditOutcome:
     try:
-        return EditOutcome(ended_at=now(), revision=_revised(store, edit))
+        number = _revised(store, edit)
+        return EditOutcome(ended_at=now(), revision=number)
     except CleaveError as error:
         return EditOutcome(ended_at=now(), code=error.code, message=str(error))
     except RevisionExists:

@@ -10,7 +10,7 @@ from segcore.io import Segmentation
 from service.edit.program import main
 from worker.jobs.job import Job
 
-SLOW, DEADLY = 7, 8  # a mark of this face alone
+SLOW, DEADLY, LARGE = 7, 8, 9  # a mark of this face alone
 
 
 class Moody(MarksOnly):
@@ -19,6 +19,8 @@ class Moody(MarksOnly):
             time.sleep(60)
         if inside.tolist() == [DEADLY]:
             os._exit(3)
+        if inside.tolist() == [LARGE]:
+            raise MemoryError
         return super().part(inside, outside)
 
 

@@ -10,7 +10,7 @@ import pytest
 
 from cleave.settings import Settings
 from helpers.api import problem
-from helpers.edits.program import DEADLY, SLOW
+from helpers.edits.program import DEADLY, LARGE, SLOW
 from helpers.edits.requests import edit, labels
 from helpers.processes import children_of
 from helpers.waiting import wait_until
@@ -47,6 +47,13 @@ def test_a_process_that_dies_costs_one_edit(api: httpx.Client, job: str) -> None
     deadly = {"base": 1, "operations": [marks(DEADLY)]}
     problem(api.post(f"{job}/edits/preview", json=deadly), 503, "preview_too_slow")
     assert edit(api, job, 1, marks(3))["revision"]["number"] == 2
+
+
+def test_an_edit_that_needs_more_memory_waits_in_the_queue(api: httpx.Client, job: str) -> None:
+    edit(api, job, 0, marks(0))
+    large = {"base": 1, "operations": [marks(LARGE)]}
+    problem(api.post(f"{job}/edits/preview", json=large), 503, "preview_too_slow")
+    assert api.post(f"{job}/edits", json=large).status_code == 202
 
 
 def test_errors_of_the_process_are_those_of_the_edit(api: httpx.Client, job: str) -> None:
