@@ -39,8 +39,8 @@ def edited_file(context: Context, job: Job, revision: str) -> Rendition:
 
 
 def _notes(context: Context, job: Job, number: int) -> tuple[RevisionNote, ...]:
-    found = context.store.revisions.page(job.id, number + 1, _MOST_NOTES)
-    return tuple(_note(revision) for revision in reversed(found))
+    page = context.store.revisions.page(job.id, number + 1, _MOST_NOTES)
+    return tuple(_note(revision) for revision in reversed(page.revisions))
 
 
 def _note(revision: Revision) -> RevisionNote:

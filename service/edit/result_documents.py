@@ -45,7 +45,7 @@ class RevisionPartsDocument(RevisionDocument):
 
 class RevisionsDocument(BaseModel):
     newest: int = Field(description="The base of the next edit; 0 if there is no revision yet.")
-    revisions: list[RevisionDocument] = Field(description="Newest first.")
+    revisions: list[RevisionDocument] = Field(description="Newest first; those that the store has lost are missing.")
     next: int | None = Field(description="Send it as before to get older ones; null if there are none.")
 
 

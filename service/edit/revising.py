@@ -2,10 +2,11 @@
 
 import hashlib
 from collections.abc import Sequence
+from contextlib import suppress
 from dataclasses import dataclass
 
 from segcore import Partition
-from segcore.edit.operations import Operation, apply_all, in_words
+from segcore.edit.operations import Operation, Restore, apply_all, in_words
 from segcore.edit.tools import PartFinder, Tools
 from segcore.levels import Level
 from service.context import Context
@@ -18,7 +19,7 @@ from service.result_cache import ResultCache
 from worker.edits.operation_documents import EditDocument
 from worker.jobs.job import Job, now
 from worker.jobs.revision import Revision, words_of_revision
-from worker.jobs.store.revisions import RevisionExists, UnknownRevision
+from worker.jobs.store.revisions import RevisionDamaged, RevisionExists, UnknownRevision
 
 EDIT_PROBLEMS = (
     "revision_conflict",
@@ -91,10 +92,20 @@ def begin_edit(context: Context, job: Job, document: EditDocument, request: Requ
     check_succeeded(context, job)
     operations, level = document.all(), document.level_of_base(document.base)
     check_base(context, job, document.base)
-    before = parts_of(context.results, job.id, document.base, level)
+    before = _parts_before(context, job, document.base, level, operations)
     if context.store.revisions.newest(job.id) != document.base:
         return made_before(context, job, document.base, before, request)
     return Edit(job, document.base, before, document, operations, request)
+
+
+def _parts_before(context: Context, job: Job, base: int, level: Level, operations: Sequence[Operation]) -> Partition:
+    """Return the parts of the base; if they are lost and are replaced at once, those of the automatic result."""
+    try:
+        return parts_of(context.results, job.id, base, level)
+    except RevisionDamaged:
+        if not isinstance(operations[0], Restore):
+            raise
+        return parts_of(context.results, job.id, 0, Level())
 
 
 def check_base(context: Context, job: Job, base: int) -> None:
@@ -175,5 +186,7 @@ def made_before(context: Context, job: Job, base: int, before: Partition, reques
 def conflict(context: Context, job: Job, code: str) -> Problem:
     """Return the problem of an edit of a revision that is not the newest one."""
     number = context.store.revisions.newest(job.id)
-    newest = None if number == 0 else revision_document(context.store.revisions.revision(job.id, number))
+    newest = None
+    with suppress(RevisionDamaged, UnknownRevision):
+        newest = revision_document(context.store.revisions.revision(job.id, number))
     return Problem(code, revision=newest)

@@ -219,11 +219,11 @@ def list_revisions(
     """The revisions, newest first."""
     job = find_job(context, caller, job_id)
     face_count(context, job)
-    found = context.store.revisions.page(job.id, before, limit)
+    page = context.store.revisions.page(job.id, before, limit)
     document = RevisionsDocument(
         newest=context.store.revisions.newest(job.id),
-        revisions=[revision_document(revision) for revision in found],
-        next=found[-1].number if len(found) == limit and found[-1].number > 1 else None,
+        revisions=[revision_document(revision) for revision in page.revisions],
+        next=page.next,
     )
     return answer_json(request, document.model_dump_json().encode())
 

@@ -14,7 +14,7 @@ from cleave.logs import configure_logging
 from cleave.parent_death import die_with_parent
 from cleave.settings import Settings, load_settings
 from segcore import CleaveError, Partition, SegmentationParameters
-from segcore.edit.operations import apply_all, in_words
+from segcore.edit.operations import Restore, apply_all, in_words
 from segcore.edit.tools import PartFinder, Tools
 from segcore.io import Segmentation, read_result
 from segcore.levels import Level
@@ -102,8 +102,10 @@ def parts_after(store: JobStore, job_id: str, document: EditDocument) -> Partiti
     def parts_of(revision: int, level: Level) -> Partition:
         return store.revisions.partition(job_id, revision) if revision else Partition(level.labels(result.hierarchy))
 
-    before = parts_of(document.base, document.level_of_base(document.base))
-    return apply_all(before, document.all(), Tools(_once(lambda: guide_of(result, job)), parts_of))
+    operations, level = document.all(), document.level_of_base(document.base)
+    is_replaced = isinstance(operations[0], Restore)  # then the parts of the base may be lost
+    before = parts_of(0, Level()) if is_replaced else parts_of(document.base, level)
+    return apply_all(before, operations, Tools(_once(lambda: guide_of(result, job)), parts_of))
 
 
 def guide_of(result: Segmentation, job: Job) -> PartFinder:

@@ -59,8 +59,10 @@ def test_parts_that_are_no_siblings_are_merged_named_and_found_in_every_file(api
     assert shown.extras["segment"] == 3
     (length,) = struct.unpack_from("<I", glb, 12)
     assert json.loads(glb[20 : 20 + length])["scenes"][0]["extras"]["segments"] == 5
-    for result in ("model.3mf", "model.obj.zip", "parts.zip", "model.ply", "preview.png"):
-        assert api.get(f"{job}/{result}", params={"revision": "latest"}).status_code == 200
+    every = "model.3mf model.obj.zip parts.zip parts.zip?format=glb model.ply preview.png model.glb?keep=all"
+    for result in (*every.split(), "model.glb?levels=all&features=true", "model.glb?layout=flat"):
+        found = api.get(f"{job}/{result}{'&' if '?' in result else '?'}revision=latest")
+        assert found.status_code == 200, found.text
     assert b"newmtl left_arm\nKd 0.0627 0.1255 0.1882" in api.get(f"{job}/model.mtl", params={"revision": 1}).content
 
 
@@ -245,13 +247,19 @@ def test_jobs_of_others_and_deleted_jobs_have_no_revisions(
     assert api.get(shared).json()["revision"] == 0  # the result is shared, the edits are not
 
 
-def test_a_damaged_revision_is_reported(api: httpx.Client, job: str, edit_store: JobStore) -> None:
+def test_a_damaged_revision_is_reported_and_replaced(api: httpx.Client, job: str, edit_store: JobStore) -> None:
     edit(api, job, 0, MERGE)
-    (key,) = edit_store.objects.keys_below(f"jobs/{job.rpartition('/')[2]}/revisions")
+    edit(api, job, 1, name(0, "body"))
+    key, _ = edit_store.objects.keys_below(f"jobs/{job.rpartition('/')[2]}/revisions")
     data = edit_store.objects.get(key) or b""
     edit_store.objects.put(key, data[:-9] + bytes([data[-9] ^ 1]) + data[-8:])
-    problem(api.get(f"{job}/labels", params={"revision": 1}), 410, "revision_damaged")
+    problem(api.get(f"{job}/labels", params={"revision": 2}), 410, "revision_damaged")
     assert api.get(f"{job}/labels").status_code == 200
+    found = api.get(f"{job}/revisions").json()
+    assert (found["newest"], [one["number"] for one in found["revisions"]]) == (2, [1])
+    problem(api.post(f"{job}/edits", json={"base": 2, "operations": [MERGE]}), 410, "revision_damaged")
+    edit(api, job, 2, {"op": "restore", "revision": 1})
+    assert labels(api, job, revision=3) == labels(api, job, revision=1)
 
 
 def test_the_result_file_has_the_parts_and_the_list_of_revisions(api: httpx.Client, job: str) -> None:

@@ -5,6 +5,8 @@ parts as of :mod:`segcore.io.edited.partition_file`. Whoever creates the object 
 """
 
 import hashlib
+from contextlib import suppress
+from dataclasses import dataclass
 
 from pydantic import TypeAdapter
 
@@ -28,6 +30,14 @@ class UnknownRevision(LookupError):  # noqa: N818
 
 class RevisionDamaged(LookupError):  # noqa: N818
     """The bytes of a revision are not those that were written."""
+
+
+@dataclass(frozen=True, slots=True)
+class RevisionPage:
+    """Consecutive revisions of a job, newest first."""
+
+    revisions: list[Revision]
+    next: int | None  # older ones than this follow; None if there are none
 
 
 class Revisions:
@@ -77,11 +87,18 @@ class Revisions:
         """
         return self._read(job_id, number)[1]
 
-    def page(self, job_id: str, before: int | None, limit: int) -> list[Revision]:
-        """Return the newest revisions that are older than the number ``before``, newest first."""
+    def page(self, job_id: str, before: int | None, limit: int) -> RevisionPage:
+        """Return the newest revisions that are older than the number ``before``, newest first, without damaged ones."""
         after = "" if before is None else revision_key(job_id, before)
-        keys = self._objects.keys_below(job_key(job_id, REVISIONS), after, limit)
-        return self._objects.each(lambda key: self.revision(job_id, revision_number(key)), keys)
+        numbers = [revision_number(key) for key in self._objects.keys_below(job_key(job_id, REVISIONS), after, limit)]
+        found = self._objects.each(lambda number: self._undamaged(job_id, number), numbers)
+        following = numbers[-1] if len(numbers) == limit and numbers[-1] > 1 else None
+        return RevisionPage([revision for revision in found if revision is not None], following)
+
+    def _undamaged(self, job_id: str, number: int) -> Revision | None:
+        with suppress(RevisionDamaged):
+            return self.revision(job_id, number)
+        return None
 
     def _read(self, job_id: str, number: int) -> tuple[Revision, Partition]:
         data = self._objects.get(revision_key(job_id, number)) if is_revision_number(number) else None

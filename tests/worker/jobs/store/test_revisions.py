@@ -12,7 +12,7 @@ from worker.janitor.retention import stored_jobs
 from worker.jobs.job import Succeeded, now
 from worker.jobs.revision import Revision
 from worker.jobs.store.records import UnknownJob
-from worker.jobs.store.revisions import RevisionDamaged, RevisionExists, UnknownRevision
+from worker.jobs.store.revisions import RevisionDamaged, RevisionExists, RevisionPage, UnknownRevision
 from worker.jobs.store.store import JobStore
 
 PARTS = Partition(np.array([0, 1, 1, 2], dtype=np.int32), (Part("arm"), Part(), Part()))
@@ -35,8 +35,9 @@ def test_a_revision_is_read_as_it_was_written(any_store: JobStore) -> None:
     for record in records:
         any_store.revisions.add(job_id, record, PARTS)
     assert any_store.revisions.newest(job_id) == 12
-    assert any_store.revisions.page(job_id, None, 3) == records[:8:-1]
-    assert any_store.revisions.page(job_id, 3, 10) == records[1::-1]
+    assert any_store.revisions.page(job_id, None, 3) == RevisionPage(records[:8:-1], 10)
+    assert any_store.revisions.page(job_id, 3, 10) == RevisionPage(records[1::-1], None)
+    assert any_store.revisions.page(job_id, 3, 2) == RevisionPage(records[1::-1], None)
     assert any_store.revisions.revision(job_id, 7) == records[6]
     read = any_store.revisions.partition(job_id, 7)
     assert (read.labels.tolist(), read.parts) == (PARTS.labels.tolist(), PARTS.parts)
