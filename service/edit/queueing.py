@@ -11,7 +11,7 @@ from service.edit.result_documents import revision_document
 from service.edit.revising import Edit
 from service.guard.callers import Caller
 from service.mount import public_path
-from service.problems import JobError, Problem, RevisionDocument
+from service.problems import Problem, RevisionDocument
 from worker.jobs.job import Job, new_job_id, now
 from worker.jobs.queue.connection import QueueError
 from worker.jobs.queued_edit import QueuedEdit
@@ -19,6 +19,13 @@ from worker.jobs.size_class import size_class
 from worker.jobs.store.store import UnknownJob
 
 log = logging.getLogger("cleave.service")
+
+
+class EditError(BaseModel):
+    """Why an edit failed."""
+
+    code: str = Field(description="That of a problem, or the cause of a lost run; stable, for programs.")
+    message: str = Field(description="One sentence for people.")
 
 
 class QueuedEditDocument(BaseModel):
@@ -29,7 +36,7 @@ class QueuedEditDocument(BaseModel):
     accepted_at: datetime
     ended_at: datetime | None
     revision: RevisionDocument | None = Field(description="The revision that it has made.")
-    error: JobError | None = Field(description="Why it has failed; the code is that of a problem.")
+    error: EditError | None = Field(description="Why it has failed; null if it has not.")
     self: str = Field(description="The path of the edit.")
 
 
@@ -94,7 +101,7 @@ def describe_edit(context: Context, job: Job, edit_id: str) -> QueuedEditDocumen
     outcome = context.store.queued_edits.outcome(job.id, edit_id)
     error = revision = None
     if outcome is not None and outcome.code is not None:
-        error = JobError(code=outcome.code, message=outcome.message or "")
+        error = EditError(code=outcome.code, message=outcome.message or "")
     if outcome is not None and outcome.revision is not None:
         revision = revision_document(context.store.revisions.revision(job.id, outcome.revision))
     return QueuedEditDocument(
