@@ -2,7 +2,7 @@
 
 import io
 from collections.abc import Callable
-from typing import Any
+from typing import Annotated, Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -15,6 +15,7 @@ from worker.edits.operation_documents import parsed_as
 
 Integers = NDArray[np.integer[Any]]
 
+_Text = Annotated[str, Field(max_length=200, pattern=r"^[^\x00-\x1f\x7f]*$")]
 _JSON_SAID = "Each is the entry of the label of that number; entries beyond the labels are ignored."
 
 
@@ -23,9 +24,9 @@ class UploadedPart(BaseModel):
 
     model_config = ConfigDict(extra="ignore", strict=True)
 
-    name: str = Field(default="", max_length=200, pattern=r"^[^\x00-\x1f\x7f]*$")
+    name: _Text = ""
     color: str | None = Field(default=None, pattern=r"^#[0-9a-fA-F]{6}$")
-    class_name: str = Field(default="", alias="class", max_length=200, pattern=r"^[^\x00-\x1f\x7f]*$")
+    class_name: _Text = Field(default="", alias="class")
     locked: bool = False
 
     def part(self) -> Part:
@@ -38,12 +39,12 @@ class _Said(BaseModel):
     model_config = ConfigDict(extra="ignore", strict=True)
 
     parts: list[UploadedPart] = Field(default=[], max_length=1_000_000, description=_JSON_SAID)
-    classes: list[str] = Field(default=[], max_length=1_000_000, description=f"Names of classes. {_JSON_SAID}")
+    classes: list[_Text] = Field(default=[], max_length=1_000_000, description=f"Names of classes. {_JSON_SAID}")
 
     def part(self, label: int) -> Part:
         part = self.parts[label].part() if label < len(self.parts) else Part()
         if label < len(self.classes) and not part.class_name:
-            part = Part(part.name, part.color, self.classes[label].strip()[:200], part.locked)
+            part = Part(part.name, part.color, self.classes[label].strip(), part.locked)
         return part
 
 
