@@ -8,14 +8,19 @@ from pathlib import Path
 import httpx
 import pytest
 
+import segcore
 from cleave.settings import Settings
 from helpers.api import problem
 from helpers.edits.program import DEADLY, LARGE, SLOW
 from helpers.edits.requests import edit, labels
 from helpers.processes import children_of
 from helpers.waiting import wait_until
+from segcore import Partition
+from segcore.io import decode_partition, encode_partition, read_result
 from service.edit.editor_process import EditorProcess
+from service.edit.editors import PROGRAM
 from service.edit.messages import Message
+from worker.jobs.store.store import JobStore
 
 
 def marks(*faces: int) -> dict[str, object]:
@@ -80,6 +85,24 @@ def test_other_requests_are_answered_while_an_edit_takes_long(api: httpx.Client,
     slow.join()
     problem(answers[0], 503, "preview_too_slow")
     assert edit(api, job, 2, marks(3))["revision"]["number"] == 3
+
+
+def test_the_process_has_the_guide_of_the_job(edit_settings: Settings, edit_store: JobStore, job: str) -> None:
+    job_id = job.rpartition("/")[2]
+    with edit_store.results.open(job_id) as file:
+        result = read_result(file)
+    edit = {"base": 0, "operations": [{"op": "part", "inside": [5], "outside": [200]}]}
+    editor = EditorProcess(edit_settings, PROGRAM)
+    try:
+        before = encode_partition(Partition(result.hierarchy.labels()))
+        answer = editor.ask(Message({"job_id": job_id, "edit": edit}, before), 240.0)
+    finally:
+        editor.stop()
+    assert answer.document == {"held": [job_id]}
+    after = decode_partition(answer.data)
+    found = segcore.Guide(result.mesh, result.hierarchy).part([5], [200])
+    assert len(set(after.labels[found].tolist())) == 1
+    assert not (after.labels[~found] == after.labels[5]).any()
 
 
 @pytest.mark.usefixtures("api")
