@@ -140,6 +140,20 @@ class Settings(BaseSettings):
     rendered_cache_bytes: int = Field(
         default=64 * 2**20, ge=0, description="Size of its cache of pictures and models made of them, in memory."
     )
+    edit_processes: int = Field(
+        default=2, ge=1, le=64, description="Processes in which a service computes edits that look at the surface."
+    )
+    edit_cache_bytes: int = Field(
+        default=2**30, ge=0, description="Size of the prepared meshes that each of these processes keeps in memory."
+    )
+    edit_memory_bytes: int = Field(
+        default=4 * 2**30, gt=0, description="Address space of each of these processes; larger edits wait in the queue."
+    )
+    edit_timeout_s: float = Field(
+        default=10.0,
+        gt=0,
+        description="Longest time for which a request waits for an edit; longer ones wait in the queue.",
+    )
     log_level: str = Field(
         default="info", pattern=r"^(debug|info|warning|error)$", description="Lowest level that is logged."
     )

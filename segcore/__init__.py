@@ -12,15 +12,18 @@ Public are the names of this package:
 
 - ``read_mesh``, ``Mesh``: the input
 - ``segment``, ``SegmentationParameters``, ``parameters_schema``, ``warm_up``: the method and its choices
+- ``Partition``, ``Part``, ``partition_of``: any labels of the faces, with names, colours and classes of the parts
 - ``Hierarchy``, ``Fineness``, ``keep_splits``: the result at any number of segments
 - ``Guide``: corrections by hand, the part around marked faces and borders between parts
 - ``mesh_report``, ``MeshReport``, ``build_surface``, ``Surface``: the cleaned mesh and the defects that were found
-- ``CleaveError``, ``InvalidMesh``, ``UnsupportedFormat``, ``InvalidParameters``, ``LimitExceeded``: the errors
+- ``CleaveError``, ``InvalidMesh``, ``UnsupportedFormat``, ``InvalidParameters``, ``PartLocked``,
+  ``LimitExceeded``: the errors
 
-and the modules that define them, ``segcore.io`` (readers and writers), ``segcore.appearance``, ``segcore.structure``,
-``segcore.progress`` and ``segcore.shapes`` (procedural meshes). The packages of the stages (``clean``, ``affinity``,
-``coarsen``, ``symmetry``, ``cut``, ``label``, ``edit``) and ``solvers``, ``graphs`` and ``learned`` are internal,
-except for ``Surface``, ``build_surface`` and ``Guide``.
+and the modules that define them, ``segcore.io`` (readers and writers), ``segcore.edit.operations`` and
+``segcore.edit.tools``, ``segcore.appearance``, ``segcore.structure``, ``segcore.progress`` and ``segcore.shapes``
+(procedural meshes). The packages of the stages (``clean``, ``affinity``, ``coarsen``, ``symmetry``, ``cut``,
+``label``), the rest of ``edit``, and ``solvers``, ``graphs`` and ``learned`` are internal, except for ``Surface``,
+``build_surface`` and ``Guide``.
 """
 
 import segcore.kernel_cache  # noqa: F401  # before any kernel
@@ -29,13 +32,14 @@ import segcore.kernel_cache  # noqa: F401  # before any kernel
 
 from segcore.clean.surface import Surface, build_surface
 from segcore.edit.guide import Guide
-from segcore.errors import CleaveError, InvalidMesh, InvalidParameters, LimitExceeded, UnsupportedFormat
+from segcore.errors import CleaveError, InvalidMesh, InvalidParameters, LimitExceeded, PartLocked, UnsupportedFormat
 from segcore.hierarchy import Hierarchy
 from segcore.io import read_mesh
 from segcore.levels import Fineness, keep_splits
 from segcore.mesh import Mesh
 from segcore.method import segment
 from segcore.parameters import SegmentationParameters, parameters_schema
+from segcore.partition import Part, Partition, partition_of
 from segcore.report import MeshReport, mesh_report
 from segcore.warm_up import warm_up
 
@@ -49,6 +53,9 @@ __all__ = [
     "LimitExceeded",
     "Mesh",
     "MeshReport",
+    "Part",
+    "PartLocked",
+    "Partition",
     "SegmentationParameters",
     "Surface",
     "UnsupportedFormat",
@@ -56,6 +63,7 @@ __all__ = [
     "keep_splits",
     "mesh_report",
     "parameters_schema",
+    "partition_of",
     "read_mesh",
     "segment",
     "warm_up",

@@ -4,6 +4,7 @@ CleaveError
  |- InvalidMesh         the file or the arrays cannot be segmented as given: fix the mesh
  |- UnsupportedFormat   the file has a format that is not supported: convert it
  |- InvalidParameters   a value is outside its documented range: fix the call
+ |- PartLocked          an edit would change a part that is locked: unlock it
  `- LimitExceeded       the input is larger than this installation accepts: reduce it or raise the limit
 
 Every class has a stable ``code`` for programs. The message is one sentence for people and names a remedy.
@@ -32,6 +33,12 @@ class InvalidParameters(CleaveError, ValueError):  # noqa: N818
     """A parameter is outside its documented range."""
 
     code = "invalid_parameters"
+
+
+class PartLocked(CleaveError):  # noqa: N818
+    """An edit would change the faces of a part that is locked."""
+
+    code = "part_locked"
 
 
 class LimitExceeded(CleaveError):  # noqa: N818

@@ -54,6 +54,46 @@ def one_segment_note(automatic_segments: int | None, max_segments: int | None) -
     return f"No cut is clear enough to be made automatically: ask for {numbers} to see the best ones."
 
 
+@dataclass(frozen=True, slots=True)
+class Level:
+    """A requested level: a fineness, or the splits to be made.
+
+    Raises
+    ------
+    InvalidParameters
+        If both are given.
+    """
+
+    fineness: Fineness = Fineness()
+    splits: tuple[int, ...] | None = None
+
+    def __post_init__(self) -> None:
+        if self.splits is not None and not self.fineness.is_automatic:
+            raise InvalidParameters("Give one of segments, granularity and splits, not several.")
+
+    @property
+    def is_automatic(self) -> bool:
+        """Whether nothing is requested."""
+        return self.splits is None and self.fineness.is_automatic
+
+    def of(self, hierarchy: Hierarchy) -> tuple[Hierarchy, int]:
+        """Return the hierarchy that has the level, with the splits in front, and the number of segments.
+
+        Raises
+        ------
+        InvalidParameters
+            If there is no such level.
+        """
+        if self.splits is None:
+            return hierarchy, self.fineness.segments_of(hierarchy)
+        return keep_splits(hierarchy, self.splits), len(set(self.splits)) + 1
+
+    def labels(self, hierarchy: Hierarchy) -> IntArray:
+        """(F,) the labels of the input faces at the level; errors as of :meth:`of`."""
+        kept, segments = self.of(hierarchy)
+        return kept.labels(segments)
+
+
 def keep_splits(hierarchy: Hierarchy, splits: Collection[int]) -> Hierarchy:
     """The hierarchy with some splits moved to the front; its automatic number of segments makes exactly these splits.
 

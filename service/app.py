@@ -1,11 +1,16 @@
 """The application: routes, middleware, error handlers and OpenAPI document."""
 
+from collections.abc import AsyncIterator
+from contextlib import asynccontextmanager
+from functools import partial
+
 from fastapi import Depends, FastAPI
 from starlette.middleware.cors import CORSMiddleware
 
 from cleave.settings import Settings
 from cleave.version import installed_version
 from service.context import Context, QueueView
+from service.edit.editors import Editors
 from service.guard.foreign_sites import CrossSiteCheckMiddleware, HostCheckMiddleware
 from service.guard.headers import HeadMiddleware, SecurityHeadersMiddleware
 from service.guard.unknown_parameters import refuse_unknown_parameters
@@ -14,7 +19,20 @@ from service.mount import MountMiddleware
 from service.openapi.document import complete
 from service.problems import handle_problems
 from service.result_cache import ResultCache
-from service.routes import about, batches, docs_page, files, health, home, jobs, models, results, submission, webhooks
+from service.routes import (
+    about,
+    batches,
+    docs_page,
+    edits,
+    files,
+    health,
+    home,
+    jobs,
+    models,
+    results,
+    submission,
+    webhooks,
+)
 from service.telemetry.metrics import Metrics
 from service.telemetry.request_log import RequestLogMiddleware
 from worker.jobs.queue.connection import connect
@@ -40,6 +58,7 @@ _ROUTES = (
     results,
     models,
     files,
+    edits,
     batches,
     about,
     webhooks,
@@ -49,12 +68,14 @@ _ROUTES = (
 def create_app(settings: Settings) -> FastAPI:
     """Return the application for some settings; ``redis_url`` must be set."""
     assert settings.redis_url, "redis_url must be set"
+    editors = Editors(settings)
     app = FastAPI(
         title="Cleave",
         summary="Cuts a 3D mesh into the parts that a person would name.",
         version=installed_version(),
         generate_unique_id_function=lambda route: route.name,
         redirect_slashes=False,
+        lifespan=partial(_stopping, editors),
         docs_url=None,
         redoc_url=None,
     )
@@ -74,6 +95,7 @@ def create_app(settings: Settings) -> FastAPI:
         keys=keys,
         metrics=metrics,
         batches=store.batches,
+        editors=editors,
         keys_required=settings.auth == "required" or (settings.auth == "auto" and bool(keys.all())),
     )
     for module in _PAGES:
@@ -90,6 +112,13 @@ def create_app(settings: Settings) -> FastAPI:
     return app
 
 
+@asynccontextmanager
+async def _stopping(editors: Editors, _: FastAPI) -> AsyncIterator[None]:
+    """End the processes of edits with the application."""
+    yield
+    editors.stop()
+
+
 def _add_middleware(app: FastAPI, settings: Settings) -> None:
     origins = settings.allowed_origins()
     app.add_middleware(CrossSiteCheckMiddleware, allowed_origins=origins)
@@ -99,7 +128,7 @@ def _add_middleware(app: FastAPI, settings: Settings) -> None:
         app.add_middleware(
             CORSMiddleware,
             allow_origins=origins,
-            allow_methods=["GET", "POST", "DELETE"],
+            allow_methods=["GET", "POST", "PUT", "DELETE"],
             allow_headers=["*"],
             expose_headers=list(_EXPOSED_HEADERS),
             max_age=600,

@@ -7,6 +7,7 @@ from typing import Annotated
 from fastapi import Depends, Request
 
 from cleave.settings import Settings
+from service.edit.editors import Editors
 from service.keys import KeyRing
 from service.result_cache import ResultCache
 from service.telemetry.metrics import Metrics
@@ -62,6 +63,7 @@ class Context:
     keys_required: bool
     metrics: Metrics
     batches: BatchStore
+    editors: Editors
 
     def admit(self, owner: str | None, new: Job | None = None) -> None:
         """Move waiting jobs of an owner into the queue, as many as the owner may have there."""

@@ -39,12 +39,30 @@ class BatchDocument(BaseModel):
     links: BatchLinks
 
 
-class LabelsDocument(BaseModel):
+class SaidPart(BaseModel):
+    """What is said about a part of a revision."""
+
+    name: str = Field(description="Empty for none.", examples=["left arm"])
+    color: str | None = Field(description="Null for the colour of its number.", examples=["#56b4e9"])
+    class_name: str = Field(serialization_alias="class", description="Empty for none.", examples=["limb"])
+    locked: bool
+
+
+class _SaidOfLabels(BaseModel):
+    parts: list[SaidPart] = Field(
+        default=[], description="Of a revision: what is said about the part of each label. Absent at a level."
+    )
+    classes: list[str] = Field(
+        default=[], description="With by=class: the name of each number; 0 is for parts without a class. Else absent."
+    )
+
+
+class LabelsDocument(_SaidOfLabels):
     segments: int
     labels: list[int] = Field(description="The segment 0..segments-1 of every face, in the order of the file.")
 
 
-class RunsDocument(BaseModel):
+class RunsDocument(_SaidOfLabels):
     """Labels in run-length form: the first lengths[0] faces have the label values[0], and so on."""
 
     segments: int

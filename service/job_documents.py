@@ -58,6 +58,8 @@ class JobLinks(BaseModel):
     threemf: str
     parts: str = Field(description="A ZIP archive with a file per segment.")
     preview: str = Field(description="A picture.")
+    edits: str = Field(description="For POST.")
+    revisions: str
 
 
 class _Job(BaseModel):
@@ -84,6 +86,10 @@ class _Job(BaseModel):
     limit_reached: bool | None = Field(
         description="Whether the hierarchy ends at max_segments because of the parameter of that name, although "
         "sensible cuts are left. Null if that is not known, as in jobs of earlier versions."
+    )
+    revision: int = Field(
+        description="The newest revision of its parts; 0 if they were not edited. In a list of jobs that are stored in "
+        "a bucket it may be an earlier one."
     )
     notes: list[str] = Field(
         description="Sentences on what limits the result, for people: for example that a file has more shells than "
@@ -166,12 +172,14 @@ class JobPageDocument(BaseModel):
     next_cursor: str | None = Field(description="Send it as cursor to get the next page; null on the last page.")
 
 
-def job_document(job: Job, outcome: Outcome | None, attempts: list[Attempt], activity: Activity | None) -> JobDocument:
+def job_document(
+    job: Job, outcome: Outcome | None, attempts: list[Attempt], activity: Activity | None, revision: int = 0
+) -> JobDocument:
     """Return the document of a job; ``activity`` is None if the queue does not answer."""
     fields = _common_fields(job, attempts)
     match outcome:
         case Succeeded():
-            return SucceededJob(**fields | _result_fields(job, outcome))
+            return SucceededJob(**fields | _result_fields(job, outcome) | {"revision": revision})
         case Failed(finished_at=finished_at, code=code, message=message):
             error = JobError(code=code, message=message)
             return FailedJob(**fields | {"status": "failed", "finished_at": finished_at, "error": error})
@@ -198,6 +206,7 @@ def _common_fields(job: Job, attempts: list[Attempt]) -> dict[str, Any]:
             file_name=job.file_name, format=job.mesh_format, size_bytes=job.size_bytes, sha256=job.sha256
         ),
         "parameters": job.parameters,
+        "revision": 0,
         "notes": [],
         "links": _links(public_path(f"/v1/jobs/{job.id}")),
     }
@@ -240,5 +249,7 @@ def _links(path: str) -> JobLinks:
         labels=f"{path}/labels",
         hierarchy=f"{path}/hierarchy",
         preview=f"{path}/preview.png",
+        edits=f"{path}/edits",
+        revisions=f"{path}/revisions",
         **model_links(path),
     )

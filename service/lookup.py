@@ -46,14 +46,20 @@ def find_job(context: Context, caller: Caller, job_id: str) -> Job:
 
 def describe(context: Context, job: Job) -> JobDocument:
     """Return the document of a job."""
-    return describe_all(context, [job])[0]
+    document = describe_all(context, [job])[0]
+    if document.status != "succeeded":
+        return document
+    return document.model_copy(update={"revision": context.store.revisions.newest(job.id)})
 
 
 def describe_all(context: Context, jobs: Sequence[Job]) -> list[JobDocument]:
     """Return the documents of some jobs, with one request to the queue."""
     states = context.store.records.states([job.id for job in jobs])
     activities = context.view.activities([job.id for job in jobs if states[job.id].outcome is None])
-    return [job_document(job, states[job.id].outcome, states[job.id].attempts, activities.get(job.id)) for job in jobs]
+    return [
+        job_document(job, state.outcome, state.attempts, activities.get(job.id), state.revision)
+        for job, state in ((job, states[job.id]) for job in jobs)
+    ]
 
 
 def result_of(context: Context, job: Job) -> Segmentation:
@@ -79,6 +85,15 @@ def check_succeeded(context: Context, job: Job) -> None:
             raise Problem("job_canceled")
         case None:
             raise Problem("not_finished")
+
+
+def face_count(context: Context, job: Job) -> int:
+    """Return the number of faces of a job that has a result; errors as of :func:`check_succeeded`."""
+    check_succeeded(context, job)
+    outcome = context.store.records.outcome(job.id)
+    if not isinstance(outcome, Succeeded):
+        raise UnknownJob(job.id)  # it was deleted meanwhile
+    return outcome.faces
 
 
 def find_batch(context: Context, caller: Caller, batch_id: str) -> Batch:

@@ -3,6 +3,7 @@
 import json
 import logging
 from collections.abc import Mapping
+from datetime import datetime
 from http import HTTPStatus
 from typing import Any
 
@@ -15,11 +16,12 @@ from starlette.exceptions import HTTPException
 from starlette.requests import ClientDisconnect
 from starlette.responses import Response
 
-from segcore.errors import InvalidParameters
+from segcore.errors import InvalidParameters, PartLocked
 from worker.jobs.attempts import FAILURE_CODES
 from worker.jobs.objects.durable import is_disk_full
 from worker.jobs.objects.interface import StoreError
 from worker.jobs.queue.connection import QueueError
+from worker.jobs.store.revisions import RevisionDamaged, UnknownRevision
 from worker.jobs.store.store import UnknownJob
 
 log = logging.getLogger("cleave.service")
@@ -39,15 +41,24 @@ _CODES: dict[str, tuple[int, str]] = {
     "batch_not_found": (404, "There is no batch with this id, or it belongs to another API key."),
     "method_not_allowed": (405, "This path does not support this method: see the Allow header."),
     "not_acceptable": (406, "Labels are not available in this format: accept another one, or use ?format=."),
+    "revision_not_found": (404, "The job has no revision of this number: GET its revisions lists them."),
+    "edit_not_found": (404, "The job has no edit of this id in the queue: edits within a request have none."),
     "too_slow": (408, "The upload stalled or is too slow: send it again over a better connection."),
     "not_finished": (409, "There is no result yet: poll the job until its status is succeeded."),
     "already_finished": (409, "The job has ended: delete it to remove its files."),
     "job_failed": (409, "The job failed and has no result; error contains the reason."),
     "job_canceled": (409, "The job was canceled and has no result: submit the mesh again."),
     "idempotency_key_spent": (409, "The job of this Idempotency-Key was deleted: use another key."),
+    "revision_conflict": (
+        409,
+        "Somebody has edited the job since the revision that is named as base: revision is the newest one.",
+    ),
+    "part_locked": (409, "The edit would change a part that is locked: unlock it first."),
     "job_deleted": (410, "This job was deleted with its files: submit the mesh again."),
     "input_lost": (410, "The store no longer has the file that was sent: submit it again."),
+    "revision_damaged": (410, "The store has lost this revision: restore an earlier one."),
     "length_required": (411, "The request has no body: send the mesh, with its Content-Length or in chunks."),
+    "precondition_failed": (412, "The labels have changed since the ETag in If-Match: revision is the newest one."),
     "too_large": (413, "The mesh, the batch or a field is larger than this installation accepts."),
     "unsupported_media_type": (415, "The format of the body is not supported: see GET /v1/formats."),
     "range_not_satisfiable": (416, "The range lies outside the result."),
@@ -61,7 +72,7 @@ _CODES: dict[str, tuple[int, str]] = {
     "invalid_request": (422, "A value in the path, the query or a header is not valid; detail names it."),
     "idempotency_key_reused": (
         422,
-        "This Idempotency-Key was sent with another mesh or other parameters: use a new key.",
+        "This Idempotency-Key was sent with another mesh, other parameters or another edit: use a new key.",
     ),
     "queue_full": (429, "Too many jobs are waiting: submit again after Retry-After."),
     "too_many_jobs": (429, "The caller has too many unfinished jobs: submit again when some have ended."),
@@ -69,12 +80,27 @@ _CODES: dict[str, tuple[int, str]] = {
     "internal_error": (500, "The server failed with an internal error: its log has the details."),
     "queue_unavailable": (503, "The queue does not answer: try again after Retry-After."),
     "store_unavailable": (503, "The store does not answer: try again after Retry-After."),
+    "guide_not_ready": (
+        503,
+        "The mesh is being prepared for its first preview: send the edit again after Retry-After.",
+    ),
+    "preview_too_slow": (
+        503,
+        "The preview takes more time or memory than a request may: send the edit itself, which may wait in the queue.",
+    ),
     "insufficient_storage": (507, "The disk of the server is full: try again later or inform the operator."),
 }
 STATUS = {code: status for code, (status, _) in _CODES.items()}
 MEANING = {code: sentence for code, (_, sentence) in _CODES.items()}
 # Of the header Retry-After; set by hand.
-_RETRY_AFTER_S = {"not_finished": 1, "queue_unavailable": 5, "store_unavailable": 5, "insufficient_storage": 60}
+_RETRY_AFTER_S = {
+    "not_finished": 1,
+    "guide_not_ready": 2,
+    "preview_too_slow": 5,
+    "queue_unavailable": 5,
+    "store_unavailable": 5,
+    "insufficient_storage": 60,
+}
 
 
 class JobError(BaseModel):
@@ -90,6 +116,17 @@ def _drop_default(schema: JsonDict) -> None:
     del schema["default"]  # generators of types would take the field for one that is always there
 
 
+class RevisionDocument(BaseModel):
+    """A revision: the parts after an edit."""
+
+    number: int = Field(examples=[3])
+    parent: int = Field(description="The revision that was edited; 0 is the automatic result.", examples=[2])
+    made_at: datetime
+    made_by: str | None = Field(description="The name of the API key of the request; null if there was none.")
+    what: str = Field(description="The operations, in words.", examples=["merge parts 1, 4"])
+    segments: int = Field(description="The number of its parts.", examples=[7])
+
+
 class ProblemDocument(BaseModel):
     """Problem details as in RFC 9457."""
 
@@ -103,6 +140,11 @@ class ProblemDocument(BaseModel):
         description="With code job_failed: why the job failed. Otherwise absent.",
         json_schema_extra=_drop_default,
     )
+    revision: RevisionDocument | SkipJsonSchema[None] = Field(
+        default=None,
+        description="With code revision_conflict or precondition_failed: the newest revision. Otherwise absent.",
+        json_schema_extra=_drop_default,
+    )
 
 
 class Problem(Exception):  # noqa: N818
@@ -113,11 +155,13 @@ class Problem(Exception):  # noqa: N818
         code: str,
         detail: str | None = None,
         error: JobError | None = None,
+        revision: RevisionDocument | None = None,
         headers: Mapping[str, str] | None = None,
     ) -> None:
         self.code = code
         self.detail = MEANING[code] if detail is None else detail
         self.error = error
+        self.revision = revision
         self.headers = headers or {}
         super().__init__(self.detail)
 
@@ -127,6 +171,8 @@ class Problem(Exception):  # noqa: N818
         document = _document(self.code, self.detail)
         if self.error is not None:
             document["error"] = self.error.model_dump()
+        if self.revision is not None:
+            document["revision"] = self.revision.model_dump(mode="json")
         own = {"Retry-After": str(_RETRY_AFTER_S[self.code])} if self.code in _RETRY_AFTER_S else {}
         if self.code == "unauthorized":
             own["WWW-Authenticate"] = "Bearer"
@@ -142,6 +188,12 @@ def translate(exception: Exception) -> Problem:
             return exception
         case UnknownJob():
             return Problem("job_not_found", "There is no job with this id: it was deleted, or the id is wrong.")
+        case UnknownRevision():
+            return Problem("revision_not_found")
+        case RevisionDamaged():
+            return Problem("revision_damaged")
+        case PartLocked():
+            return Problem("part_locked", str(exception))
         case InvalidParameters():
             return Problem("invalid_parameters", str(exception))
         case RequestValidationError():
@@ -174,6 +226,9 @@ def handle_problems(app: FastAPI) -> None:
     kinds: tuple[type[Exception], ...] = (
         Problem,
         UnknownJob,
+        UnknownRevision,
+        RevisionDamaged,
+        PartLocked,
         InvalidParameters,
         RequestValidationError,
         HTTPException,

@@ -6,7 +6,8 @@ from dataclasses import fields
 from threading import Lock
 from typing import Any, Generic, TypeVar
 
-from segcore.io import Segmentation, read_result
+from segcore.io import Edited, Segmentation, read_result
+from worker.jobs.store.revisions import RevisionDamaged
 from worker.jobs.store.store import JobStore
 
 Key = TypeVar("Key", bound=Hashable)
@@ -54,7 +55,7 @@ class ResultCache:
 
     def __init__(self, store: JobStore, max_opened_bytes: int, max_rendered_bytes: int) -> None:
         self._store = store
-        self._opened: LruCache[str, Segmentation] = LruCache(max_opened_bytes, _size_bytes)
+        self._opened: LruCache[tuple[str, int], Segmentation] = LruCache(max_opened_bytes, _size_bytes)
         self._rendered: LruCache[tuple[str, str], bytes] = LruCache(max_rendered_bytes, len)
 
     def get(self, job_id: str) -> Segmentation:
@@ -65,7 +66,18 @@ class ResultCache:
         UnknownJob
             If the job was deleted.
         """
-        return self._opened.get(job_id, lambda: self._read(job_id))
+        return self._opened.get((job_id, 0), lambda: self._read(job_id))
+
+    def revised(self, job_id: str, number: int) -> Segmentation:
+        """Return the mesh of a job with the parts of a revision: as the hierarchy, and as they were edited.
+
+        Raises
+        ------
+        UnknownJob
+            If the job was deleted.
+        UnknownRevision, RevisionDamaged
+        """
+        return self._opened.get((job_id, number), lambda: self._read_revision(job_id, number))
 
     def rendered(self, job_id: str, name: str, render: Callable[[], bytes]) -> bytes:
         """Return a file rendered from a result; ``name`` must identify the format and all of its options."""
@@ -73,15 +85,23 @@ class ResultCache:
 
     def drop(self, job_id: str) -> None:
         """Remove everything that belongs to a job."""
-        self._opened.drop(lambda key: key == job_id)
+        self._opened.drop(lambda key: key[0] == job_id)
         self._rendered.drop(lambda key: key[0] == job_id)
 
     def _read(self, job_id: str) -> Segmentation:
         with self._store.results.open(job_id) as file:
             return read_result(file)
 
+    def _read_revision(self, job_id: str, number: int) -> Segmentation:
+        partition, mesh = self._store.revisions.partition(job_id, number), self.get(job_id).mesh
+        if len(partition.labels) != len(mesh.faces):
+            raise RevisionDamaged(number)
+        return Segmentation(mesh, partition.hierarchy(mesh), Edited(partition))
+
 
 def _size_bytes(segmentation: Segmentation) -> int:
-    parts: tuple[Any, ...] = (segmentation.mesh, segmentation.hierarchy)
+    parts: list[Any] = [segmentation.mesh, segmentation.hierarchy]
+    if segmentation.edited is not None:  # the mesh is that of the job
+        parts = [segmentation.hierarchy, segmentation.edited.partition]
     values = [getattr(part, field.name) for part in parts for field in fields(part)]
     return sum(getattr(value, "nbytes", 0) for value in values)

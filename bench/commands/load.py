@@ -3,6 +3,7 @@
 busy     status polls, uploads and memory while both workers segment; needs wrk
 waiting  the overhead of Prefer: wait=10
 levels   labels at any number of segments
+edits    the round trip of an edit, at 20,000 faces
 
 Each measurement starts `cleave serve` with its own data folder.
 """
@@ -11,12 +12,15 @@ from __future__ import annotations
 
 import argparse
 from collections.abc import Callable
+from functools import partial
+from typing import Any
 
 import httpx
 
 import segcore
 from bench.errors import BenchmarkError
 from bench.load import measures
+from bench.load.edit_times import EDITS, edit_times, finished_job
 from bench.load.installation import installed
 
 _POLLS_S = 60
@@ -60,7 +64,24 @@ def _levels() -> None:
                 _print(f"segments=k, {faces} faces, {form}", measures.levels(client, faces, form))
 
 
-_MEASURES: dict[str, Callable[[], None]] = {"busy": _busy, "waiting": _waiting, "levels": _levels}
+def _edits() -> None:
+    with installed(workers=1) as installation, httpx.Client(base_url=installation.url, timeout=600) as client:
+        path, faces = finished_job(client, 20_000)
+        for name, operation in EDITS.items():
+            times = edit_times(client, path, partial(_of_mesh, operation, faces), 21)
+            _print(f"{name}, {faces:,} faces", times)
+
+
+def _of_mesh(operation: Callable[[int, int], dict[str, Any]], faces: int, number: int) -> dict[str, Any]:
+    return operation(number, faces)
+
+
+_MEASURES: dict[str, Callable[[], None]] = {
+    "busy": _busy,
+    "waiting": _waiting,
+    "levels": _levels,
+    "edits": _edits,
+}
 
 
 def _print(name: str, found: str) -> None:

@@ -6,7 +6,7 @@ with Client("http://127.0.0.1:8000") as client:
 """
 
 from cleave.client.async_client import AsyncClient
-from cleave.client.documents import Job, JobError, Labels, Segmentation, Status
+from cleave.client.documents import Edited, Job, JobError, Labels, Part, Revision, Segmentation, Status
 from cleave.client.errors import ClientError, JobEnded, RequestRefused, ServerUnreachable
 from cleave.client.sync_client import Client
 
@@ -14,11 +14,14 @@ __all__ = [
     "AsyncClient",
     "Client",
     "ClientError",
+    "Edited",
     "Job",
     "JobEnded",
     "JobError",
     "Labels",
+    "Part",
     "RequestRefused",
+    "Revision",
     "Segmentation",
     "ServerUnreachable",
     "Status",

@@ -2,13 +2,14 @@
 
 import asyncio
 import os
-from collections.abc import AsyncIterator, Mapping
+from collections.abc import AsyncIterator, Mapping, Sequence
 from types import TracebackType
-from typing import Any
+from typing import Any, Literal
 
 import httpx
+from numpy.typing import ArrayLike
 
-from cleave.client import flows
+from cleave.client import edit_flows, flows
 from cleave.client.connection import (
     CHUNK_BYTES,
     Companions,
@@ -19,7 +20,7 @@ from cleave.client.connection import (
     submission_of,
     texts,
 )
-from cleave.client.documents import Job, Segmentation, Status
+from cleave.client.documents import Edited, Job, Revision, Segmentation, Status
 from cleave.client.flows import Call, Flow, Value
 
 
@@ -132,16 +133,54 @@ class AsyncClient:
             if cursor is None:
                 return
 
-    async def labels(self, job: Job, segments: int | None = None, *, granularity: float | None = None) -> Segmentation:
-        """Return the labels of a job that has succeeded."""
-        return await self._run(flows.labels(job, flows.level_of(segments, granularity)))
+    async def labels(
+        self,
+        job: Job,
+        segments: int | None = None,
+        *,
+        granularity: float | None = None,
+        revision: int | Literal["latest"] | None = None,
+    ) -> Segmentation:
+        """Return the labels of a job that has succeeded, at a level or of a revision."""
+        return await self._run(flows.labels(job, flows.level_of(segments, granularity, revision)))
+
+    async def edit(
+        self,
+        job_id: str,
+        operations: Sequence[Mapping[str, Any]],
+        *,
+        base: int | None = None,
+        level: Mapping[str, Any] | None = None,
+        preview: bool = False,
+    ) -> Edited:
+        """Edit the parts of a job, which makes its next revision.
+
+        Parameters
+        ----------
+        operations : as in the body of ``POST /v1/jobs/{job_id}/edits``.
+        base : the revision that is edited; None for the newest one, whoever has made it.
+        level : the level of the automatic result that is edited if there is no revision yet.
+        preview : do not store the parts.
+        """
+        return await self._run(edit_flows.edit(job_id, operations, base, level, preview))
+
+    async def put_labels(self, job_id: str, labels: ArrayLike, *, base: int | None = None) -> Edited:
+        """Store labels (F,) that were made elsewhere as the next revision, after ``base`` as in :meth:`edit`."""
+        return await self._run(edit_flows.put_labels(job_id, labels, base))
+
+    async def revisions(self, job_id: str) -> list[Revision]:
+        """Return the revisions of a job, newest first."""
+        return await self._run(edit_flows.revisions(job_id))
 
     async def hierarchy(self, job_id: str) -> dict[str, Any]:
         """Return the tree of cuts as the API documents it."""
         return await self._run(flows.hierarchy(job_id))
 
     async def download(self, job_id: str, result: str, target: str | os.PathLike[str], **params: object) -> None:
-        """Save a result, such as ``model.glb``, in a file, which is written completely or not at all."""
+        """Save a result, such as ``model.glb``, in a file, which is written completely or not at all.
+
+        ``params`` are those of the query, such as ``revision="latest"``.
+        """
         path = f"/v1/jobs/{job_id}/{result}"
         partial = partial_path(target)
         try:

@@ -53,6 +53,38 @@ class Segmentation:
     labels: Labels
 
 
+@dataclass(frozen=True, slots=True)
+class Revision:
+    """The parts of a job after an edit."""
+
+    number: int  # 1, 2, ...
+    parent: int  # the revision that was edited; 0 is the automatic result
+    made_at: datetime
+    made_by: str | None  # the name of the API key
+    what: str  # the operations, in words
+    segments: int  # the number of parts
+
+
+@dataclass(frozen=True, slots=True)
+class Part:
+    """A part of a revision."""
+
+    name: str
+    color: str  # #rrggbb
+    class_name: str
+    locked: bool
+    faces: int
+
+
+@dataclass(frozen=True, slots=True)
+class Edited:
+    """The parts after an edit; part k has the label k."""
+
+    revision: Revision | None  # None for a preview
+    parts: list[Part]
+    document: Mapping[str, Any]  # the JSON document, with the faces that have changed if the edit did not wait
+
+
 def job_from(document: Mapping[str, Any]) -> Job:
     error, mesh = document["error"], document["mesh"]
     finished = document["finished_at"]
@@ -72,3 +104,22 @@ def job_from(document: Mapping[str, Any]) -> Job:
         error=None if error is None else JobError(error["code"], error["message"]),
         document=document,
     )
+
+
+def revision_from(document: Mapping[str, Any]) -> Revision:
+    return Revision(
+        number=document["number"],
+        parent=document["parent"],
+        made_at=datetime.fromisoformat(document["made_at"]),
+        made_by=document["made_by"],
+        what=document["what"],
+        segments=document["segments"],
+    )
+
+
+def edited_from(document: Mapping[str, Any]) -> Edited:
+    revision = document["revision"]
+    parts = [
+        Part(part["name"], part["color"], part["class"], part["locked"], part["faces"]) for part in document["parts"]
+    ]
+    return Edited(None if revision is None else revision_from(revision), parts, document)

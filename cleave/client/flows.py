@@ -5,7 +5,7 @@ import secrets
 from collections.abc import Generator, Mapping, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
-from typing import Any, TypeAlias, TypeVar
+from typing import Any, Literal, TypeAlias, TypeVar
 
 import httpx
 import numpy as np
@@ -89,9 +89,11 @@ def submit(submission: Submission) -> Flow[Job]:
     return job_from((yield submission.call(0.0)).json())
 
 
-def level_of(segments: int | None, granularity: float | None) -> dict[str, str]:
-    """Return the query parameters for a number of segments or a granularity."""
-    wanted = {"segments": segments, "granularity": granularity}
+def level_of(
+    segments: int | None, granularity: float | None, revision: int | Literal["latest"] | None = None
+) -> dict[str, str]:
+    """Return the query parameters for a number of segments, a granularity or a revision."""
+    wanted = {"segments": segments, "granularity": granularity, "revision": revision}
     return {name: str(value) for name, value in wanted.items() if value is not None}
 
 

@@ -1,1 +1,1 @@
-"""Corrections of a segmentation by hand: the part around marked faces, and borders between parts."""
+"""Corrections by hand: the part around marked faces, borders between parts, and the operations of a person."""

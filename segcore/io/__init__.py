@@ -4,21 +4,32 @@ Everything that the service, the worker and the command line use is exported her
 (``FORMATS``, ``read_mesh``, ``ReadLimits``), the files that belong to a mesh file (``neighbours_of``,
 ``referenced_files``), the formats of segmentations (``WRITERS``, ``writer_for`` and their functions by name), the input
 with everything that it has, divided by part (``write_kept``, ``write_kept_parts``), plain
-meshes (``write_mesh``), labels and the hierarchy as JSON values, ``.cleave`` files (``write_result``, ``read_result``)
-and pictures (``draw``, ``write_png``).
+meshes (``write_mesh``), labels and the hierarchy as JSON values, ``.cleave`` files (``write_result``, ``read_result``),
+edited parts as bytes (``encode_partition``, ``decode_partition``) and pictures (``draw``, ``write_png``).
 """
 
 from segcore.io.converting import with_coordinates
+from segcore.io.edited.partition_file import decode_partition, encode_partition, part_document
+from segcore.io.edited.result_members import Edited, RevisionNote
 from segcore.io.file_sets import is_hidden, is_mesh_name, model_in_folder, name_in_set
 from segcore.io.formats import FORMATS, Format, declared_format
 from segcore.io.gltf.writer import Layout, write_glb
 from segcore.io.keeping import Original, PartFormat, write_kept, write_kept_parts
-from segcore.io.labels import hierarchy_document, labels_document, runs_document, write_json, write_npy, write_seg
+from segcore.io.labels import (
+    hierarchy_document,
+    labels_document,
+    runs_document,
+    runs_of,
+    write_json,
+    write_npy,
+    write_seg,
+)
 from segcore.io.limits import ReadLimits
 from segcore.io.mesh_writer import write_mesh
 from segcore.io.names import DEFAULT_SEGMENT_NAME, SegmentNames
 from segcore.io.obj.materials_writer import write_mtl, write_obj_archive
 from segcore.io.obj.writer import write_obj
+from segcore.io.palette import SegmentColors, segment_color_names
 from segcore.io.parts.writer import write_parts
 from segcore.io.picture import draw, write_png
 from segcore.io.ply.writer import PlyColors, write_ply
@@ -33,18 +44,23 @@ __all__ = [
     "FORMATS",
     "WRITERS",
     "WRITE_OPTIONS",
+    "Edited",
     "Format",
     "Layout",
     "Original",
     "PartFormat",
     "PlyColors",
     "ReadLimits",
+    "RevisionNote",
+    "SegmentColors",
     "SegmentNames",
     "Segmentation",
     "WriteOption",
     "Writer",
     "declared_format",
+    "decode_partition",
     "draw",
+    "encode_partition",
     "hierarchy_document",
     "is_hidden",
     "is_mesh_name",
@@ -52,10 +68,13 @@ __all__ = [
     "model_in_folder",
     "name_in_set",
     "neighbours_of",
+    "part_document",
     "read_mesh",
     "read_result",
     "referenced_files",
     "runs_document",
+    "runs_of",
+    "segment_color_names",
     "with_coordinates",
     "write_3mf",
     "write_glb",

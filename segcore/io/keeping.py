@@ -25,6 +25,7 @@ from segcore.io.names import SegmentNames, file_stems, segment_names
 from segcore.io.obj.materials import material_files
 from segcore.io.obj.materials_writer import write_obj_archive
 from segcore.io.obj.writer import FaceMaterials
+from segcore.io.palette import SegmentColors
 from segcore.io.parts.writer import write_parts
 from segcore.io.reading import mesh_of_model, open_model
 from segcore.mesh import Mesh
@@ -54,6 +55,7 @@ def write_kept(
     *,
     mesh: Mesh | None = None,
     names: SegmentNames | None = None,
+    part_colors: SegmentColors | None = None,
     all_levels: bool = False,
 ) -> tuple[str, ...]:
     """Write the file that a mesh was read from as GLB, with its faces divided by part and everything else kept.
@@ -80,7 +82,7 @@ def write_kept(
     target : a binary file; needs ``write`` only.
     segments : the number of segments K, by default the automatic one.
     mesh : what was segmented; if it is given, the file must have the same faces and vertices.
-    names : names of segments by label, in place of ``segment k``.
+    names, part_colors : names and colours of segments by label, in place of ``segment k`` and the fixed colours.
     all_levels : divide by the leaves of the hierarchy, with a variant for every level.
 
     Returns
@@ -99,7 +101,9 @@ def write_kept(
     limits = original.limits or ReadLimits()
     kept = _kept_document(original, limits, hierarchy, mesh)
     with _flat_enough():
-        return write_kept_document(target, kept, hierarchy, segments, limits, names=names, all_levels=all_levels)
+        return write_kept_document(
+            target, kept, hierarchy, segments, limits, names=names, part_colors=part_colors, all_levels=all_levels
+        )
 
 
 def write_kept_parts(
@@ -182,6 +186,7 @@ def write_obj_archive_as(
     *,
     keep: Original | None = None,
     names: SegmentNames | None = None,
+    part_colors: SegmentColors | None = None,
     unit: str | None = None,
     up: str | None = None,
 ) -> None:
@@ -202,7 +207,7 @@ def write_obj_archive_as(
         As of :func:`write_obj_archive` and :func:`write_kept`.
     """
     if keep is None:
-        write_obj_archive(target, mesh, hierarchy, segments, names=names, unit=unit, up=up)
+        write_obj_archive(target, mesh, hierarchy, segments, names=names, part_colors=part_colors, unit=unit, up=up)
         return
     limits = keep.limits or ReadLimits()
     model = open_model(keep.source, keep.format, limits, neighbours=keep.neighbours)
@@ -233,6 +238,7 @@ def write_glb_as(
     keep: Original | None = None,
     all_levels: bool = False,
     names: SegmentNames | None = None,
+    part_colors: SegmentColors | None = None,
     **options: Any,
 ) -> tuple[str, ...]:
     """Write a mesh as GLB, by :func:`write_glb`, or :func:`write_kept` if the file that it was read from is given.
@@ -245,12 +251,15 @@ def write_glb_as(
         As in these functions.
     """
     if keep is None:
-        write_glb(target, mesh, hierarchy, segments, all_levels=all_levels, names=names, **options)
+        options |= {"names": names, "part_colors": part_colors}
+        write_glb(target, mesh, hierarchy, segments, all_levels=all_levels, **options)
         return ()
     given = [name for name, value in options.items() if value != _GLB_DEFAULTS.get(name)]
     if given:
         raise InvalidParameters(f"A file that keeps everything of its input has no option {' and '.join(given)}.")
-    return write_kept(target, keep, hierarchy, segments, mesh=mesh, names=names, all_levels=all_levels)
+    return write_kept(
+        target, keep, hierarchy, segments, mesh=mesh, names=names, part_colors=part_colors, all_levels=all_levels
+    )
 
 
 def _kept_document(

@@ -43,10 +43,14 @@ def runs_document(hierarchy: Hierarchy, segments: int | None = None) -> dict[str
     InvalidParameters
         If ``segments`` is not in 1..max_segments.
     """
-    labels = hierarchy.labels(segments)
+    return runs_of(hierarchy.labels(segments), len(hierarchy.segment_nodes(segments)))
+
+
+def runs_of(labels: IntArray, count: int) -> dict[str, Any]:
+    """Return :func:`runs_document` for (F,) labels 0..count - 1."""
     first = np.concatenate([[0], np.flatnonzero(np.diff(labels)) + 1])
     return {
-        "segments": len(hierarchy.segment_nodes(segments)),
+        "segments": count,
         "faces": len(labels),
         "values": labels[first].tolist(),
         "lengths": np.diff(first, append=len(labels)).tolist(),

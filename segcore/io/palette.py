@@ -1,11 +1,15 @@
 """Colours of segments: a fixed one for each label, far apart also with a colour vision deficiency."""
 
+from collections.abc import Mapping
 from functools import cache
+from typing import TypeAlias
 
 import numpy as np
 from numpy.typing import NDArray
 
 from segcore.arrays import FloatArray
+
+SegmentColors: TypeAlias = Mapping[int, str]  # #rrggbb by label; labels that do not exist are ignored
 
 # Okabe and Ito, Color Universal Design, 2008: seven colours chosen together with people with such a deficiency.
 _FIRST = ("56b4e9", "e69f00", "009e73", "cc79a7", "f0e442", "0072b2", "d55e00")
@@ -42,19 +46,28 @@ _LMS_TO_OKLAB = np.array(
 )
 
 
-def segment_colors(n: int) -> FloatArray:
-    """(n, 3) sRGB colours in 0..1 of the labels 0..n - 1.
+def segment_colors(n: int, chosen: SegmentColors | None = None) -> FloatArray:
+    """(n, 3) sRGB colours in 0..1 of the labels 0..n - 1: those that are chosen, else a fixed one for each label.
 
-    The colour of a label does not depend on ``n``. The first 256 colours differ, then they repeat. After the first
-    seven each is the candidate that is farthest from all colours before it: by the smallest distance in OKLab over the
-    kinds of colour vision.
+    The fixed colour of a label does not depend on ``n``. The first 256 colours differ, then they repeat. After the
+    first seven each is the candidate that is farthest from all colours before it: by the smallest distance in OKLab
+    over the kinds of colour vision.
     """
-    return _sequence()[np.arange(n) % _DISTINCT]
+    colors = _sequence()[np.arange(n) % _DISTINCT]
+    for label, color in (chosen or {}).items():
+        if 0 <= label < n:
+            colors[label] = np.array(list(bytes.fromhex(color.removeprefix("#")))) / 255
+    return colors
 
 
-def color_bytes(n: int) -> NDArray[np.uint8]:
+def color_bytes(n: int, chosen: SegmentColors | None = None) -> NDArray[np.uint8]:
     """(n, 3) the same colours in 0..255."""
-    return np.round(255 * segment_colors(n)).astype(np.uint8)
+    return np.round(255 * segment_colors(n, chosen)).astype(np.uint8)
+
+
+def segment_color_names(n: int) -> list[str]:
+    """Return the fixed colours of the labels 0..n - 1 as ``#rrggbb``."""
+    return [f"#{bytes(color).hex()}" for color in color_bytes(n)]
 
 
 def linear_rgb(srgb: FloatArray) -> FloatArray:

@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 
 from segcore.arrays import FloatArray, IntArray, transformed
 from segcore.coordinates import Coordinates
-from segcore.io.palette import segment_colors
+from segcore.io.palette import SegmentColors, segment_colors
 from segcore.mesh import Mesh, face_normals_and_areas
 
 ByteArray = np.ndarray[tuple[int, ...], np.dtype[np.uint8]]
@@ -29,7 +29,15 @@ _CLEAREST = 1e-6  # opacity of a pixel without samples, whose colour does not ma
 _PNG_LEVEL = 9  # pictures are small: the best compression of zlib
 
 
-def draw(mesh: Mesh, labels: IntArray, size: int = 512, azimuth: float = 30.0, elevation: float = 20.0) -> ByteArray:
+def draw(
+    mesh: Mesh,
+    labels: IntArray,
+    size: int = 512,
+    azimuth: float = 30.0,
+    elevation: float = 20.0,
+    *,
+    part_colors: SegmentColors | None = None,
+) -> ByteArray:
     """Draw a mesh in the colours of its segments, with dark lines between them.
 
     Parameters
@@ -38,6 +46,7 @@ def draw(mesh: Mesh, labels: IntArray, size: int = 512, azimuth: float = 30.0, e
     size : width and height in pixels.
     azimuth, elevation : direction to the viewer in degrees: about the vertical axis, from the front of the mesh (+z, or
         -y if z points up) to its +x, and above the horizontal plane.
+    part_colors : colours of segments by label, in place of the fixed ones.
 
     Returns
     -------
@@ -54,7 +63,7 @@ def draw(mesh: Mesh, labels: IntArray, size: int = 512, azimuth: float = 30.0, e
     screen[:, :2] = screen[:, :2] * [1, -1] + 0.5 * resolution
     normals = _corner_normals(mesh.faces, face_normals_and_areas(mesh.corners)[0], len(mesh.vertices))
     label, light = _rasterize(screen, mesh.faces, labels, transformed(normals, view), resolution)
-    return _shaded(label, light, size)
+    return _shaded(label, light, size, part_colors)
 
 
 def _view(azimuth: float, elevation: float) -> FloatArray:
@@ -65,10 +74,10 @@ def _view(azimuth: float, elevation: float) -> FloatArray:
     return np.stack([right, np.cross(towards, right), towards])
 
 
-def _shaded(label: IntArray, light: FloatArray, size: int) -> ByteArray:
+def _shaded(label: IntArray, light: FloatArray, size: int, chosen: SegmentColors | None) -> ByteArray:
     """(size, size, 4) pixels of the samples."""
     covered = label != _BACKGROUND
-    colors = segment_colors(int(label.max()) + 1)[label] if covered.any() else np.zeros((*label.shape, 3))
+    colors = segment_colors(int(label.max()) + 1, chosen)[label] if covered.any() else np.zeros((*label.shape, 3))
     border = np.zeros(label.shape, dtype=bool)
     for axis in (0, 1):
         behind = np.roll(label, 1, axis)

@@ -20,6 +20,14 @@ Then those that the appearance of the mesh has (A rows: one for each vertex, the
     extra_vertex.npy      (A - V,) int32    face_group.npy   (F,) int32
     group_names.json      [str, ...]
 
+Then, if a person has edited the parts:
+
+    edits.json            {"revision": int, "parts": [{"name": str, "color": str or null, "class": str,
+                           "locked": bool}, ...],
+                           "revisions": [{"number": int, "parent": int, "made_at": str, "made_by": str or null,
+                                          "what": str, "parts": int}, ...]}
+    edited_labels.npy     (F,) int32, the part of each face, an index of "parts"
+
 The arrays are little-endian, in C order, in NumPy's ``.npy`` format 1.0, and mean what the attributes of the same names
 of Mesh, Hierarchy and Appearance mean. A program may ignore unknown members. Nothing in the file is ever unpickled.
 Files of earlier versions of Cleave have no ``limit_reached``, ``unit`` and ``up``, which are then not known, and no
@@ -27,33 +35,28 @@ Files of earlier versions of Cleave have no ``limit_reached``, ``unit`` and ``up
 """
 
 import json
-import math
 import os
-import re
 import zipfile
 from dataclasses import asdict, dataclass, fields
 from types import NoneType
 from typing import Any, BinaryIO, get_args
 
 import numpy as np
-from numpy.typing import NDArray
 
 from segcore.appearance import Appearance
+from segcore.arrays import IntArray
 from segcore.coordinates import Axis, Coordinates, Unit
 from segcore.errors import InvalidMesh, InvalidParameters
 from segcore.hierarchy import Hierarchy
 from segcore.io.archive import member, write_array
+from segcore.io.edited.members import read_array, read_json
+from segcore.io.edited.result_members import Edited, read_edited, write_edited
 from segcore.mesh import Mesh
 from segcore.nary import numbered_steps
 
 _FORMAT, _VERSION = "cleave-result", 1
 _HEADER = "header.json"
 _LARGEST_HEADER = 4096  # bytes; the header has about 100
-_NPY_HEADER = re.compile(
-    rb"\x93NUMPY\x01\x00.."
-    rb"\{'descr': '(?P<dtype>...)', 'fortran_order': False, 'shape': \((?P<shape>\d{1,12},(?: \d{1,12})?)\), \} *\n",
-    re.DOTALL,
-)
 _MESH_ARRAYS = {"vertices": "<f8", "faces": "<i4", "source_polygon": "<i4"}
 _TREE_ARRAYS = {
     "split_node": "<i4", "cut_value": "<f8", "area": "<f8", "face_count": "<i4", "face_leaf": "<i4", "step": "<i4",
@@ -71,21 +74,23 @@ class Segmentation:
 
     mesh: Mesh
     hierarchy: Hierarchy
+    edited: Edited | None = None  # the parts as a person has edited them
 
 
-def write_result(target: BinaryIO, mesh: Mesh, hierarchy: Hierarchy) -> None:
+def write_result(target: BinaryIO, mesh: Mesh, hierarchy: Hierarchy, edited: Edited | None = None) -> None:
     """Write a mesh and its hierarchy; the same input gives the same bytes.
 
     Parameters
     ----------
     target : a binary file open for writing.
+    edited : parts that a person has edited.
 
     Raises
     ------
     InvalidParameters
         If the hierarchy is of another mesh.
     """
-    if len(hierarchy.face_leaf) != len(mesh.faces):
+    if len(hierarchy.face_leaf) != len(mesh.faces) or len(_labels_of(edited, hierarchy)) != len(mesh.faces):
         raise InvalidParameters(
             f"The hierarchy has {len(hierarchy.face_leaf)} faces and the mesh {len(mesh.faces)}: "
             "give the mesh that was segmented."
@@ -106,6 +111,8 @@ def write_result(target: BinaryIO, mesh: Mesh, hierarchy: Hierarchy) -> None:
             write_array(archive, name, getattr(hierarchy, name), dtype)
         if mesh.appearance is not None:
             _write_appearance(archive, mesh.appearance)
+        if edited is not None:
+            write_edited(archive, edited)
 
 
 def read_result(source: str | os.PathLike[str] | BinaryIO) -> Segmentation:
@@ -126,6 +133,10 @@ def read_result(source: str | os.PathLike[str] | BinaryIO) -> Segmentation:
         with open(source, "rb") as file:
             return _read(file)
     return _read(source)
+
+
+def _labels_of(edited: Edited | None, hierarchy: Hierarchy) -> IntArray:
+    return hierarchy.face_leaf if edited is None else edited.partition.labels
 
 
 def _write_appearance(archive: zipfile.ZipFile, look: Appearance) -> None:
@@ -158,7 +169,7 @@ def _unpack(archive: zipfile.ZipFile) -> Segmentation:
     present = set(archive.namelist())
     mesh_arrays, tree_arrays = (
         {
-            name: _read_array(archive, name, dtype)
+            name: read_array(archive, name, dtype)
             for name, dtype in arrays.items()
             if name not in _OPTIONAL or f"{name}.npy" in present
         }
@@ -176,16 +187,16 @@ def _unpack(archive: zipfile.ZipFile) -> Segmentation:
         **tree_arrays, automatic_segments=header["automatic_segments"], limit_reached=header.get("limit_reached")
     )
     _check_tree(hierarchy, len(mesh.faces))
-    return Segmentation(mesh, hierarchy)
+    return Segmentation(mesh, hierarchy, read_edited(archive, len(mesh.faces)))
 
 
 def _read_appearance(archive: zipfile.ZipFile, present: set[str]) -> Appearance | None:
     arrays = {
-        name: _read_array(archive, name, dtype) for name, dtype in _LOOK_ARRAYS.items() if f"{name}.npy" in present
+        name: read_array(archive, name, dtype) for name, dtype in _LOOK_ARRAYS.items() if f"{name}.npy" in present
     }
     if not arrays:
         return None
-    names = _read_json(archive, _GROUP_NAMES) if "face_group" in arrays else []
+    names = read_json(archive, _GROUP_NAMES) if "face_group" in arrays else []
     if not isinstance(names, list) or not all(isinstance(name, str) for name in names):
         raise InvalidMesh("The names of groups in the .cleave file are damaged: make the file again.")
     return Appearance(**arrays, group_names=tuple(names))
@@ -200,7 +211,7 @@ def _coordinates(header: dict[str, Any]) -> Coordinates:
 
 
 def _read_header(archive: zipfile.ZipFile) -> dict[str, Any]:
-    header = _read_json(archive, _HEADER, _LARGEST_HEADER)
+    header = read_json(archive, _HEADER, _LARGEST_HEADER)
     if not isinstance(header, dict) or header.get("format") != _FORMAT:
         raise InvalidMesh("This ZIP archive is not a .cleave file: its header has another format.")
     if header.get("version") != _VERSION:
@@ -213,31 +224,6 @@ def _read_header(archive: zipfile.ZipFile) -> dict[str, Any]:
     if type(header.get("limit_reached")) not in (bool, NoneType):
         raise InvalidMesh("limit_reached in the header of the .cleave file is not true, false or null: make it again.")
     return header
-
-
-def _read_json(archive: zipfile.ZipFile, name: str, most: int | None = None) -> Any:
-    try:
-        return json.loads(_read_member(archive, name)[:most])
-    except (ValueError, RecursionError) as error:
-        raise InvalidMesh(f"Member {name!r} of the .cleave file is damaged: make the file again.") from error
-
-
-def _read_member(archive: zipfile.ZipFile, name: str) -> bytes:
-    try:
-        return archive.read(name)
-    except KeyError as error:
-        raise InvalidMesh(f"This is not a .cleave file: it has no member {name!r}.") from error
-
-
-def _read_array(archive: zipfile.ZipFile, name: str, dtype: str) -> NDArray[Any]:
-    data = _read_member(archive, f"{name}.npy")
-    header = _NPY_HEADER.match(data)
-    if header is None or header["dtype"] != dtype.encode():
-        raise InvalidMesh(f"Array {name!r} of the .cleave file has the wrong type or shape: make the file again.")
-    shape = tuple(int(extent) for extent in header["shape"].split(b",") if extent)
-    if len(data) - header.end() != np.dtype(dtype).itemsize * math.prod(shape):
-        raise InvalidMesh(f"Array {name!r} of the .cleave file has the wrong size: make the file again.")
-    return np.frombuffer(data, dtype, offset=header.end()).reshape(shape).copy()
 
 
 def _check_tree(hierarchy: Hierarchy, face_count: int) -> None:

@@ -15,12 +15,24 @@ from segcore.io.result import write_result
 from segcore.io.threemf.writer import write_3mf
 
 WriteOption: TypeAlias = Literal[
-    "names", "all_levels", "features", "layout", "keep", "capped", "part_format", "colors", "unit", "up"
+    "names",
+    "part_colors",
+    "all_levels",
+    "features",
+    "layout",
+    "keep",
+    "capped",
+    "part_format",
+    "colors",
+    "unit",
+    "up",
+    "edited",
 ]
 
 # What each option of a writer does, in the order of the command line.
 WRITE_OPTIONS: dict[WriteOption, str] = {
     "names": "the name of each segment, by its label",
+    "part_colors": "the colour of each segment, by its label",
     "all_levels": "every number of segments in one file",
     "features": "the hierarchy as EXT_structural_metadata, with EXT_mesh_features",
     "layout": "nodes as nested as the hierarchy (tree), or all parts below the root (flat)",
@@ -30,8 +42,10 @@ WRITE_OPTIONS: dict[WriteOption, str] = {
     "colors": "the colours of segments on vertices, divided between segments, or on faces alone",
     "unit": "the unit of the coordinates, such as mm, if that of the mesh is known",
     "up": "the axis that points up, y or z, if that of the mesh is known",
+    "edited": "parts that a person has edited, beside the hierarchy",
 }
 _MODEL: frozenset[WriteOption] = frozenset({"names"})
+_COLORED: frozenset[WriteOption] = _MODEL | {"part_colors"}
 # Of formats whose coordinates have no unit and no axis of their own.
 _FREE: frozenset[WriteOption] = _MODEL | {"unit", "up"}
 
@@ -60,25 +74,27 @@ WRITERS: dict[str, Writer] = {
         ".glb",
         "model/gltf-binary",
         write_glb_as,
-        _MODEL | {"all_levels", "features", "layout", "keep"},
+        _COLORED | {"all_levels", "features", "layout", "keep"},
     ),
-    "ply": Writer("PLY, coloured vertices and a label per face", ".ply", "model/ply", write_ply, _FREE | {"colors"}),
+    "ply": Writer(
+        "PLY, coloured vertices and a label per face", ".ply", "model/ply", write_ply, _FREE | {"colors", "part_colors"}
+    ),
     "obj": Writer("OBJ, an object per segment", ".obj", "model/obj", write_obj, _FREE, companion="mtl"),
     "mtl": Writer(
         "MTL, the colours for the OBJ file",
         ".mtl",
         "model/mtl",
         lambda target, _, hierarchy, segments, **options: write_mtl(target, hierarchy, segments, **options),
-        _MODEL,
+        _COLORED,
     ),
     "objzip": Writer(
         "OBJ with MTL, an object and a colour per segment as ZIP",
         ".obj.zip",
         "application/zip",
         write_obj_archive_as,
-        _FREE | {"keep"},
+        _FREE | {"keep", "part_colors"},
     ),
-    "3mf": Writer("3MF, a closed object per segment", ".3mf", "model/3mf", write_3mf, _MODEL | {"capped"}),
+    "3mf": Writer("3MF, a closed object per segment", ".3mf", "model/3mf", write_3mf, _COLORED | {"capped"}),
     "zip": Writer(
         "ZIP archive, a closed STL file per segment",
         ".zip",
@@ -108,7 +124,8 @@ WRITERS: dict[str, Writer] = {
         "mesh and hierarchy, to be opened again",
         ".cleave",
         "application/vnd.cleave",
-        lambda target, mesh, hierarchy, _: write_result(target, mesh, hierarchy),
+        lambda target, mesh, hierarchy, _, edited=None: write_result(target, mesh, hierarchy, edited),
+        frozenset({"edited"}),
     ),
 }
 

@@ -1,17 +1,19 @@
 """The formats of labels, selected by ?format= or Accept (RFC 9110, section 12.5.1), and the hierarchy as JSON."""
 
 import json
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
-from functools import partial
-from typing import Any, BinaryIO, Literal
+from typing import Any, Literal
 
-from segcore.io import WRITERS, Segmentation, hierarchy_document, labels_document, runs_document
+from segcore.arrays import IntArray
+from segcore.errors import InvalidParameters
+from segcore.io import WRITERS, Segmentation, hierarchy_document, part_document, runs_of, write_npy, write_seg
 from service.answer.level import ChosenCut
 from service.answer.renditions import Rendition, to_bytes
 from service.problems import Problem
 
 LabelsFormat = Literal["json", "runs", "seg", "npy", "raw"]
+LabelsOf = Literal["part", "class"]
 
 
 @dataclass(frozen=True, slots=True)
@@ -21,7 +23,7 @@ class LabelsEncoding:
     title: str
     media_type: str
     extension: str
-    encode: Callable[[ChosenCut], bytes]
+    encode: Callable[["ShownLabels"], bytes]
     is_binary: bool = False  # browsers save it instead of showing it
 
 
@@ -41,61 +43,105 @@ def hierarchy_json(result: Segmentation) -> bytes:
     return compact_json(document | {"curve": curve})
 
 
-def _write_with(name: str) -> Callable[[ChosenCut], bytes]:
-    """Return a function that encodes labels with a writer of segcore."""
+@dataclass(frozen=True, slots=True, eq=False)
+class ShownLabels:
+    """The numbers of the faces that a response has, of parts or of their classes."""
 
-    def write(cut: ChosenCut, target: BinaryIO) -> None:
-        WRITERS[name].write(target, cut.result.mesh, cut.result.hierarchy, cut.segments)
+    numbers: IntArray  # (F,)
+    count: int  # the numbers are 0..count - 1
+    said: dict[str, Any]  # further members of JSON documents
 
-    return lambda cut: to_bytes(partial(write, cut))
+    @classmethod
+    def of_parts(cls, cut: ChosenCut) -> "ShownLabels":
+        said = {} if cut.partition is None else {"parts": [part_document(part) for part in cut.partition.parts]}
+        return cls(cut.labels, cut.segments, said)
+
+    @classmethod
+    def of_classes(cls, cut: ChosenCut, class_names: list[str]) -> "ShownLabels":
+        """Return the classes of the parts: 0 for none, then those of a list, by default all in alphabetical order.
+
+        Raises
+        ------
+        InvalidParameters
+            If the cut is none of a revision, or a part has a class that is not in the list.
+        """
+        if cut.partition is None:
+            raise InvalidParameters("Only parts of revisions have classes: add revision=latest, or leave by=class out.")
+        names = list(dict.fromkeys(class_names)) or cut.partition.class_names
+        return cls(cut.partition.class_labels(names), len(names) + 1, {"classes": ["", *names]})
+
+
+def _json(shown: ShownLabels) -> bytes:
+    return compact_json({"segments": shown.count, "labels": shown.numbers.tolist()} | shown.said)
 
 
 # The first one is the default of a client that accepts any.
 LABELS: dict[LabelsFormat, LabelsEncoding] = {
-    "json": LabelsEncoding(
-        "JSON",
-        "application/json",
-        ".json",
-        lambda cut: compact_json(labels_document(cut.result.hierarchy, cut.segments)),
-    ),
+    "json": LabelsEncoding("JSON", "application/json", ".json", _json),
     "runs": LabelsEncoding(
         "JSON, runs of equal labels",
         "application/vnd.cleave.runs+json",
         ".json",
-        lambda cut: compact_json(runs_document(cut.result.hierarchy, cut.segments)),
+        lambda shown: compact_json(runs_of(shown.numbers, shown.count) | shown.said),
     ),
     "seg": LabelsEncoding(
-        "text, one label per line", "text/plain; charset=utf-8", WRITERS["seg"].extension, _write_with("seg")
+        "text, one label per line",
+        "text/plain; charset=utf-8",
+        WRITERS["seg"].extension,
+        lambda shown: to_bytes(lambda target: write_seg(target, shown.numbers)),
     ),
     "npy": LabelsEncoding(
-        "NumPy array of int32", "application/x-npy", WRITERS["npy"].extension, _write_with("npy"), is_binary=True
+        "NumPy array of int32",
+        "application/x-npy",
+        WRITERS["npy"].extension,
+        lambda shown: to_bytes(lambda target: write_npy(target, shown.numbers)),
+        is_binary=True,
     ),
     "raw": LabelsEncoding(
         "little-endian int32",
         "application/octet-stream",
         ".bin",
-        lambda cut: cut.result.hierarchy.labels(cut.segments).astype("<i4").tobytes(),
+        lambda shown: shown.numbers.astype("<i4").tobytes(),
         is_binary=True,
     ),
 }
 
 
-def labels_rendition(cut: ChosenCut, format: LabelsFormat | None, accept: str) -> Rendition:  # noqa: A002
+def labels_rendition(
+    cut: ChosenCut,
+    format: LabelsFormat | None,  # noqa: A002
+    accept: str,
+    by: LabelsOf = "part",
+    class_names: Sequence[str] = (),
+) -> Rendition:
     """Return the labels at a level, in the given format or in the one that an Accept header prefers.
+
+    Parameters
+    ----------
+    by : whether the numbers are those of parts or of their classes.
+    class_names : the classes 1, 2, ..., by default those of the parts in alphabetical order.
 
     Raises
     ------
+    InvalidParameters
+        If there are no such classes.
     Problem
         If the header accepts no format.
     """
     name = format or negotiate(accept)
-    encoding = LABELS[name]
+    encoding, identity = LABELS[name], f"{cut.job_id}/labels?{cut.name}&format={name}"
+    if by == "class":
+        shown = ShownLabels.of_classes(cut, list(class_names))
+        identity += f"&by=class&class={json.dumps(shown.said)}"
+    else:
+        shown = ShownLabels.of_parts(cut)
     return Rendition(
-        identity=f"{cut.job_id}/labels?{cut.name}&format={name}",
+        identity=identity,
         media_type=encoding.media_type,
-        render=lambda: encoding.encode(cut),
+        render=lambda: encoding.encode(shown),
         file_name=f"{cut.job_id}{encoding.extension}" if encoding.is_binary else None,
         vary=None if format else "Accept",
+        may_change=cut.is_newest,
     )
 
 

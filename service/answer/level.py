@@ -5,9 +5,10 @@ from typing import Annotated
 
 from fastapi import Depends, Query
 
-from segcore.errors import InvalidParameters
+from segcore import Partition
+from segcore.arrays import IntArray
 from segcore.io import Segmentation
-from segcore.levels import Fineness, keep_splits
+from segcore.levels import Fineness, Level
 
 _MAX_SPLITS = 10_000  # more than any hierarchy has
 
@@ -20,31 +21,47 @@ class ChosenCut:
     result: Segmentation
     segments: int
     name: str  # identifies the level among those of the job; a part of a URL
+    is_newest: bool = False  # the newest revision was requested, so that the next response may be another one
+
+    def of_newest(self) -> "ChosenCut":
+        """Return the same, requested as the newest revision."""
+        return replace(self, is_newest=True)
+
+    @property
+    def labels(self) -> IntArray:
+        """(F,) the segment of every face."""
+        return self.result.hierarchy.labels(self.segments)
+
+    @property
+    def partition(self) -> Partition | None:
+        """The parts of a revision; None for a level of the automatic result."""
+        return None if self.result.edited is None else self.result.edited.partition
 
 
-@dataclass(frozen=True, slots=True)
-class Level:
-    """The query parameters that select a level."""
+def cut_at(job_id: str, result: Segmentation, level: Level) -> ChosenCut:
+    """Return the result of a job at a level.
 
-    fineness: Fineness
-    splits: str | None  # instead of the fineness
+    Raises
+    ------
+    InvalidParameters
+        If the hierarchy has no such level.
+    """
+    hierarchy, count = level.of(result.hierarchy)
+    name = f"segments={count}"
+    if level.splits is not None:
+        name = f"splits={','.join(map(str, sorted(set(level.splits))))}"
+    return ChosenCut(job_id, replace(result, hierarchy=hierarchy), count, name)
 
-    def of(self, job_id: str, result: Segmentation) -> ChosenCut:
-        """Return the result of a job at this level.
 
-        Raises
-        ------
-        InvalidParameters
-            If the hierarchy has no such level.
-        """
-        if self.splits is None:
-            count = self.fineness.segments_of(result.hierarchy)
-            return ChosenCut(job_id, result, count, f"segments={count}")
-        if not self.fineness.is_automatic:
-            raise InvalidParameters("Give one of segments, granularity and splits, not several.")
-        chosen = sorted({int(split) for split in self.splits.split(",") if split})
-        kept = replace(result, hierarchy=keep_splits(result.hierarchy, chosen))
-        return ChosenCut(job_id, kept, len(chosen) + 1, f"splits={','.join(map(str, chosen))}")
+def revised_cut(job_id: str, revised: Segmentation, number: int, *, is_newest: bool = False) -> ChosenCut:
+    """Return the parts of a revision of a job.
+
+    Parameters
+    ----------
+    revised : the mesh, and the parts as its hierarchy.
+    is_newest : the newest revision was requested, whatever its number.
+    """
+    return ChosenCut(job_id, revised, revised.hierarchy.automatic_segments, f"revision={number}", is_newest=is_newest)
 
 
 Segments = Annotated[
@@ -76,7 +93,8 @@ async def _level(
         ),
     ] = None,
 ) -> Level:
-    return Level(Fineness(segments, granularity), splits)
+    chosen = None if splits is None else tuple(sorted({int(split) for split in splits.split(",") if split}))
+    return Level(Fineness(segments, granularity), chosen)
 
 
 LevelOf = Annotated[Level, Depends(_level)]

@@ -3,7 +3,7 @@
 from collections.abc import Callable, Mapping
 from typing import Any, BinaryIO
 
-from segcore.io import draw, write_png
+from segcore.io import Writer, draw, write_png
 from service.answer.level import ChosenCut
 from service.answer.model_formats import MODELS, model_file
 from service.answer.originals import stored_original
@@ -23,46 +23,57 @@ def model_rendition(
     Parameters
     ----------
     name : a key of MODELS.
-    names : names of segments by label.
+    names : names of segments by label, in place of those of a revision.
     options : further keyword arguments of the writer. If the value of ``keep`` is not None, the writer gets the stored
         file of the job in its place.
     """
     writer = MODELS[name]
     mesh, hierarchy = cut.result.mesh, cut.result.hierarchy
     query = cut.name + "".join(f"&{option}={value}" for option, value in options.items()) + names_digest(names)
+    looks = _looks(cut, writer, names)
 
     def write(target: BinaryIO) -> None:
         if options.get("keep") is None:
-            writer.write(target, mesh, hierarchy, cut.segments, names=names, **options)
+            writer.write(target, mesh, hierarchy, cut.segments, **looks, **options)
             return
         with stored_original(context, cut.job_id) as original:
-            writer.write(target, mesh, hierarchy, cut.segments, names=names, **{**options, "keep": original})
+            writer.write(target, mesh, hierarchy, cut.segments, **looks, **{**options, "keep": original})
 
     is_companion = any(one.companion == name for one in MODELS.values())  # a file that others refer to by its name
     file_name = model_file(name) if is_companion else f"{cut.job_id}{writer.extension}"
-    return _cached(context.results, cut.job_id, f"{name}?{query}", writer.media_type, write, file_name)
+    return _cached(context.results, cut, f"{name}?{query}", writer.media_type, write, file_name)
+
+
+def _looks(cut: ChosenCut, writer: Writer, names: dict[int, str]) -> dict[str, Any]:
+    """Return the names and colours of the parts for a writer; given names replace those of a revision."""
+    if cut.partition is None:
+        return {"names": names}
+    colors = {"part_colors": cut.partition.colors} if "part_colors" in writer.options else {}
+    return {"names": cut.partition.names | names} | colors
 
 
 def preview_rendition(cache: ResultCache, cut: ChosenCut, size: int) -> Rendition:
     """Return a picture of ``size`` x ``size`` pixels with a transparent background."""
 
     def write(target: BinaryIO) -> None:
-        write_png(target, draw(cut.result.mesh, cut.result.hierarchy.labels(cut.segments), size))
+        colors = None if cut.partition is None else cut.partition.colors
+        write_png(target, draw(cut.result.mesh, cut.labels, size, part_colors=colors))
 
-    return _cached(cache, cut.job_id, f"preview.png?{cut.name}&size={size}", PNG, write)
+    return _cached(cache, cut, f"preview.png?{cut.name}&size={size}", PNG, write)
 
 
 def _cached(
     cache: ResultCache,
-    job_id: str,
+    cut: ChosenCut,
     name: str,
     media_type: str,
     write: Callable[[BinaryIO], object],
     file_name: str | None = None,
 ) -> Rendition:
     return Rendition(
-        identity=f"{job_id}/{name}",
+        identity=f"{cut.job_id}/{name}",
         media_type=media_type,
-        render=lambda: cache.rendered(job_id, name, lambda: to_bytes(write)),
+        render=lambda: cache.rendered(cut.job_id, name, lambda: to_bytes(write)),
         file_name=file_name,
+        may_change=cut.is_newest,
     )

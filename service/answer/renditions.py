@@ -16,6 +16,7 @@ from service.problems import Problem, documented
 
 # Results never change, but access to them does, so that shared caches must not store them.
 IMMUTABLE = "private, max-age=31536000, immutable"
+REVALIDATED = "private, no-cache"  # the client asks with If-None-Match whether it has changed
 _RESULT_HEADERS = {
     "ETag": {"schema": {"type": "string"}, "description": "Identifies these bytes; for If-None-Match and If-Range."},
     "Accept-Ranges": {"schema": {"const": "bytes"}},
@@ -50,6 +51,7 @@ class Rendition:
     render: Callable[[], bytes]
     file_name: str | None = None  # if browsers should save it rather than show it
     vary: str | None = None  # the request header that selected it
+    may_change: bool = False  # the next response to the same request may have other bytes
 
 
 def rendition_responses(content: dict[str, Any], description: str, *problems: str) -> dict[int | str, dict[str, Any]]:
@@ -82,8 +84,9 @@ def answer_rendition(request: Request, rendition: Rendition) -> Response:
     compressible = _COMPRESSIBLE.fullmatch(rendition.media_type.partition(";")[0]) is not None
     # Ranges refer to the uncompressed bytes: most clients would not recognize a piece of a compressed file as one.
     is_gzip = compressible and "range" not in request.headers and takes_gzip(request.headers.get("accept-encoding", ""))
-    tag = entity_tag(f"{rendition.identity}{';gzip' if is_gzip else ''}".encode())
-    headers = {"ETag": tag, "Cache-Control": IMMUTABLE, "Accept-Ranges": "bytes"}
+    tag = rendition_tag(rendition, is_gzip=is_gzip)
+    cached = REVALIDATED if rendition.may_change else IMMUTABLE
+    headers = {"ETag": tag, "Cache-Control": cached, "Accept-Ranges": "bytes"}
     if compressible or rendition.vary:
         headers["Vary"] = ", ".join(filter(None, [rendition.vary, "Accept-Encoding" if compressible else None]))
     if is_current(request, tag):
@@ -101,6 +104,11 @@ def answer_rendition(request: Request, rendition: Rendition) -> Response:
     return Response(body, 200, headers, rendition.media_type)
 
 
+def rendition_tag(rendition: Rendition, *, is_gzip: bool) -> str:
+    """Return the ETag of a rendition, which is another one if it is compressed."""
+    return entity_tag(f"{rendition.identity}{';gzip' if is_gzip else ''}".encode())
+
+
 def takes_gzip(accept_encoding: str) -> bool:
     """Return whether an Accept-Encoding header names gzip as acceptable (RFC 9110, section 12.5.3)."""
     for coding in accept_encoding.split(","):
@@ -113,7 +121,7 @@ def takes_gzip(accept_encoding: str) -> bool:
 def answer_json(request: Request, body: bytes, status: int = 200, headers: Mapping[str, str] | None = None) -> Response:
     """Return a response with JSON that may change, or status 304 if the client has it."""
     tag = entity_tag(body)
-    all_headers = {"ETag": tag, "Cache-Control": "private, no-cache", **(headers or {})}
+    all_headers = {"ETag": tag, "Cache-Control": REVALIDATED, **(headers or {})}
     if request.method == "GET" and is_current(request, tag):
         return Response(status_code=304, headers=all_headers)
     return Response(body, status, all_headers, "application/json")

@@ -6,9 +6,10 @@ from typing import Annotated
 from fastapi import Depends, Request
 
 from service.answer.level import ChosenCut, LevelOf
+from service.answer.revision import RevisionOf, chosen_cut
 from service.context import ContextOf
 from service.guard.callers import CallerOf
-from service.lookup import JobId, find_job, result_of
+from service.lookup import JobId, find_job
 
 
 @dataclass(frozen=True, slots=True)
@@ -20,6 +21,7 @@ class ResultRequest:
     context: ContextOf
     caller: CallerOf
     level: LevelOf
+    revision: RevisionOf
 
     def cut(self) -> ChosenCut:
         """Return the result of the job at the requested level.
@@ -27,12 +29,12 @@ class ResultRequest:
         Raises
         ------
         UnknownJob, Problem
-            If the caller has no such job, or the job has no result.
+            If the caller has no such job, or the job has no result or no such revision.
         InvalidParameters
-            If the hierarchy has no such level.
+            If the hierarchy has no such level, or a level and a revision are given.
         """
         job = find_job(self.context, self.caller, self.job_id)
-        return self.level.of(job.id, result_of(self.context, job))
+        return chosen_cut(self.context, job, self.level, self.revision)
 
 
 ResultRequestOf = Annotated[ResultRequest, Depends()]

@@ -1,6 +1,7 @@
 """`cleave convert`: write the segmentation of a .cleave file in other formats."""
 
 import argparse
+from dataclasses import replace
 from pathlib import Path
 
 from segcore.io import with_coordinates
@@ -8,7 +9,7 @@ from segcore.io.result import read_result
 from segcore.levels import Fineness
 from service.commands.arguments import add_coordinates, add_level
 from service.commands.inputs import STANDARD, standard_input
-from service.commands.outputs import add_outputs, check_outputs, output_options, write_model
+from service.commands.outputs import add_outputs, check_outputs, output_options, write_edited, write_model
 from service.commands.summary import level_lines
 
 
@@ -21,13 +22,13 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         help="a file that cleave segment --result wrote; - for the standard input",
     )
     add_coordinates(parser)
-    add_level(parser, "the automatic one")
+    add_level(parser, "the edited parts, else the automatic one")
     add_outputs(parser, required=True)
     parser.add_argument("--source", type=Path, metavar="MESH", help="the file that was segmented, for --keep all")
 
 
 def run(choices: argparse.Namespace) -> None:
-    """Write the files and print a summary.
+    """Write the files and print a summary. Edited parts are written unless a level is given.
 
     Raises
     ------
@@ -40,12 +41,16 @@ def run(choices: argparse.Namespace) -> None:
     tell = check_outputs(outputs)
     result = read_result(standard_input(choices.result))
     mesh = with_coordinates(result.mesh, choices.unit, choices.up)
-    segments = fineness.segments_of(result.hierarchy)
     options = output_options(choices, choices.source)
-    for path in outputs:
-        for note in write_model(path, mesh, result.hierarchy, segments, options):
-            tell(note)
-    for line in level_lines(result.hierarchy, segments, fineness):
+    if result.edited is not None and fineness.is_automatic:
+        shown = replace(result, mesh=mesh)
+        notes = [note for path in outputs for note in write_edited(path, shown, options)]
+        lines = [f"{len(result.edited.partition)} parts of revision {result.edited.revision}"]
+    else:
+        segments = fineness.segments_of(result.hierarchy)
+        notes = [note for path in outputs for note in write_model(path, mesh, result.hierarchy, segments, options)]
+        lines = level_lines(result.hierarchy, segments, fineness)
+    for line in (*notes, *lines):
         tell(line)
     for path in outputs:
         if path != STANDARD:

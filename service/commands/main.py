@@ -21,6 +21,7 @@ COMMANDS = {
     "serve": "run the service, its workers and its queue",
     "worker": "run workers for a service elsewhere",
     "segment": "segment one mesh without a server",
+    "edit": "edit the parts in a .cleave file",
     "convert": "write a .cleave file in other formats",
     "inspect": "report what a mesh file contains",
     "submit": "segment many meshes on a server",
@@ -41,6 +42,7 @@ EXIT_STATUSES = {
         2: _CANNOT_START,
     },
     "segment": {0: "done", 2: _NOT_DONE},
+    "edit": {0: "done", 2: _NOT_DONE},
     "convert": {0: "done", 2: _NOT_DONE},
     "inspect": {0: "done", 2: _NOT_DONE},
     "submit": {
@@ -62,6 +64,8 @@ Cuts a 3D mesh into the parts that a person would name.
 
   cleave serve                          an HTTP service with its workers, on http://127.0.0.1:8000
   cleave segment hand.off -o parts.glb  one mesh, without a server
+  cleave edit hand.cleave --operations edits.json
+                                        its parts merged, cut and named
   cleave convert hand.cleave -o a.ply   a stored result in another format
   cleave inspect hand.off               what a mesh file contains
   cleave submit *.off -o results        many meshes, on a server

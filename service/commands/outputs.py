@@ -4,13 +4,13 @@ import argparse
 import io
 import sys
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import BinaryIO, get_args
 
 from segcore.errors import InvalidParameters
 from segcore.hierarchy import Hierarchy
-from segcore.io import Layout, Original, PartFormat
+from segcore.io import Layout, Original, PartFormat, Segmentation
 from segcore.io.ply.writer import PlyColors
 from segcore.io.writing import WRITERS, Writer, writer_for
 from segcore.mesh import Mesh
@@ -85,6 +85,10 @@ class OutputOptions:
     original: Original | None  # the file that the mesh was read from, if it is known
     keeps_all: bool
     standard_format: str | None = None  # of the standard output
+
+    def with_values(self, **values: object) -> "OutputOptions":
+        """Return the same with further values."""
+        return replace(self, values=self.values | values)
 
     def writer_of(self, path: Path) -> Writer:
         """Return the writer for an output.
@@ -177,6 +181,19 @@ def write_model(
     notes: list[str] = []
     write_file(path, lambda target: notes.extend(writer.write(target, mesh, hierarchy, segments, **chosen) or ()))
     return tuple(notes)
+
+
+def write_edited(path: Path, result: Segmentation, options: OutputOptions) -> tuple[str, ...]:
+    """Write the edited parts of a result, with their names and colours; a .cleave file keeps the hierarchy as well.
+
+    Results and errors are those of :func:`write_model`.
+    """
+    edited = result.edited
+    assert edited is not None, "the parts were edited"
+    if options.writer_of(path) is WRITERS["cleave"]:
+        return write_model(path, result.mesh, result.hierarchy, None, options.with_values(edited=edited))
+    looks = options.with_values(names=edited.partition.names, part_colors=edited.partition.colors)
+    return write_model(path, result.mesh, edited.partition.hierarchy(result.mesh), None, looks)
 
 
 def write_file(path: Path, write: Callable[[BinaryIO], object]) -> None:

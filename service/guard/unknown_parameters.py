@@ -49,4 +49,6 @@ def _sentence(name: str, known: list[str]) -> str:
         return f"{shown}: {_ELSEWHERE[name]}."
     if near:
         return f"{shown}: the nearest one is {near[0]!r}."
+    if len(known) == 1:
+        return f"{shown}; the only one is {known[0]!r}."
     return f"{shown}; there are {', '.join(known)}." if known else f"{shown}, and no other."

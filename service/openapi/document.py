@@ -10,7 +10,9 @@ from pydantic.json_schema import models_json_schema
 from segcore.parameters import parameters_schema
 from service.answer.renditions import PARTIAL_CONTENT
 from service.documents import BatchJobs, HierarchyDocument, LabelsDocument, RunsDocument
+from service.edit.label_uploads import UploadedLabels, UploadedRuns
 from service.problems import MEDIA_TYPE, ProblemDocument, documented
+from worker.edits.operation_documents import EditDocument
 
 # Models of requests and responses that the routes handle as bytes, so that FastAPI does not find them.
 _HIDDEN_MODELS: tuple[type[BaseModel], ...] = (
@@ -19,6 +21,9 @@ _HIDDEN_MODELS: tuple[type[BaseModel], ...] = (
     RunsDocument,
     HierarchyDocument,
     BatchJobs,
+    EditDocument,
+    UploadedLabels,
+    UploadedRuns,
 )
 _PLACE = "#/components/schemas/{model}"
 _STORE_PATHS = ("/v1/jobs", "/v1/batches")  # the operations below them need the store

@@ -7,7 +7,9 @@ from typing import Annotated, BinaryIO
 from fastapi import APIRouter, Query, Request
 from starlette.responses import Response, StreamingResponse
 
-from service.answer.renditions import IMMUTABLE, NOT_MODIFIED, entity_tag, is_current
+from service.answer.renditions import IMMUTABLE, NOT_MODIFIED, answer_rendition, entity_tag, is_current
+from service.answer.result_file import edited_file
+from service.answer.revision import REVISION_PROBLEMS, RevisionOf
 from service.context import ContextOf
 from service.guard.callers import CallerOf
 from service.lookup import RESULT_PROBLEMS, JobId, check_succeeded, find_job
@@ -30,7 +32,7 @@ _URL_VALID_S = 300.0  # set by hand: to begin the download, which may then take 
             "description": "The file is at a URL of the bucket, valid for five minutes and without credentials.",
             "headers": {"Location": {"schema": {"type": "string", "format": "uri"}}},
         },
-        **documented(*RESULT_PROBLEMS, "invalid_request"),
+        **documented(*RESULT_PROBLEMS, *REVISION_PROBLEMS, "invalid_request", "range_not_satisfiable"),
     },
 )
 def get_result_file(
@@ -38,11 +40,17 @@ def get_result_file(
     request: Request,
     context: ContextOf,
     caller: CallerOf,
+    revision: RevisionOf,
     redirect: Annotated[bool, Query(description="If the store is a bucket, redirect to the file in it.")] = False,
 ) -> Response:
-    """The mesh and its hierarchy in one file, which `cleave convert` converts to other formats."""
+    """The mesh and its hierarchy in one file, which `cleave convert` converts to other formats.
+
+    With a revision, the file also has its parts and the list of the revisions up to it.
+    """
     job = find_job(context, caller, job_id)
     check_succeeded(context, job)
+    if revision is not None:
+        return answer_rendition(request, edited_file(context, job, revision))
     headers = {"ETag": entity_tag(f"{job.id}/result.cleave".encode()), "Cache-Control": IMMUTABLE}
     if is_current(request, headers["ETag"]):
         return Response(status_code=304, headers=headers)

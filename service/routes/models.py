@@ -15,6 +15,7 @@ from service.answer.originals import ORIGINAL_PROBLEMS
 from service.answer.part_names import PartNames
 from service.answer.renditions import LEVEL_PROBLEMS, answer_rendition, rendition_responses
 from service.answer.result_request import ResultRequestOf
+from service.answer.revision import REVISION_PROBLEMS
 
 router = APIRouter(prefix="/v1/jobs/{job_id}", tags=["models"])
 
@@ -143,7 +144,9 @@ def _add_route(name: str, writer: Writer) -> None:
         name=f"get_{operation_name(name)}",
         description=f"The segmented mesh as {writer.title}.",
         response_class=Response,
-        responses=rendition_responses({writer.media_type: _BINARY}, f"{writer.title}.", *LEVEL_PROBLEMS, *kept),
+        responses=rendition_responses(
+            {writer.media_type: _BINARY}, f"{writer.title}.", *LEVEL_PROBLEMS, *REVISION_PROBLEMS, *kept
+        ),
     )
 
 
@@ -154,7 +157,7 @@ for _name, _writer in MODELS.items():
 @router.get(
     "/preview.png",
     response_class=Response,
-    responses=rendition_responses({PNG: _BINARY}, "A picture.", *LEVEL_PROBLEMS),
+    responses=rendition_responses({PNG: _BINARY}, "A picture.", *LEVEL_PROBLEMS, *REVISION_PROBLEMS),
 )
 def get_preview(
     wanted: ResultRequestOf,

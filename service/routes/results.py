@@ -5,13 +5,15 @@ from typing import Annotated, Any
 from fastapi import APIRouter, Header, Query, Request
 from starlette.responses import Response
 
-from service.answer.label_formats import LABELS, LabelsFormat, hierarchy_json, labels_rendition
+from segcore.levels import Level
+from service.answer.label_formats import LABELS, LabelsFormat, LabelsOf, hierarchy_json, labels_rendition
 from service.answer.renditions import LEVEL_PROBLEMS, Rendition, answer_rendition, rendition_responses
 from service.answer.result_request import ResultRequestOf
+from service.answer.revision import REVISION_PROBLEMS, RevisionOf, chosen_cut
 from service.context import ContextOf
 from service.documents import HierarchyDocument, LabelsDocument, RunsDocument
 from service.guard.callers import CallerOf
-from service.lookup import JobId, find_job, result_of
+from service.lookup import JobId, find_job
 from service.openapi.document import ref
 
 router = APIRouter(prefix="/v1/jobs/{job_id}", tags=["results"])
@@ -30,27 +32,54 @@ _LABELS_CONTENT: dict[str, Any] = {
 @router.get(
     "/labels",
     response_class=Response,
-    responses=rendition_responses(_LABELS_CONTENT, "The labels.", *LEVEL_PROBLEMS, "not_acceptable"),
+    responses=rendition_responses(
+        _LABELS_CONTENT, "The labels.", *LEVEL_PROBLEMS, *REVISION_PROBLEMS, "not_acceptable"
+    ),
 )
 def get_labels(
     wanted: ResultRequestOf,
     format: Annotated[  # noqa: A002
         LabelsFormat | None, Query(description="The format of the labels; by default the Accept header selects it.")
     ] = None,
+    by: Annotated[
+        LabelsOf, Query(description="The numbers of parts, or those of their classes in a revision.")
+    ] = "part",
+    class_names: Annotated[
+        list[Annotated[str, Query(max_length=200)]] | None,
+        Query(
+            alias="class",
+            max_length=1000,
+            description="With by=class: the class that is number 1, repeated for those that follow; by default those "
+            "of the revision in alphabetical order. Parts without a class have the number 0.",
+        ),
+    ] = None,
     accept: Annotated[str, Header(description="Accepted media types, with weights.")] = "*/*",
 ) -> Response:
-    """The segment of every face, in the order of the file, at any number of segments."""
-    return answer_rendition(wanted.request, labels_rendition(wanted.cut(), format, accept))
+    """The segment of every face, in the order of the file, at any number of segments or of a revision."""
+    return answer_rendition(wanted.request, labels_rendition(wanted.cut(), format, accept, by, class_names or ()))
 
 
 @router.get(
     "/hierarchy",
     response_class=Response,
-    responses=rendition_responses({_JSON: {"schema": ref(HierarchyDocument)}}, "The tree."),
+    responses=rendition_responses({_JSON: {"schema": ref(HierarchyDocument)}}, "The tree.", *REVISION_PROBLEMS),
 )
-def get_hierarchy(job_id: JobId, request: Request, context: ContextOf, caller: CallerOf) -> Response:
-    """The tree of cuts, which contains every number of segments, and the curve that helps to choose one."""
+def get_hierarchy(
+    job_id: JobId, request: Request, context: ContextOf, caller: CallerOf, revision: RevisionOf
+) -> Response:
+    """The tree of cuts, which contains every number of segments, and the curve that helps to choose one.
+
+    The parts of a revision are the leaves of a tree of one step.
+    """
     job = find_job(context, caller, job_id)
-    result = result_of(context, job)
-    rendition = Rendition(identity=f"{job.id}/hierarchy", media_type=_JSON, render=lambda: hierarchy_json(result))
-    return answer_rendition(request, rendition)
+    cut = chosen_cut(context, job, Level(), revision)
+    identity = f"{job.id}/hierarchy" + ("" if cut.partition is None else f"?{cut.name}")
+    return answer_rendition(
+        request,
+        Rendition(
+            identity=identity,
+            media_type=_JSON,
+            render=lambda: hierarchy_json(cut.result),
+            may_change=cut.is_newest,
+        ),
+    )

@@ -160,3 +160,62 @@ def test_the_api_key_is_sent() -> None:
     with Client(api_key="k", transport=httpx.MockTransport(answer)) as client, pytest.raises(RequestRefused):
         client.job("1")
     assert seen[0].headers["Authorization"] == "Bearer k"
+
+
+def test_parts_are_edited_and_labels_replaced(url: str, mesh: Path, tmp_path: Path) -> None:
+    merge = [{"op": "merge", "parts": [0, 2]}]
+
+    async def restored(job_id: str) -> list[int]:
+        async with AsyncClient(url) as client:
+            await client.edit(job_id, [{"op": "restore", "revision": 1}])
+            return [one.number for one in await client.revisions(job_id)]
+
+    with Client(url) as client:
+        job = client.segment(mesh, segments=4).job
+        shown = client.edit(job.id, merge, level={"segments": 4}, preview=True)
+        assert shown.revision is None
+        edited = client.edit(job.id, [*merge, {"op": "name", "part": 0, "name": "body"}], level={"segments": 4})
+        assert edited.revision is not None
+        assert (edited.revision.number, edited.parts[0].name, len(edited.parts)) == (1, "body", 3)
+        labels = client.labels(job, revision="latest").labels
+        assert client.put_labels(job.id, np.zeros_like(labels)).parts[0].faces == len(labels)
+        assert client.labels(job, revision=2).segments == 1
+        assert asyncio.run(restored(job.id)) == [3, 2, 1]
+        assert np.array_equal(client.labels(job, revision=3).labels, labels)
+        client.download(job.id, "model.glb", tmp_path / "a.glb", revision="latest")
+        assert b'"body"' in (tmp_path / "a.glb").read_bytes()
+        with pytest.raises(RequestRefused) as refused:
+            client.edit(job.id, merge, base=1)
+        assert refused.value.code == "revision_conflict"
+
+
+def test_an_edit_in_the_queue_is_waited_for() -> None:
+    revision = {
+        "number": 1,
+        "parent": 0,
+        "made_at": "2026-01-01T00:00:00Z",
+        "made_by": None,
+        "what": "smooth the borders",
+        "segments": 1,
+    }
+    part = {"name": "body", "color": "#102030", "class": "", "locked": False, "faces": 4}
+    states = iter([{"error": None, "revision": None}, {"error": None, "revision": revision}])
+    failed = {"error": {"code": "revision_conflict", "message": "Somebody was faster."}, "revision": None}
+    seen: list[str] = []
+
+    def answer(request: httpx.Request) -> httpx.Response:
+        seen.append(request.url.path)
+        match request.method, request.url.path:
+            case "POST", _:
+                return httpx.Response(202, headers={"Location": "/cleave/v1/jobs/a/edits/b"}, json={})
+            case _, "/cleave/v1/jobs/a/edits/b":
+                return httpx.Response(200, json=next(states, failed))
+        return httpx.Response(200, json={**revision, "parts": [part]})
+
+    with Client("http://localhost/cleave", transport=httpx.MockTransport(answer)) as client:
+        edited = client.edit("a", [{"op": "smooth"}], base=0)
+        assert edited.revision is not None
+        assert (edited.revision.number, edited.parts[0].name) == (1, "body")
+        assert seen[1:] == ["/cleave/v1/jobs/a/edits/b"] * 2 + ["/cleave/v1/jobs/a/revisions/1"]
+        with pytest.raises(RequestRefused, match="faster"):
+            client.edit("a", [{"op": "smooth"}], base=0)

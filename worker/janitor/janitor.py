@@ -41,6 +41,7 @@ class Janitor:
         # The process id of the supervisor, so that a restarted janitor is the leader at once.
         self._name = f"{socket.gethostname()}.{os.getppid()}"
         self._missing_since: dict[str, float] = {}
+        self._edits_missing_since: dict[str, float] = {}
 
     def sweep(self, at_s: float) -> None:
         """Enqueue every unfinished job that neither waits nor runs, or fail it if it has had all its attempts.
@@ -50,12 +51,14 @@ class Janitor:
         self._housekeeping.sweep_machine()
         if not self._locks.lead(self._name, _LEADER_INTERVALS * self._settings.janitor_interval_s):
             self._missing_since.clear()
+            self._edits_missing_since.clear()
             return
         for job_id in reversed(self._lost(at_s)):  # each is put at the front, the oldest last
             job = self._store.records.job(job_id)
             if job is not None:
                 with about(job_id, job.traceparent):
                     self._recover(job)
+        self._recover_edits(at_s)
         forget_dead_workers(self._queue)
         self._housekeeping.sweep(at_s)
 
@@ -64,6 +67,7 @@ class Janitor:
         if isinstance(error, OSError):
             self._counters.store_failed("janitor")
         self._missing_since.clear()
+        self._edits_missing_since.clear()
 
     def _lost(self, at_s: float) -> list[str]:
         unfinished = self._store.pending.all()
@@ -72,6 +76,19 @@ class Janitor:
         missing = [job_id for job_id in unfinished if job_id not in held and job_id not in outside]
         self._missing_since = {job_id: self._missing_since.get(job_id, at_s) for job_id in missing}
         return [job_id for job_id in missing if at_s - self._missing_since[job_id] >= MISSING_S]
+
+    def _recover_edits(self, at_s: float) -> None:
+        """Enqueue the edits that the queue has lost."""
+        waiting = self._store.queued_edits.waiting_ids()
+        held = self._queue.held(waiting) if waiting else set()
+        missing = [edit_id for edit_id in waiting if edit_id not in held]
+        self._edits_missing_since = {edit_id: self._edits_missing_since.get(edit_id, at_s) for edit_id in missing}
+        for edit_id in missing:
+            edit = self._store.queued_edits.waiting(edit_id)
+            job = None if edit is None else self._store.records.job(edit.job_id)
+            if job is not None and at_s - self._edits_missing_since[edit_id] >= MISSING_S:
+                log.warning("edit %s was lost by the queue and waits again", edit_id)
+                self._queue.requeue(edit_id, size_class(job, self._settings.large_job_bytes))
 
     def _recover(self, job: Job) -> None:
         failed = exhausted(self._store.records.attempts(job.id), self._settings.max_attempts)

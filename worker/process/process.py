@@ -27,9 +27,11 @@ from worker.jobs.queue.counters import JobCounters
 from worker.jobs.queue.entries import is_valid
 from worker.jobs.queue.queue import JobQueue
 from worker.jobs.queue.workers import HEARTBEAT_TTL_S
+from worker.jobs.queued_edit import QueuedEdit
 from worker.jobs.size_class import SizeClass
 from worker.jobs.store.opening import open_store
 from worker.jobs.store.store import JobStore, UnknownJob
+from worker.process.edit_runs import EditRuns
 from worker.process.lease import LeaseKeeper
 from worker.process.ledger import Ledger
 from worker.process.perform import perform
@@ -74,6 +76,7 @@ class JobWorker(Worker):  # type: ignore[misc]  # rq is not analysed
         self._lease = LeaseKeeper(leases, self.name, settings.lease_s, partial(self.heartbeat, None))
         self._ledger = Ledger(store, queue, self._counters, settings, size, self.name)
         self._watch = Watch(settings)
+        self._edits = EditRuns(store, settings, self._watch)
         self._horse_exit = -1  # a descriptor that becomes readable when the work-horse has ended
 
     # Methods that rq calls.
@@ -127,9 +130,13 @@ class JobWorker(Worker):  # type: ignore[misc]  # rq is not analysed
     # Running one job.
 
     def _run_or_hand_back(self, entry: Entry, queue: Any) -> None:
-        """Run a job, or requeue it if the store fails."""
+        """Run a job or an edit, or requeue it if the store fails."""
         with about(entry.id) as subject:
             try:
+                edit = self._store.queued_edits.waiting(entry.id)
+                if edit is not None:
+                    self._run_edit(edit)
+                    return
                 subject.trace = self._trace(entry.id)
                 attempt = self._ledger.begin(entry.id)
                 if attempt is not None:
@@ -140,6 +147,14 @@ class JobWorker(Worker):  # type: ignore[misc]  # rq is not analysed
                 self._counters.store_failed("worker")
                 self._watch.pause(_STORE_PAUSE_S)
                 self._ledger.hand_back(entry.id)
+
+    def _run_edit(self, edit: QueuedEdit) -> None:
+        has_ended = self._edits.run(edit, on_tick=partial(self._lease.renew, edit.id))
+        if not has_ended:
+            self._ledger.hand_back(edit.id)
+            return
+        self._queue.release(edit.id, self.name)
+        self._queue.forget(edit.id)
 
     def _trace(self, job_id: str) -> Trace | None:
         job = self._store.records.job(job_id)

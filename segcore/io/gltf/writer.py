@@ -11,6 +11,7 @@ from segcore.io.gltf.writer_features import add_features
 from segcore.io.gltf.writer_geometry import place
 from segcore.io.gltf.writer_scene import all_levels_drawing, level_drawing, scene_document
 from segcore.io.names import SegmentNames, segment_names
+from segcore.io.palette import SegmentColors
 from segcore.io.slices import group
 from segcore.mesh import Mesh
 
@@ -27,6 +28,7 @@ def write_glb(
     features: bool = False,
     layout: Layout = "tree",
     names: SegmentNames | None = None,
+    part_colors: SegmentColors | None = None,
 ) -> None:
     """Write a mesh as binary glTF 2.0, with a material for each segment and the hierarchy as nested nodes.
 
@@ -68,6 +70,7 @@ def write_glb(
     target : a binary file; needs ``write`` only.
     segments : the number of segments K, by default the automatic one.
     names : names of segments by label, in place of ``segment k``.
+    part_colors : colours of segments by label, in place of the fixed ones.
 
     Raises
     ------
@@ -84,7 +87,13 @@ def write_glb(
     slices = group(drawing.of_face, len(drawing.nodes))
     corners = mesh.faces if look.corners is None else look.corners
     document = scene_document(
-        hierarchy, drawing, placement, slices, segment_names(names, len(drawing.nodes)), is_flat=layout == "flat"
+        hierarchy,
+        drawing,
+        placement,
+        slices,
+        segment_names(names, len(drawing.nodes)),
+        is_flat=layout == "flat",
+        part_colors=part_colors,
     )
     known = mesh.coordinates
     document["scenes"][0]["extras"] |= {"unit": known.unit, "up": known.up, "shown_up": known.shown_up}

@@ -11,7 +11,7 @@ from segcore.arrays import FloatArray, IntArray
 from segcore.hierarchy import Hierarchy
 from segcore.io.gltf.writer_geometry import Placement
 from segcore.io.labels import finite_or_none, node_documents
-from segcore.io.palette import linear_rgb, segment_colors
+from segcore.io.palette import SegmentColors, linear_rgb, segment_colors
 from segcore.io.slices import Slices
 from segcore.nary import nary_children
 
@@ -62,6 +62,7 @@ def scene_document(
     names: list[str],
     *,
     is_flat: bool = False,
+    part_colors: SegmentColors | None = None,
 ) -> dict[str, Any]:
     """Return the glTF document for a buffer of positions, uint32 corners in slices, and uint32 input faces.
 
@@ -69,6 +70,7 @@ def scene_document(
     ----------
     names : (D,) names of the parts that have geometry.
     is_flat : all parts are children of the root, in the order of their labels.
+    part_colors : colours of segments by label, in place of the fixed ones.
     """
     faces = len(slices.faces)
     sizes = [placement.positions.nbytes, _FACE_BYTES * faces, 4 * faces]
@@ -80,7 +82,7 @@ def scene_document(
         "scenes": [{"nodes": [0], "extras": _scene_extras(hierarchy, drawing)}],
         "nodes": _nodes(hierarchy, drawing, placement, slices, names, is_flat),
         "meshes": [_mesh(drawing, k, names[k]) for k in parts],
-        "materials": segment_materials(names),
+        "materials": segment_materials(names, part_colors),
         "accessors": [_position_accessor(placement.positions), *(_index_accessor(slices, k) for k in parts)],
         "bufferViews": [
             {"buffer": 0, "byteOffset": offsets[0], "byteLength": sizes[0], "target": _ARRAY_BUFFER},
@@ -171,9 +173,9 @@ def mappings(materials: IntArray) -> list[dict[str, Any]]:
     ]
 
 
-def segment_materials(names: list[str]) -> list[dict[str, Any]]:
+def segment_materials(names: list[str], part_colors: SegmentColors | None) -> list[dict[str, Any]]:
     """Return the materials of the labels 0, 1, ... in their colours."""
-    colors = linear_rgb(segment_colors(len(names)))
+    colors = linear_rgb(segment_colors(len(names), part_colors))
     return [_material(name, color) for name, color in zip(names, colors, strict=True)]
 
 

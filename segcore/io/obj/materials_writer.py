@@ -10,16 +10,25 @@ from segcore.io.archive import FAST, member
 from segcore.io.converting import requested
 from segcore.io.names import SegmentNames, group_names
 from segcore.io.obj.writer import LIBRARY, FaceMaterials, write_obj
-from segcore.io.palette import segment_colors
+from segcore.io.palette import SegmentColors, segment_colors
 from segcore.mesh import Mesh
 
 
 def write_mtl(
-    target: BinaryIO, hierarchy: Hierarchy, segments: int | None = None, *, names: SegmentNames | None = None
+    target: BinaryIO,
+    hierarchy: Hierarchy,
+    segments: int | None = None,
+    *,
+    names: SegmentNames | None = None,
+    part_colors: SegmentColors | None = None,
 ) -> None:
     """Write the MTL file of :func:`segcore.io.obj.writer.write_obj`: a material with the colour of each segment.
 
     Colours are in sRGB, as most programs read them.
+
+    Parameters
+    ----------
+    names, part_colors : names and colours of segments by label, in place of the fixed ones.
 
     Raises
     ------
@@ -28,7 +37,7 @@ def write_mtl(
     """
     count = len(hierarchy.segment_nodes(segments))
     target.write(b"# written by Cleave: the colours of the segments\n")
-    for name, color in zip(group_names(names, count), segment_colors(count).tolist(), strict=True):
+    for name, color in zip(group_names(names, count), segment_colors(count, part_colors).tolist(), strict=True):
         red, green, blue = (f"{channel:.4f}" for channel in color)
         target.write(f"newmtl {name}\nKd {red} {green} {blue}\nKs 0 0 0\nillum 1\n".encode())
 
@@ -40,6 +49,7 @@ def write_obj_archive(
     segments: int | None = None,
     *,
     names: SegmentNames | None = None,
+    part_colors: SegmentColors | None = None,
     unit: str | None = None,
     up: str | None = None,
     materials: FaceMaterials | None = None,
@@ -50,7 +60,7 @@ def write_obj_archive(
     Parameters
     ----------
     target : a binary file; needs ``write`` and ``flush`` only.
-    names : names of segments by label.
+    names, part_colors : names and colours of segments by label.
     unit, up : as of :func:`segcore.io.obj.writer.write_obj`.
     materials : those of the input, in place of the materials of the segments.
     files : further members by name, in place of ``model.mtl``, if ``materials`` is given.
@@ -70,4 +80,4 @@ def write_obj_archive(
                 archive.writestr(member(name, compressed=True), content, compresslevel=FAST)
             return
         with archive.open(member(LIBRARY, compressed=True), "w") as file:
-            write_mtl(file, hierarchy, segments, names=names)  # type: ignore[arg-type]
+            write_mtl(file, hierarchy, segments, names=names, part_colors=part_colors)  # type: ignore[arg-type]

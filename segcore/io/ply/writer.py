@@ -12,7 +12,7 @@ from segcore.errors import InvalidParameters
 from segcore.hierarchy import Hierarchy
 from segcore.io.converting import requested
 from segcore.io.names import SegmentNames, segment_names
-from segcore.io.palette import color_bytes
+from segcore.io.palette import SegmentColors, color_bytes
 from segcore.io.ply.divided import UNUSED, DividedVertices, divide
 from segcore.mesh import Mesh
 
@@ -52,6 +52,7 @@ def write_ply(
     *,
     colors: PlyColors = "vertices",
     names: SegmentNames | None = None,
+    part_colors: SegmentColors | None = None,
     unit: str | None = None,
     up: str | None = None,
 ) -> None:
@@ -68,6 +69,7 @@ def write_ply(
         (-1 if no face uses it) and an ``int source_vertex``, its index in the input. ``faces``: the vertices are those
         of the input, with their own colours.
     names : names of segments by label, for comments such as ``comment label 3 is wheel``.
+    part_colors : colours of segments by label, in place of the fixed ones.
     unit, up : convert the coordinates to this unit, such as ``mm``, and to this axis up, ``y`` or ``z``; by default
         they are those of the mesh.
 
@@ -84,7 +86,7 @@ def write_ply(
     faces, vertices = mesh.faces, _vertex_columns(mesh)
     if colors == "vertices":
         divided = divide(mesh, labels)
-        faces, vertices = divided.faces, _divided_columns(vertices, divided)
+        faces, vertices = divided.faces, _divided_columns(vertices, divided, part_colors)
     comments = [
         "comment written by Cleave: label is the segment of a face",
         *_name_comments(names, len(hierarchy.segment_nodes(segments))),
@@ -93,13 +95,13 @@ def write_ply(
     target.write(_header(vertices, len(faces), comments, properties))
     for piece in _records(vertices):
         target.write(piece)
-    for piece in _records([*_corner_columns(faces), *_label_columns(labels)]):
+    for piece in _records([*_corner_columns(faces), *_label_columns(labels, part_colors)]):
         target.write(piece)
 
 
-def _divided_columns(columns: list[_Column], divided: DividedVertices) -> list[_Column]:
+def _divided_columns(columns: list[_Column], divided: DividedVertices, chosen: SegmentColors | None) -> list[_Column]:
     """The columns of the vertices, with the colours of their segments in place of their own."""
-    palette = color_bytes(int(divided.label.max()) + 1)
+    palette = color_bytes(int(divided.label.max()) + 1, chosen)
     shown = np.where(divided.label[:, None] == UNUSED, np.uint8(255), palette[divided.label])
     kept = [column for column in columns if column.name not in _APPEARANCE["colors"][0]]
     return [
@@ -153,8 +155,8 @@ def _corner_columns(faces: IntArray) -> list[_Column]:
     return [_Column("size", "u1", sizes), _Column("corners", "<i4", faces)]
 
 
-def _label_columns(labels: IntArray) -> list[_Column]:
-    colors = color_bytes(int(labels.max()) + 1)
+def _label_columns(labels: IntArray, chosen: SegmentColors | None) -> list[_Column]:
+    colors = color_bytes(int(labels.max()) + 1, chosen)
     return [_Column("color", "u1", colors[labels]), _Column("label", "<i4", labels)]
 
 

@@ -11,7 +11,7 @@ from segcore.hierarchy import Hierarchy
 from segcore.io.archive import FAST, member
 from segcore.io.converting import converted
 from segcore.io.names import SegmentNames, one_line, segment_names
-from segcore.io.palette import color_bytes
+from segcore.io.palette import SegmentColors, color_bytes
 from segcore.io.parts.pieces import Part, parts_of
 from segcore.io.slices import segment_slices
 from segcore.io.stl.writer import offset_of
@@ -47,6 +47,7 @@ def write_3mf(
     *,
     capped: bool | None = None,
     names: SegmentNames | None = None,
+    part_colors: SegmentColors | None = None,
 ) -> None:
     """Write a 3MF file: an assembly of the objects ``segment k``, each with its colour, in place.
 
@@ -63,6 +64,7 @@ def write_3mf(
     capped : close each object with caps, see :func:`segcore.io.parts.pieces.closed_parts`; None for yes, because 3MF
         is a format for printing.
     names : names of segments by label, in place of ``segment k``.
+    part_colors : colours of segments by label, in place of the fixed ones.
 
     Raises
     ------
@@ -80,7 +82,7 @@ def write_3mf(
         for name, text in _PACKAGE.items():
             archive.writestr(member(name, compressed=True), text, compresslevel=FAST)
         with archive.open(member(_MODEL, compressed=True), "w", force_zip64=True) as model:
-            model.writelines(_model(parts, called, groups, offset))
+            model.writelines(_model(parts, called, color_bytes(count, part_colors).tolist(), groups, offset))
 
 
 def _description(part: Part, groups: str) -> str:
@@ -102,10 +104,12 @@ def _quoted(text: str) -> str:
     return '"' + value.replace('"', "&quot;") + '"'
 
 
-def _model(parts: Iterator[Part], names: list[str], groups: list[str], offset: FloatArray) -> Iterator[bytes]:
+def _model(
+    parts: Iterator[Part], names: list[str], colors: list[list[int]], groups: list[str], offset: FloatArray
+) -> Iterator[bytes]:
     materials = [
         f'<base name={name} displaycolor="#{bytes(color).hex().upper()}"/>\n'
-        for name, color in zip(names, color_bytes(len(names)), strict=True)
+        for name, color in zip(names, colors, strict=True)
     ]
     yield (
         f'{_HEAD}<model unit="millimeter" xml:lang="en-US" xmlns="{_CORE}">\n<resources>\n'

@@ -40,6 +40,7 @@ def test_a_writer_is_found_by_the_name_of_the_file() -> None:
 def test_a_writer_takes_the_options_that_it_lists_and_no_others(kind: str) -> None:
     values = {
         "names": {0: "wheel"},
+        "part_colors": {0: "#102030"},
         "all_levels": True,
         "features": True,
         "capped": True,
@@ -49,6 +50,7 @@ def test_a_writer_takes_the_options_that_it_lists_and_no_others(kind: str) -> No
         "colors": "faces",
         "unit": "mm",
         "up": "z",
+        "edited": None,
     }
     assert set(values) == set(WRITE_OPTIONS)
     mesh, hierarchy = two_strips()

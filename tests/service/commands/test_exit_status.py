@@ -24,6 +24,8 @@ CALLS = {
     ("worker", 2): [],
     ("segment", 0): ["ball.off"],
     ("segment", 2): ["missing.off"],
+    ("edit", 0): ["ball.cleave", "--operations", "edits.json"],
+    ("edit", 2): ["ball.cleave", "--operations", "missing.json"],
     ("convert", 0): ["ball.cleave", "-o", "ball.glb"],
     ("convert", 2): ["ball.off", "-o", "ball.glb"],
     ("inspect", 0): ["ball.off"],
@@ -59,6 +61,7 @@ def test_a_command_ends_with_its_status(
 ) -> None:
     for file in ball.iterdir():
         (tmp_path / file.name).write_bytes(file.read_bytes())
+    (tmp_path / "edits.json").write_text('{"operations": [{"op": "lock", "part": 0}]}')
     monkeypatch.chdir(tmp_path)
     monkeypatch.delenv("CLEAVE_REDIS_URL", raising=False)
     monkeypatch.setenv("CLEAVE_DATA_DIR", str(tmp_path / "data"))

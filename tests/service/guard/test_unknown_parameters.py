@@ -17,7 +17,7 @@ from helpers.jobs import sphere
         ("model.glb?level=all", "'levels'"),
         ("model.obj?names=3:arm", "'name'"),
         ("events?segments=3", "no other"),
-        ("hierarchy?segments=3", "no other"),
+        ("hierarchy?segments=3", "the only one is 'revision'"),
         ("?waits=3", "'wait'"),
     ],
 )

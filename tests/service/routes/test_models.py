@@ -135,7 +135,7 @@ def test_the_preview_shows_the_segments(client: httpx.Client, finished_job: Call
 
 
 def test_every_option_of_a_writer_is_a_query_parameter() -> None:
-    assert {option for writer in MODELS.values() for option in writer.options} == {"names", *OPTIONS}
+    assert {option for writer in MODELS.values() for option in writer.options} == {"names", "part_colors", *OPTIONS}
 
 
 def test_a_mesh_in_inches_is_in_millimetres_as_3mf_and_in_centimetres_on_request(

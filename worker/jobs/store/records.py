@@ -10,7 +10,7 @@ from pydantic import TypeAdapter
 from worker.jobs.attempts import Attempt, Cause
 from worker.jobs.job import Job, Outcome, is_job_id, now
 from worker.jobs.objects.interface import ObjectStorage, name_of
-from worker.jobs.store.layout import MANIFEST, RECORD, job_folder, job_key
+from worker.jobs.store.layout import MANIFEST, RECORD, REVISIONS, job_folder, job_key, revision_number
 
 JOB = TypeAdapter(Job)
 _ATTEMPT = TypeAdapter(Attempt)
@@ -30,6 +30,7 @@ class JobState:
 
     outcome: Outcome | None
     attempts: list[Attempt]  # those that count, in order
+    revision: int = 0  # the newest; 0 if there is none. Of a remote storage, at the time when the state was first read
 
 
 class Records:
@@ -87,9 +88,7 @@ class Records:
 
     def attempts(self, job_id: str) -> list[Attempt]:
         """Return the runs of a job that count, in order."""
-        keys = [key for key in self._objects.keys_below(job_folder(job_id)) if name_of(key).startswith("attempt-")]
-        found = (self._read(key, _ATTEMPT) for key in keys)
-        return sorted((attempt for attempt in found if attempt), key=lambda attempt: attempt.number)
+        return self._attempts_in(self._objects.keys_below(job_folder(job_id)))
 
     def add_attempt(self, job_id: str, worker: str) -> Attempt:
         self.require(job_id)
@@ -118,10 +117,19 @@ class Records:
         cached = self._ended.get(job_id)
         if cached is not None:
             return cached
-        state = JobState(self.outcome(job_id), self.attempts(job_id))
+        keys = self._objects.keys_below(job_folder(job_id))
+        state = JobState(self.outcome(job_id), self._attempts_in(keys), _newest_revision_in(keys))
         if state.outcome is not None:
             self._add_to(self._ended, job_id, state)
         return state
+
+    def forget_state(self, job_id: str) -> None:
+        """Read the state of a job again, as this process has changed it."""
+        self._ended.pop(job_id, None)
+
+    def _attempts_in(self, keys: list[str]) -> list[Attempt]:
+        found = (self._read(key, _ATTEMPT) for key in keys if name_of(key).startswith("attempt-"))
+        return sorted((attempt for attempt in found if attempt), key=lambda attempt: attempt.number)
 
     def _add_to(self, cache: OrderedDict[str, Document], job_id: str, document: Document) -> None:
         if self._objects.poll_interval_s > 0:
@@ -141,3 +149,7 @@ class Records:
 
 def _attempt_key(job_id: str, attempt: Attempt) -> str:
     return job_key(job_id, f"attempt-{attempt.number}.json")
+
+
+def _newest_revision_in(keys: list[str]) -> int:
+    return max((revision_number(key) for key in keys if f"/{REVISIONS}/" in key), default=0)

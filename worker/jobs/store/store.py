@@ -22,9 +22,11 @@ from worker.jobs.store.layout import MESH, job_key, mesh_name
 from worker.jobs.store.outbox import Outbox
 from worker.jobs.store.pages import JobPage, read_page
 from worker.jobs.store.pending import PendingJobs
+from worker.jobs.store.queued_edits import QueuedEdits
 from worker.jobs.store.records import Records
 from worker.jobs.store.records import UnknownJob as UnknownJob
 from worker.jobs.store.results import ResultFiles
+from worker.jobs.store.revisions import Revisions
 from worker.jobs.store.spool import Spool
 from worker.jobs.store.upload import MeshUpload
 
@@ -47,6 +49,8 @@ class JobStore:
         self.spool = spool
         self.records = Records(objects)
         self.results = ResultFiles(objects, self.records, spool, cache)
+        self.revisions = Revisions(objects, self.records)
+        self.queued_edits = QueuedEdits(objects, self.records)
         self.pending = PendingJobs(objects)
         self.index = JobIndex(objects)
         self.computed = ComputedIndex(objects)

@@ -7,6 +7,7 @@ from segcore.arrays import IntArray
 from segcore.io.gltf.document import Item
 from segcore.io.gltf.kept.asset import KeptAsset
 from segcore.io.gltf.writer_scene import VARIANTS, mappings, segment_materials
+from segcore.io.palette import SegmentColors
 
 ORIGINAL_LOOK = "original look"
 
@@ -39,7 +40,13 @@ class Marks:
         return {**entry, "extensions": extensions}
 
 
-def add_variants(asset: KeptAsset, names: list[str], materials: IntArray, variants: list[str]) -> Marks:
+def add_variants(
+    asset: KeptAsset,
+    names: list[str],
+    materials: IntArray,
+    variants: list[str],
+    part_colors: SegmentColors | None = None,
+) -> Marks:
     """Add the materials of the parts and the variants: the original look, then one for each level.
 
     Parameters
@@ -47,9 +54,10 @@ def add_variants(asset: KeptAsset, names: list[str], materials: IntArray, varian
     names : (D,) names of the parts.
     materials : (L, D) the label whose colour each part has at each level.
     variants : (L,) names of the levels.
+    part_colors : colours of parts by label, in place of the fixed ones.
     """
     first_material = len(asset.entries("materials"))
-    asset.entries("materials").extend(segment_materials(names))
+    asset.entries("materials").extend(segment_materials(names, part_colors))
     asset.use_extension(VARIANTS)
     table = asset.root.setdefault("extensions", {}).setdefault(VARIANTS, {}).setdefault("variants", [])
     original = len(table)

@@ -23,6 +23,7 @@ from segcore.io.gltf.writer_scene import (
 )
 from segcore.io.limits import ReadLimits
 from segcore.io.names import SegmentNames, segment_names
+from segcore.io.palette import SegmentColors
 
 _MOST_LEVELS = 1024  # every part lists all of them; a hierarchy has as many by itself
 
@@ -44,6 +45,7 @@ def write_kept_document(
     limits: ReadLimits,
     *,
     names: SegmentNames | None,
+    part_colors: SegmentColors | None,
     all_levels: bool,
 ) -> tuple[str, ...]:
     """Write a document as GLB; see :func:`segcore.io.keeping.write_kept`. Return notes on what could not be kept.
@@ -58,7 +60,7 @@ def write_kept_document(
     levels = _levels(len(drawing.nodes))
     asset = KeptAsset.of(kept.document)
     materials = level_materials(hierarchy, drawing.nodes, levels)
-    marks = add_variants(asset, segment_names(names, len(drawing.nodes)), materials, variant_names(levels))
+    marks = add_variants(asset, segment_names(names, len(drawing.nodes)), materials, variant_names(levels), part_colors)
     divide_document(asset, kept, drawing.of_face, marks, limits)
     _describe(asset, kept.document, hierarchy, drawing)
     asset.write(target)

@@ -7,11 +7,15 @@ from datetime import timedelta
 from pathlib import Path
 from typing import Any
 
+import numpy as np
 import pytest
 
+from segcore import Partition
 from worker.janitor.retention import stored_jobs
 from worker.jobs.job import Job, Succeeded, new_job_id, now
 from worker.jobs.objects.interface import ObjectStorage, StoreError
+from worker.jobs.queued_edit import EditOutcome, QueuedEdit
+from worker.jobs.revision import Revision
 from worker.jobs.store.acceptance import JobExists
 from worker.jobs.store.layout import BEING_DELETED
 from worker.jobs.store.outbox import Delivery
@@ -257,3 +261,66 @@ def test_a_lost_response_of_the_store_loses_no_job(any_store: JobStore, reopen: 
         assert {one.id for one in stored_jobs(any_store) if one.is_accepted} >= {job.id}
         return
     raise AssertionError("the function does not end")
+
+
+def test_a_killed_edit_has_made_its_revision_completely_or_not_at_all(
+    any_store: JobStore, reopen: Callable[..., JobStore]
+) -> None:
+    job = accept(any_store, a_job())
+    any_store.finish(job.id, succeeded())
+    parts = Partition(np.array([0, 1, 1], dtype=np.int32))
+    seen = set()
+    for number, is_done in [(1, False), (1, True), (2, True)]:
+        failing = FailingObjects(any_store.objects, 0, Killed(), is_done=is_done)
+        revision = Revision(number=number, parent=number - 1, made_at=now(), made_by=None, what="cut", parts=2)
+        with pytest.raises(Killed):
+            reopen(failing).revisions.add(job.id, revision, parts)
+        newest = reopen().revisions.newest(job.id)
+        seen.add(newest)
+        for made in range(1, newest + 1):
+            assert reopen().revisions.partition(job.id, made).labels.tolist() == [0, 1, 1]
+    assert seen == {0, 1, 2}
+
+
+def test_an_edit_in_the_queue_is_accepted_and_ends_once_or_can_be_run_again(
+    any_store: JobStore, reopen: Callable[..., JobStore]
+) -> None:
+    job = accept(any_store, a_job())
+    any_store.finish(job.id, succeeded())
+    edit = QueuedEdit(
+        id=new_job_id(), job_id=job.id, accepted_at=now(), made_by=None, request="r", content=None, edit={"base": 0}
+    )
+    outcome = EditOutcome(ended_at=now(), revision=1)
+
+    def renew() -> None:
+        nonlocal edit
+        edit = replace(edit, id=new_job_id())
+
+    def work(failing: Any) -> None:
+        store = reopen(failing)
+        store.queued_edits.accept(edit)
+        store.queued_edits.begin(edit)
+        store.queued_edits.end(edit, outcome)
+
+    seen = set()
+    for _ in killed_at_every_write(any_store.objects, work, renew):
+        edits = reopen().queued_edits
+        accepted, ended = edits.find(job.id, edit.id), edits.outcome(job.id, edit.id)
+        seen.add((accepted is not None, ended is not None))
+        assert accepted in (None, edit)
+        if accepted is not None and ended is None:
+            assert edits.waiting(edit.id) == edit
+            assert edit.id in edits.waiting_ids()
+            edits.begin(edit)
+            edits.end(edit, outcome)
+        elif ended is not None:
+            edits.end(edit, replace(outcome, revision=2))
+        if accepted is not None:
+            assert edits.outcome(job.id, edit.id) == outcome
+            assert edits.waiting_ids() == []
+    assert seen == {(False, False), (True, False), (True, True)}
+    any_store.delete(job.id)
+    assert any_store.objects.keys_below(f"jobs/{job.id}") == []
+    with pytest.raises(UnknownJob):
+        any_store.queued_edits.accept(edit)
+    assert any_store.queued_edits.waiting(edit.id) is None
