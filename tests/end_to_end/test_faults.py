@@ -111,9 +111,9 @@ def test_a_damaged_queue_costs_no_job() -> None:
         paths = [installation.submit(sphere(12)) for _ in range(20)]
         installation.kill()
         wait_until(lambda: not installation.processes())
-        for file in (installation.data_dir / "queue" / "appendonlydir").glob("*.incr.aof"):
+        for file in (installation.data_dir / "queue" / "appendonlydir").glob("*.[ar][od][fb]"):  # changes and base
             data = file.read_bytes()
-            file.write_bytes(data[: len(data) // 2] + bytes(1000) + data[len(data) // 2 :])
+            file.write_bytes(data[: len(data) // 2] + b"*" * 1000 + data[len(data) // 2 :])
         installation.start()
         wait_until(lambda: installation.statuses(paths) == {"succeeded"}, within_s=120)
         assert (installation.data_dir / "queue" / "damaged").is_dir()
