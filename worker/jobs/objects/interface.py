@@ -4,7 +4,7 @@ An object has a key: parts separated by slashes, such as ``jobs/<id>/job.json``.
 also after a crash during a write, and is durable as soon as the call that wrote it has returned.
 """
 
-from collections.abc import Callable, Iterable
+from collections.abc import Callable, Iterable, Iterator
 from dataclasses import dataclass
 from pathlib import Path
 from typing import BinaryIO, Protocol, TypeVar
@@ -51,13 +51,16 @@ class ObjectStorage(Protocol):
         """
 
     def put(self, key: str, data: bytes, *, durable: bool = True) -> None:
-        """Write or replace an object; if it is not ``durable``, it may be empty after a crash of the machine."""
+        """Write or replace an object; if it is not ``durable``, it may be empty or absent after a crash of the machine.
+
+        ``sync`` makes it durable afterwards.
+        """
 
     def put_file(self, key: str, path: Path) -> None:
         """Write or replace an object with the contents of a file; the file may be moved."""
 
     def copy(self, key: str, target: str) -> None:
-        """Write or replace an object with the contents of another one; a folder shares the bytes of both.
+        """Write or replace an object with the contents of another one; a folder shares the bytes of both if it can.
 
         Raises
         ------
@@ -83,16 +86,29 @@ class ObjectStorage(Protocol):
         """Remove an object, if there is one."""
 
     def keys_below(self, folder: str, after: str = "", limit: int | None = None) -> list[str]:
-        """Return the keys that begin with the folder and a slash, in order: those after a key, at most ``limit``."""
+        """Return the keys that begin with the folder and a slash, in order: those after a key, at most ``limit``.
 
-    def list_below(self, folder: str) -> list[ObjectInfo]:
-        """Return all objects whose keys begin with the folder and a slash, in the order of their keys."""
+        The cost depends on the number of keys that are returned, if the keys are spread over folders that each have
+        a limited number of entries; a bucket needs no such folders.
+        """
+
+    def list_below(self, folder: str, after: str = "", limit: int | None = None) -> list[ObjectInfo]:
+        """Return the objects with the keys that ``keys_below`` returns."""
+
+    def walk(self, folder: str) -> Iterator[str]:
+        """Yield the keys that begin with the folder and a slash, in any order and without holding all of them.
+
+        Of objects that are written or deleted meanwhile some may be missing.
+        """
 
     def each(self, work: Callable[[Item], Value], items: Iterable[Item]) -> list[Value]:
         """Apply a function to some items and return the results in order; a remote storage uses several threads."""
 
     def presigned_url(self, key: str, valid_s: float) -> str | None:
         """Return a URL from which anyone can read an object for a time; None if the storage has none."""
+
+    def sync(self, keys: Iterable[str]) -> None:
+        """Make objects durable that were written without ``durable``; some of them may be deleted by now."""
 
     def check_writable(self) -> None:
         """Raise an OSError if objects cannot be written, or if ``create`` replaces an object."""

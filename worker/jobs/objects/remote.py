@@ -86,8 +86,14 @@ class RemoteObjects:
     def keys_below(self, folder: str, after: str = "", limit: int | None = None) -> list[str]:
         return [one.key for one in self._list(folder, after, limit)]
 
-    def list_below(self, folder: str) -> list[ObjectInfo]:
-        return self._list(folder)
+    def list_below(self, folder: str, after: str = "", limit: int | None = None) -> list[ObjectInfo]:
+        return self._list(folder, after, limit)
+
+    def walk(self, folder: str) -> Iterator[str]:
+        after = ""
+        while keys := self.keys_below(folder, after, _PAGE_KEYS):
+            yield from keys
+            after = keys[-1]
 
     def each(self, work: Callable[[Item], Value], items: Iterable[Item]) -> list[Value]:
         """Use threads; ``work`` must not call ``each`` itself, which could deadlock."""
@@ -97,6 +103,9 @@ class RemoteObjects:
 
     def presigned_url(self, key: str, valid_s: float) -> str | None:
         return self._bucket.sign(key, timedelta(seconds=valid_s))
+
+    def sync(self, keys: Iterable[str]) -> None:
+        """Do nothing: every object is durable once it is written."""
 
     def check_writable(self) -> None:
         probe = f"probe/{secrets.token_hex(16)}"

@@ -1,0 +1,1 @@
+"""Storage that fails or counts, for the tests of the store."""
