@@ -50,7 +50,8 @@ class Settings(BaseSettings):
     retention_bytes: int | None = Field(
         default=None,
         ge=0,
-        description="Size of all jobs above which those that ended first are deleted; no limit if none is set.",
+        description="Size of the meshes and results of all ended jobs above which those that ended first are deleted; "
+        "no limit if none is set.",
     )
     redis_url: str | None = Field(
         default=None,

@@ -107,10 +107,9 @@ class CounterCollector(Collector):
             _labelled(counts, "lost"),
         )
         if stored is not None:
-            yield _gauge(
-                "cleave_stored_bytes", "Size of all stored jobs, when the janitor last listed them.", stored.size_bytes
-            )
-            yield _gauge("cleave_stored_jobs", "Number of stored jobs, when the janitor last listed them.", stored.jobs)
+            size = "Size of the meshes and results of all ended jobs, when the janitor last counted them."
+            yield _gauge("cleave_stored_bytes", size, stored.size_bytes)
+            yield _gauge("cleave_stored_jobs", "Ended jobs, when the janitor last counted them.", stored.jobs)
         yield CounterMetricFamily("cleave_faces", "Faces that were segmented.", counts.get(("faces",), 0.0))
         yield CounterMetricFamily(
             "cleave_recovered_jobs",

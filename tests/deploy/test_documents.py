@@ -27,7 +27,7 @@ def test_every_setting_that_is_named_exists(text: str) -> None:
 
 
 def test_exactly_the_existing_metrics_are_explained(store: JobStore, queue: JobQueue, tmp_path: Path) -> None:
-    JobCounters(queue.connection).jobs_listed(Stored(0, 0))
+    JobCounters(queue.connection).jobs_counted(Stored(0, 0))
     ending = {"counter": "_total", "info": "_info"}
     there = {
         f"{family.name}{ending.get(family.type, '')}"

@@ -33,7 +33,7 @@ def labels_of(store: JobStore, queue: JobQueue, connection: Redis, tmp_path: Pat
     counters.attempt_lost("worker_lost")
     counters.job_recovered()
     counters.store_failed("worker")
-    counters.jobs_listed(Stored(1, 4))
+    counters.jobs_counted(Stored(1, 4))
     metrics = Metrics(store, queue, tmp_path)
     metrics.requests.labels("GET", "/", 200).inc()
     metrics.seconds.labels("/").observe(1.0)

@@ -12,7 +12,7 @@ from redis import Redis
 
 from helpers.buckets import CREDENTIALS
 from helpers.hosts import Host, Network, can_make_hosts
-from helpers.jobs import LONG, sphere
+from helpers.jobs import LONG, sphere, unfinished
 from helpers.waiting import wait_until
 from service.host.queue_server import find_server_binary
 from worker.jobs.queue.workers import live_workers
@@ -126,7 +126,7 @@ def test_a_host_that_loses_its_network_loses_no_job_and_works_again_afterwards(
     assert [attempt.number for attempt in store.records.attempts(id_of(interrupted))] == [1, 2]
     assert {len(store.records.attempts(id_of(path))) for path in others} == {1}
     assert len({result_bytes(store, path) for path in others}) == 1
-    assert store.pending.all() == {}
+    assert unfinished(store) == {}
 
 
 def result_bytes(store: JobStore, path: str) -> bytes:

@@ -32,7 +32,7 @@ def problem(answer: httpx.Response, status: int, code: str) -> dict[str, object]
 
 def traces(data_dir: Path) -> list[Path]:
     """Return all files of jobs and uploads in a data folder."""
-    folders = ("jobs", "pending", "incoming", "index", "computed")
+    folders = ("jobs", "pending", "incoming", "timeline", "ended", "computed")
     return [file for folder in folders for file in (data_dir / folder).rglob("*") if file.is_file()]
 
 

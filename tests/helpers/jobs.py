@@ -49,3 +49,8 @@ def accepted(store: JobStore, mesh: bytes, **parameters: object) -> Job:
         )
         store.accept(job, upload)
     return job
+
+
+def unfinished(store: JobStore) -> dict[str, str | None]:
+    """Return the unfinished jobs of a store and their owners, oldest first, and remove markers too many."""
+    return {marker.job_id: marker.owner for marker in store.pending.unfinished(store.pending.markers())}

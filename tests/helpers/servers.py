@@ -13,6 +13,7 @@ import uvicorn
 
 import segcore
 from cleave.settings import Settings
+from helpers.jobs import unfinished
 from segcore.hierarchy import Hierarchy
 from segcore.mesh import Mesh
 from segcore.parameters import SegmentationParameters
@@ -52,7 +53,7 @@ def working(store: JobStore, settings: Settings) -> Iterator[None]:
 
     def work() -> None:
         while not stop.wait(0.01):
-            for job_id in store.pending.all():
+            for job_id in unfinished(store):
                 perform(store, settings, job_id, lambda *_: None)
 
     thread = threading.Thread(target=work)

@@ -7,8 +7,8 @@ import time
 
 from cleave.logs import about, configure_logging
 from cleave.settings import Settings, load_settings
-from worker.janitor.retention import Housekeeping
-from worker.jobs.admission import may_wait_outside
+from worker.janitor.housekeeping import Housekeeping
+from worker.janitor.search import Search
 from worker.jobs.attempts import exhausted
 from worker.jobs.job import Job
 from worker.jobs.queue.connection import QueueError, connect
@@ -40,6 +40,7 @@ class Janitor:
         self._housekeeping = Housekeeping(store, settings, self._counters)
         # The process id of the supervisor, so that a restarted janitor is the leader at once.
         self._name = f"{socket.gethostname()}.{os.getppid()}"
+        self._search = Search(store, queue, settings.key_max_running_jobs)
         self._missing_since: dict[str, float] = {}
         self._edits_missing_since: dict[str, float] = {}
 
@@ -50,8 +51,7 @@ class Janitor:
         """
         self._housekeeping.sweep_machine()
         if not self._locks.lead(self._name, _LEADER_INTERVALS * self._settings.janitor_interval_s):
-            self._missing_since.clear()
-            self._edits_missing_since.clear()
+            self._forget_missing()
             return
         for job_id in reversed(self._lost(at_s)):  # each is put at the front, the oldest last
             job = self._store.records.job(job_id)
@@ -66,14 +66,15 @@ class Janitor:
         """Count an error of the store, and forget which jobs are missing, as the queue or the store was not read."""
         if isinstance(error, OSError):
             self._counters.store_failed("janitor")
+        self._forget_missing()
+
+    def _forget_missing(self) -> None:
+        self._search.restart()
         self._missing_since.clear()
         self._edits_missing_since.clear()
 
     def _lost(self, at_s: float) -> list[str]:
-        unfinished = self._store.pending.all()
-        held = self._queue.held(unfinished)
-        outside = may_wait_outside(unfinished, held, self._settings.key_max_running_jobs)
-        missing = [job_id for job_id in unfinished if job_id not in held and job_id not in outside]
+        missing = self._search.next_missing()
         self._missing_since = {job_id: self._missing_since.get(job_id, at_s) for job_id in missing}
         return [job_id for job_id in missing if at_s - self._missing_since[job_id] >= MISSING_S]
 

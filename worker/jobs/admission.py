@@ -1,9 +1,13 @@
-"""The limit on an owner's jobs in the queue: the others wait in the store, in the order of their submission."""
+"""The limit on an owner's jobs in the queue: the oldest belong there, and the others wait in the store."""
+
+from collections import Counter
+from collections.abc import Iterable
 
 from cleave.settings import Settings
 from worker.jobs.job import Job
 from worker.jobs.queue.queue import JobQueue
 from worker.jobs.size_class import size_class
+from worker.jobs.store.pending import Marker
 from worker.jobs.store.store import JobStore
 
 
@@ -21,33 +25,27 @@ def admit(store: JobStore, queue: JobQueue, settings: Settings, owner: str | Non
 
 
 def _next_of(store: JobStore, queue: JobQueue, owner: str | None, most: int) -> list[Job]:
-    """Return the oldest jobs of an owner that are not in the queue, as many as the limit allows."""
-    unfinished = store.pending.of(owner)
-    held = queue.held(unfinished)
-    outside = [job_id for job_id in unfinished if job_id not in held]
-    jobs = (store.records.job(job_id) for job_id in outside[: max(0, most - len(held))])
+    """Return those of an owner's oldest unfinished jobs, as many as the limit allows, that are not in the queue."""
+    oldest = store.pending.oldest_of(owner, most)
+    held = queue.held(oldest)
+    jobs = (store.records.job(job_id) for job_id in oldest if job_id not in held)
     return [job for job in jobs if job is not None]
 
 
-def may_wait_outside(owner_of: dict[str, str | None], held: set[str], most: int | None) -> set[str]:
-    """Return the unfinished jobs that may be absent from the queue, because their owners have reached the limit.
+def belonging_in_queue(markers: Iterable[Marker], most: int | None) -> list[Marker]:
+    """Return the markers of the jobs that must be in the queue or run: the oldest ones of each owner.
 
     Parameters
     ----------
-    owner_of : the owners of all unfinished jobs, oldest job first.
-    held : the jobs that are in the queue or run.
+    markers : of all unfinished jobs, oldest first.
     most : jobs of an owner in the queue at a time; None for no limit.
     """
     if most is None:
-        return set()
-    room: dict[str | None, int] = {}
-    for job_id in held:
-        owner = owner_of.get(job_id)
-        room[owner] = room.get(owner, most) - 1
-    outside: set[str] = set()
-    for job_id, owner in owner_of.items():
-        if job_id not in held:
-            room[owner] = room.get(owner, most) - 1
-            if room[owner] < 0:
-                outside.add(job_id)
-    return outside
+        return list(markers)
+    number: Counter[str | None] = Counter()
+    oldest = []
+    for marker in markers:
+        number[marker.owner] += 1
+        if number[marker.owner] <= most:
+            oldest.append(marker)
+    return oldest

@@ -44,7 +44,9 @@ class WebhookSender:
 
     def send_due(self, at_s: float) -> None:
         """Send the messages that are due at a time in seconds since 1970, each from one process of the installation."""
-        deliveries = self.store.outbox.deliveries(except_for=self.store.pending.ids())
+        undelivered = self.store.outbox.job_ids()
+        unfinished = self.store.pending.ids() if undelivered else set()
+        deliveries = self.store.outbox.deliveries(undelivered - unfinished)
         due = [job_id for job_id, delivery in deliveries.items() if delivery.due_at <= at_s]
         with ThreadPoolExecutor(_THREADS) as pool:
             list(pool.map(lambda job_id: self._deliver(job_id, at_s), due))

@@ -8,7 +8,7 @@ import httpx
 
 from cleave.settings import Settings
 from helpers.api import problem, submit, traces
-from helpers.jobs import sphere
+from helpers.jobs import sphere, unfinished
 from helpers.servers import serving
 from helpers.uploads import post_zip, zip_of
 from worker.jobs.store.store import JobStore
@@ -21,7 +21,7 @@ MESHES = {f"mesh{rows}.off": sphere(rows) for rows in (10, 11, 12)}
 
 
 def work(store: JobStore, settings: Settings) -> None:
-    for job_id in store.pending.all():
+    for job_id in unfinished(store):
         perform(store, settings, job_id, lambda *_: None)
 
 

@@ -7,7 +7,7 @@ import httpx
 import pytest
 
 from helpers.api import AGAIN, problem, submit
-from helpers.jobs import SMALL, sphere
+from helpers.jobs import SMALL, sphere, unfinished
 from worker.jobs.queue.queue import JobQueue
 from worker.jobs.store.store import JobStore
 
@@ -121,7 +121,7 @@ def test_a_job_stays_accepted_if_the_queue_fails_during_its_submission(
 
     monkeypatch.setattr(JobQueue, "enqueue", fail)
     path = submit(client)
-    assert list(store.pending.all()) == [path.rpartition("/")[2]]
+    assert list(unfinished(store)) == [path.rpartition("/")[2]]
     assert queue.entries[SMALL].get_job_ids() == []
 
 

@@ -44,6 +44,6 @@ def test_the_operator_sees_the_version_the_process_and_the_disk(client: httpx.Cl
 
 def test_the_size_of_the_store_is_that_which_the_janitor_has_noted(client: httpx.Client, queue: JobQueue) -> None:
     assert "cleave_stored_bytes" not in samples(client)
-    JobCounters(queue.connection).jobs_listed(Stored(7, 1234))
+    JobCounters(queue.connection).jobs_counted(Stored(7, 1234))
     found = samples(client)
     assert (found["cleave_stored_jobs"], found["cleave_stored_bytes"]) == (7, 1234)

@@ -1,108 +1,170 @@
 """Retention: old jobs and jobs above the size limit are removed, except those that a client still waits for."""
 
 import time
-from dataclasses import replace
+from datetime import timedelta
 
 import pytest
 from redis import Redis
 
 from cleave.settings import Settings
 from helpers.jobs import accepted
-from worker.janitor.retention import Housekeeping, StoredJob, remove_surplus, stored_jobs, surplus
-from worker.jobs.job import Job, Succeeded, new_job_id, now
+from worker.janitor.census import Census
+from worker.janitor.housekeeping import Housekeeping
+from worker.janitor.retention import Retention
+from worker.jobs.job import Job, Succeeded, now
 from worker.jobs.queue.counters import JobCounters, Stored
+from worker.jobs.store.outbox import Delivery
 from worker.jobs.store.store import JobStore
 
 DAY_S = 24 * 3600.0
-NOW_S = 1000 * DAY_S
+SIZE = len(b"mesh bytes") + len(b"result")
 
 
-def job(age_days: float | None, size_bytes: int = 1) -> StoredJob:
-    return StoredJob(new_job_id(), size_bytes, None if age_days is None else NOW_S - age_days * DAY_S, is_accepted=True)
+def ended(store: JobStore, age_days: float) -> Job:
+    """Return a job that ended so many days ago, with a mesh and a result."""
+    job = accepted(store, b"mesh bytes")
+    store.results.write(job.id, lambda target: target.write(b"result"))
+    finished_at = now() - timedelta(days=age_days)
+    store.finish(job.id, Succeeded(finished_at=finished_at, faces=4, vertices=4, max_segments=3, automatic_segments=2))
+    return job
 
 
-def ids(*jobs: StoredJob) -> list[str]:
-    return [one.id for one in jobs]
+def removed(store: JobStore, jobs: list[Job], settings: Settings, at_s: float = 0.0) -> list[bool]:
+    """Apply the settings to a store, ``at_s`` seconds from now; return which of the jobs have been removed."""
+    census = Census(store.ended, 2)
+    while not census.step():
+        pass
+    retention = Retention(store, settings, census)
+    while retention.step(time.time() + at_s):
+        pass
+    return [store.records.job(job.id) is None for job in jobs]
 
 
-def test_jobs_above_the_age_limit_are_removed_oldest_first() -> None:
-    young, old, older = job(1), job(3), job(5)
-    settings = Settings(retention_s=2 * DAY_S)
-    assert surplus([young, old, older], set(), settings, NOW_S) == ids(older, old)
+@pytest.fixture
+def few_at_once(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr("worker.janitor.retention._REMOVED_AT_ONCE", 2)
 
 
-def test_the_first_jobs_to_end_are_removed_until_the_rest_is_below_the_size_limit() -> None:
-    jobs = [job(age, 100) for age in (4, 3, 2, 1)]
-    assert surplus(jobs, set(), Settings(retention_bytes=400), NOW_S) == []
-    assert surplus(jobs, set(), Settings(retention_bytes=399), NOW_S) == ids(jobs[0])
-    assert surplus(jobs, set(), Settings(retention_bytes=250), NOW_S) == ids(*jobs[:2])
-    assert surplus(jobs, set(), Settings(retention_bytes=0), NOW_S) == ids(*jobs)
+def test_jobs_above_the_age_limit_are_removed(any_store: JobStore) -> None:
+    jobs = [ended(any_store, age) for age in (1, 5, 3)]
+    assert removed(any_store, jobs, Settings()) == [False, False, False]
+    assert removed(any_store, jobs, Settings(retention_s=2 * DAY_S)) == [False, True, True]
+    assert all(any_store.deletions.was_deleted(job.id, None) for job in jobs[1:])
+    assert [one.id for one in any_store.ended.oldest("", 10)] == [jobs[0].id]
 
 
-def test_jobs_whose_end_was_not_reported_yet_are_kept() -> None:
-    settings = Settings(retention_s=0, retention_bytes=0, max_wait_s=60)
-    unfinished, just_ended, undelivered = job(None, 10**9), job(100 / DAY_S), job(9)
-    arriving = replace(job(None), is_accepted=False)
-    assert surplus([unfinished, just_ended, undelivered, arriving], {undelivered.id}, settings, NOW_S) == []
-
-
-def test_unfinished_jobs_count_towards_the_size_but_are_kept() -> None:
-    unfinished, ended = job(None, 10**9), job(2)
-    assert surplus([unfinished, ended], set(), Settings(retention_bytes=100), NOW_S) == ids(ended)
-
-
-def ended_job(store: JobStore) -> Job:
-    one = accepted(store, b"mesh bytes")
-    store.results.write(one.id, lambda target: target.write(b"result"))
-    store.finish(one.id, Succeeded(finished_at=now(), faces=4, vertices=4, max_segments=3, automatic_segments=2))
-    return one
-
-
-def test_a_sweep_deletes_ended_jobs_and_keeps_unfinished_ones(any_store: JobStore) -> None:
-    ended, waiting = ended_job(any_store), accepted(any_store, b"mesh")
-    for settings in (Settings(), Settings(retention_s=2 * DAY_S)):
-        remove_surplus(any_store, stored_jobs(any_store), settings, time.time() + DAY_S)
-        assert any_store.records.job(ended.id) == ended
-    remove_surplus(any_store, stored_jobs(any_store), Settings(retention_s=DAY_S / 2), time.time() + DAY_S)
-    assert any_store.records.job(ended.id) is None
-    assert any_store.deletions.was_deleted(ended.id, None)
-    assert any_store.records.job(waiting.id) == waiting
-    assert [one.id for one in stored_jobs(any_store)] == [waiting.id]
-
-
-def test_a_sweep_counts_every_byte_of_a_job(any_store: JobStore) -> None:
-    ended = ended_job(any_store)
-    (stored,) = stored_jobs(any_store)
-    assert stored.size_bytes > len(b"mesh bytes") + len(b"result")
-    remove_surplus(any_store, stored_jobs(any_store), Settings(retention_bytes=stored.size_bytes), time.time() + DAY_S)
-    assert any_store.records.job(ended.id) == ended
-    remove_surplus(
-        any_store, stored_jobs(any_store), Settings(retention_bytes=stored.size_bytes - 1), time.time() + DAY_S
-    )
-    assert any_store.records.job(ended.id) is None
-
-
-@pytest.mark.parametrize(("settings", "lists"), [({"retention_s": 1.0}, 3), ({}, 2)])
-def test_the_jobs_are_listed_rarely(
-    store: JobStore, connection: Redis, monkeypatch: pytest.MonkeyPatch, settings: dict[str, float], lists: int
+@pytest.mark.parametrize(
+    ("limit", "count"), [(4 * SIZE, 0), (4 * SIZE - 1, 1), (3 * SIZE, 1), (3 * SIZE - 1, 2), (0, 4)]
+)
+def test_the_first_jobs_to_end_are_removed_until_the_rest_is_below_the_size_limit(
+    store: JobStore, few_at_once: None, limit: int, count: int
 ) -> None:
-    """Twice a minute if they may be removed, and once an hour for the metrics."""
-    sweeps: list[float] = []
-    monkeypatch.setattr("worker.janitor.retention.remove_surplus", lambda *_: sweeps.append(0))
+    del few_at_once
+    jobs = [ended(store, age) for age in (4, 3, 2, 1)]
+    assert removed(store, jobs, Settings(retention_bytes=limit)) == [number < count for number in range(4)]
+
+
+def test_jobs_whose_end_was_not_reported_yet_are_kept(store: JobStore) -> None:
+    strict = Settings(retention_s=0, retention_bytes=0, max_wait_s=60)
+    unfinished, just_ended = accepted(store, b"mesh"), ended(store, 100 / DAY_S)
+    assert removed(store, [unfinished, just_ended], strict) == [False, False]
+    assert removed(store, [unfinished, just_ended], strict, at_s=DAY_S) == [False, True]
+
+
+def test_jobs_with_an_undelivered_webhook_are_kept_and_delay_no_others(store: JobStore, few_at_once: None) -> None:
+    del few_at_once
+    jobs = [ended(store, age) for age in range(9, 2, -1)]
+    for job in jobs[:4]:
+        store.outbox.put(job.id, Delivery())
+    a_day = Settings(retention_s=DAY_S)
+    assert removed(store, jobs, a_day) == [False] * 4 + [True] * 3
+    store.outbox.remove(jobs[1].id)
+    assert removed(store, jobs, a_day) == [False, True, False, False, True, True, True]
+
+
+def test_a_step_removes_a_few_jobs_and_the_next_one_goes_on(store: JobStore, few_at_once: None) -> None:
+    del few_at_once
+    jobs = [ended(store, age) for age in (5, 4, 3)]
+    retention = Retention(store, Settings(retention_s=DAY_S), Census(store.ended, 2))
+    assert retention.step(time.time())
+    assert [store.records.job(job.id) is None for job in jobs] == [True, True, False]
+    assert not retention.step(time.time())
+    assert store.records.job(jobs[2].id) is None
+
+
+def test_an_entry_without_a_job_is_removed(store: JobStore) -> None:
+    job = ended(store, 3)
+    store.objects.delete(f"jobs/{job.id}/job.json")
+    assert removed(store, [job], Settings(retention_s=DAY_S)) == [True]
+    assert store.ended.oldest("", 10) == []
+
+
+def test_a_count_in_several_steps_is_complete(store: JobStore, few_at_once: None) -> None:
+    del few_at_once
+    for age in range(5):
+        ended(store, age)
+    census = Census(store.ended, 2)
+    for _ in range(2):
+        assert [census.step() for _ in range(3)] == [False, False, True]
+        assert census.result == Stored(5, 5 * SIZE)
+
+
+def test_a_job_that_is_removed_during_a_count_is_not_counted(store: JobStore, few_at_once: None) -> None:
+    del few_at_once
+    for age in range(5):
+        ended(store, 5 - age)
+    census = Census(store.ended, 2)
+    census.step()
+    first = store.ended.oldest("", 1)[0]
+    store.delete(first.id)
+    census.removed(first)
+    assert [census.step(), census.step()] == [False, True]
+    assert census.result == Stored(4, 4 * SIZE)
+
+
+@pytest.mark.parametrize(("settings", "counts"), [({"retention_bytes": 10**9}, 3), ({"retention_s": 9.0}, 2), ({}, 2)])
+def test_the_jobs_are_counted_rarely(
+    store: JobStore, connection: Redis, monkeypatch: pytest.MonkeyPatch, settings: dict[str, float], counts: int
+) -> None:
+    """Twice a minute if their size is limited, and once an hour for the metrics."""
+    steps: list[bool] = []
+    step = Census.step
+
+    def counted(census: Census) -> bool:
+        steps.append(True)
+        return step(census)
+
+    monkeypatch.setattr(Census, "step", counted)
     counters = JobCounters(connection)
     assert counters.stored() is None
     housekeeping = Housekeeping(store, Settings(**settings), counters)
     for at_s in (0.0, 1.0, 29.0, 31.0, 32.0, 3601.0):
         housekeeping.sweep(at_s)
-    assert len(sweeps) == lists
+    assert len(steps) == counts
     assert counters.stored() == Stored(0, 0)
 
 
-def test_the_size_of_all_jobs_is_noted_for_the_metrics(store: JobStore, connection: Redis) -> None:
-    job = accepted(store, b"mesh")
+def test_the_size_of_the_ended_jobs_is_noted_for_the_metrics(store: JobStore, connection: Redis) -> None:
+    ended(store, 0)
+    accepted(store, b"waits")
     counters = JobCounters(connection)
     Housekeeping(store, Settings(), counters).sweep(0.0)
-    (listed,) = stored_jobs(store)
-    assert counters.stored() == Stored(1, listed.size_bytes)
-    assert listed.id == job.id
-    assert listed.size_bytes > len(b"mesh")
+    assert counters.stored() == Stored(1, SIZE)
+
+
+def test_work_that_fails_is_repeated_after_a_pause(
+    store: JobStore, connection: Redis, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """A sweep that fails forgets which jobs are missing, so it must not fail each time."""
+    housekeeping = Housekeeping(store, Settings(), JobCounters(connection))
+    housekeeping.sweep(0.0)
+
+    def fail(age_s: float) -> None:
+        raise OSError(f"nothing older than {age_s} s can be deleted")
+
+    monkeypatch.setattr(store, "finish_deletions", fail)
+    with pytest.raises(OSError, match="can be deleted"):
+        housekeeping.sweep(31.0)
+    housekeeping.sweep(33.0)
+    with pytest.raises(OSError, match="can be deleted"):
+        housekeeping.sweep(62.0)

@@ -8,9 +8,10 @@ import pytest
 from cleave.settings import Settings
 from helpers.jobs import SMALL, accepted
 from worker.janitor.janitor import MISSING_S, Janitor
-from worker.jobs.admission import admit, may_wait_outside
+from worker.jobs.admission import admit, belonging_in_queue
 from worker.jobs.job import Canceled, Job, new_job_id, now
 from worker.jobs.queue.queue import JobQueue
+from worker.jobs.store.pending import Marker
 from worker.jobs.store.store import JobStore
 
 
@@ -82,9 +83,12 @@ def settings(store: JobStore) -> Settings:
     return Settings(key_max_running_jobs=1)
 
 
-def test_the_youngest_jobs_may_wait_outside() -> None:
-    owners: dict[str, str | None] = {"a1": "a", "b1": "b", "a2": "a", "a3": "a", "n": None}
-    assert may_wait_outside(owners, set(), 1) == {"a2", "a3"}
-    assert may_wait_outside(owners, {"a2"}, 1) == {"a1", "a3"}
-    assert may_wait_outside(owners, {"a1", "a2", "a3"}, 1) == set()
-    assert may_wait_outside(owners, set(), None) == set()
+def test_the_oldest_jobs_of_each_owner_belong_in_the_queue() -> None:
+    times = (f"20260101T000000{number:06}" for number in range(10))
+    markers = [
+        Marker(f"pending/{time}-{new_job_id()}{owner}")
+        for time, owner in zip(times, (".a", ".b", ".a", ".a", "", ""), strict=False)
+    ]
+    assert belonging_in_queue(markers, 1) == [markers[0], markers[1], markers[4]]
+    assert belonging_in_queue(markers, 2) == [*markers[:3], *markers[4:]]
+    assert belonging_in_queue(markers, None) == markers

@@ -6,7 +6,7 @@ import time
 from pathlib import Path
 
 from helpers.buckets import s3_server
-from helpers.jobs import LONG, accepted, sphere
+from helpers.jobs import LONG, accepted, sphere, unfinished
 from helpers.processes import StartWorker, children_of
 from helpers.waiting import wait_until
 from worker.jobs.job import Succeeded
@@ -46,7 +46,7 @@ def test_a_worker_runs_jobs_of_a_bucket_even_if_the_bucket_hangs_meanwhile(
         time.sleep(4)
         os.kill(server.pid, signal.SIGCONT)
         assert succeeds(store, jobs[2])
-        assert store.pending.all() == {}
+        assert unfinished(store) == {}
         assert [len(store.records.attempts(job_id)) for job_id in jobs] == [1, 1, 1]
         wait_until(lambda: list((tmp_path / "data" / "incoming").iterdir()) == [])
         assert worker.poll() is None

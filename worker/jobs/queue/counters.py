@@ -38,7 +38,7 @@ class Durations:
 
 @dataclass(frozen=True, slots=True)
 class Stored:
-    """The jobs in the store."""
+    """The ended jobs in the store, and the size of their meshes and results."""
 
     jobs: int
     size_bytes: int
@@ -77,13 +77,13 @@ class JobCounters:
         """Count a job that the queue had lost and the janitor has enqueued again."""
         self._add({("recovered",): 1.0})
 
-    def jobs_listed(self, stored: Stored) -> None:
-        """Note how many jobs there are; a failure is ignored, as the next list will be noted."""
+    def jobs_counted(self, stored: Stored) -> None:
+        """Note how many jobs there are; a failure is ignored, as the next count will be noted."""
         with suppress(QueueError):
             self._connection.hset(_STORED_KEY, mapping={"jobs": stored.jobs, "size_bytes": stored.size_bytes})
 
     def stored(self) -> Stored | None:
-        """Return the jobs in the store when they were last listed; None if they never were.
+        """Return the jobs in the store when they were last counted; None if they never were.
 
         Raises
         ------

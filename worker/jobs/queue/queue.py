@@ -101,15 +101,27 @@ class JobQueue:
     def held(self, job_ids: Iterable[str]) -> set[str]:
         """Return those of the jobs that wait or run, read in one transaction."""
         ids = list(job_ids)
+        if not ids:
+            return set()
         with self.connection.pipeline() as transaction:
             for job_id in ids:
                 transaction.exists(_lease_key(job_id))
+                for key in self._waiting_keys:
+                    transaction.lpos(key, job_id)
+            replies = iter(transaction.execute())
+        each = zip(*(replies for _ in range(1 + len(self._waiting_keys))), strict=True)
+        return {
+            job_id
+            for job_id, (lease, *indices) in zip(ids, each, strict=True)
+            if lease or any(index is not None for index in indices)
+        }
+
+    def waiting(self) -> set[str]:
+        """Return all jobs that wait."""
+        with self.connection.pipeline() as transaction:
             for key in self._waiting_keys:
                 transaction.lrange(key, 0, -1)
-            replies = transaction.execute()
-        running = {job_id for job_id, lease in zip(ids, replies, strict=False) if lease}
-        waiting = {entry.decode() for entries in replies[len(ids) :] for entry in entries}
-        return running | (waiting & set(ids))
+            return {text_of(job_id) for entries in transaction.execute() for job_id in entries}
 
     def publish(self, job_id: str, progress: Progress) -> None:
         document = json.dumps({"stage": progress.stage, "fraction": progress.fraction})

@@ -16,14 +16,14 @@ class ComputedIndex:
         self._objects = objects
 
     def add(self, job: Job) -> None:
-        self._objects.put(_key(job), b"", durable=False)  # a lost entry costs only time
+        self._objects.put(computed_key(job), b"", durable=False)  # a lost entry costs only time
 
     def equal_to(self, job: Job) -> Iterator[str]:
         """Yield the ids of the jobs of the same owner that have succeeded with the same input."""
-        yield from filter(is_job_id, map(name_of, self._objects.keys_below(_folder(job))))
+        yield from filter(is_job_id, map(name_of, self._objects.walk(_folder(job))))
 
     def remove(self, job: Job) -> None:
-        self._objects.delete(_key(job))
+        self._objects.delete(computed_key(job))
 
 
 def fingerprint(job: Job) -> str:
@@ -36,5 +36,5 @@ def _folder(job: Job) -> str:
     return f"computed/{job.owner or NO_OWNER}/{fingerprint(job)}"
 
 
-def _key(job: Job) -> str:
+def computed_key(job: Job) -> str:
     return f"{_folder(job)}/{job.id}"

@@ -6,7 +6,8 @@ from cleave.settings import InvalidSettings, Settings
 from cleave.version import extra_command
 from worker.jobs.objects.file_cache import FileCache
 from worker.jobs.objects.local import LocalObjects
-from worker.jobs.store.migration import migrate
+from worker.jobs.store.layout import LayoutVersion
+from worker.jobs.store.migration import rename_at_once
 from worker.jobs.store.spool import Spool
 from worker.jobs.store.store import JobStore
 
@@ -28,9 +29,10 @@ def open_store(settings: Settings) -> JobStore:
 
 def open_folder(data_dir: Path) -> JobStore:
     """Open the store in a folder, which several machines may share."""
-    spool = Spool(data_dir / _SPOOL)
-    migrate(data_dir)
-    return JobStore(LocalObjects(data_dir), spool)
+    objects = LocalObjects(data_dir)
+    if not LayoutVersion(objects).is_current():
+        rename_at_once(data_dir)
+    return JobStore(objects, Spool(data_dir / _SPOOL))
 
 
 def open_url(url: str, data_dir: Path, cache_bytes: int) -> JobStore:

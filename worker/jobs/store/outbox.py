@@ -1,6 +1,7 @@
 """The outbox: pending deliveries of webhooks, one for each job that has a webhook, from its acceptance on."""
 
 import time
+from collections.abc import Iterable
 from dataclasses import dataclass
 
 from pydantic import TypeAdapter
@@ -31,11 +32,11 @@ class Outbox:
 
     def job_ids(self) -> set[str]:
         """Return the jobs whose webhooks are not delivered yet."""
-        return set(self._names())
+        return {name for name in map(name_of, self._objects.keys_below(_FOLDER)) if is_job_id(name)}
 
-    def deliveries(self, except_for: frozenset[str] | set[str] = frozenset()) -> dict[str, Delivery]:
-        """Return the pending deliveries by job, without those of some jobs."""
-        names = [name for name in self._names() if name not in except_for]
+    def deliveries(self, job_ids: Iterable[str]) -> dict[str, Delivery]:
+        """Return the pending deliveries of some jobs."""
+        names = list(job_ids)
         found = dict(zip(names, self._objects.each(self.delivery, names), strict=True))
         return {name: delivery for name, delivery in found.items() if delivery is not None}
 
@@ -51,9 +52,6 @@ class Outbox:
         oldest = time.time() - older_than_s
         if any(one.name == job_id and one.modified_at < oldest for one in self._objects.list_below(_FOLDER)):
             self.remove(job_id)
-
-    def _names(self) -> list[str]:
-        return [name for name in map(name_of, self._objects.keys_below(_FOLDER)) if is_job_id(name)]
 
 
 def _key(job_id: str) -> str:

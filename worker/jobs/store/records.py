@@ -13,8 +13,8 @@ from worker.jobs.objects.interface import ObjectStorage, name_of
 from worker.jobs.store.layout import MANIFEST, RECORD, REVISIONS, job_folder, job_key, revision_number
 
 JOB = TypeAdapter(Job)
-_ATTEMPT = TypeAdapter(Attempt)
-_OUTCOME: TypeAdapter[Outcome] = TypeAdapter(Outcome)
+ATTEMPT = TypeAdapter(Attempt)
+OUTCOME: TypeAdapter[Outcome] = TypeAdapter(Outcome)
 _CACHED_JOBS = 10_000  # about 15 MB: a state with one attempt takes 1.5 kB
 
 Document = TypeVar("Document")
@@ -67,7 +67,7 @@ class Records:
 
     def outcome(self, job_id: str) -> Outcome | None:
         key = job_key(job_id, MANIFEST)
-        outcome = self._outcomes.get(job_id) or self._read(key, _OUTCOME)
+        outcome = self._outcomes.get(job_id) or self._read(key, OUTCOME)
         if outcome is not None:
             self._add_to(self._outcomes, job_id, outcome)
         return outcome
@@ -81,7 +81,7 @@ class Records:
 
     def write_outcome(self, job_id: str, outcome: Outcome) -> Outcome:
         """Write the outcome of a job unless there is one; return the one that is stored."""
-        self._objects.create(job_key(job_id, MANIFEST), _OUTCOME.dump_json(outcome))
+        self._objects.create(job_key(job_id, MANIFEST), OUTCOME.dump_json(outcome))
         standing = self.outcome(job_id)
         self.require(job_id, lambda: self._remove_outcome(job_id))
         return standing or outcome
@@ -93,7 +93,7 @@ class Records:
     def add_attempt(self, job_id: str, worker: str) -> Attempt:
         self.require(job_id)
         attempt = Attempt(number=len(self.attempts(job_id)) + 1, worker=worker, started_at=now())
-        while not self._objects.create(_attempt_key(job_id, attempt), _ATTEMPT.dump_json(attempt)):
+        while not self._objects.create(_attempt_key(job_id, attempt), ATTEMPT.dump_json(attempt)):
             attempt = replace(attempt, number=attempt.number + 1)
         self.require(job_id, lambda: self.withdraw_attempt(job_id, attempt))
         return attempt
@@ -102,7 +102,7 @@ class Records:
         """Record why a run ended without an outcome."""
         self.require(job_id)
         ended = replace(attempt, ended_at=now(), cause=cause)
-        self._objects.put(_attempt_key(job_id, attempt), _ATTEMPT.dump_json(ended))
+        self._objects.put(_attempt_key(job_id, attempt), ATTEMPT.dump_json(ended))
         self.require(job_id, lambda: self.withdraw_attempt(job_id, attempt))
 
     def withdraw_attempt(self, job_id: str, attempt: Attempt) -> None:
@@ -128,7 +128,7 @@ class Records:
         self._ended.pop(job_id, None)
 
     def _attempts_in(self, keys: list[str]) -> list[Attempt]:
-        found = (self._read(key, _ATTEMPT) for key in keys if name_of(key).startswith("attempt-"))
+        found = (self._read(key, ATTEMPT) for key in keys if name_of(key).startswith("attempt-"))
         return sorted((attempt for attempt in found if attempt), key=lambda attempt: attempt.number)
 
     def _add_to(self, cache: OrderedDict[str, Document], job_id: str, document: Document) -> None:

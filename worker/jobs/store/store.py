@@ -16,6 +16,7 @@ from worker.jobs.store.acceptance import Acceptance
 from worker.jobs.store.batches import BatchStore
 from worker.jobs.store.computed import ComputedIndex
 from worker.jobs.store.deletion import Deletions
+from worker.jobs.store.ended import EndedIndex
 from worker.jobs.store.index import JobIndex
 from worker.jobs.store.installation_secret import InstallationSecret
 from worker.jobs.store.layout import MESH, job_key, mesh_name
@@ -51,8 +52,9 @@ class JobStore:
         self.results = ResultFiles(objects, self.records, spool, cache)
         self.revisions = Revisions(objects, self.records)
         self.queued_edits = QueuedEdits(objects, self.records)
-        self.pending = PendingJobs(objects)
+        self.pending = PendingJobs(objects, self._record_end)
         self.index = JobIndex(objects)
+        self.ended = EndedIndex(objects)
         self.computed = ComputedIndex(objects)
         self.outbox = Outbox(objects)
         self.batches = BatchStore(objects)
@@ -119,7 +121,9 @@ class JobStore:
             with suppress(OSError):  # only an optimisation is lost
                 self.computed.add(job)
                 self.records.require(job_id, lambda: self.computed.remove(job))
-        self.pending.remove(job)
+        with suppress(OSError):  # a check of the marker does this later
+            self._record_end(job_id)
+            self.pending.remove(job)
         return standing
 
     def delete(self, job_id: str) -> None:
@@ -142,8 +146,21 @@ class JobStore:
             probe.write(b"?")
             probe.close()
 
+    def _record_end(self, job_id: str) -> None:
+        """Add a job to the index of ended jobs, if it has an outcome, unless it was deleted."""
+        job, outcome = self.records.job(job_id), self.records.outcome(job_id)
+        if job is not None and outcome is not None:
+            key = self.ended.key_of(job, outcome)
+            self.ended.add(key)
+            if not self.records.has_job(job_id):
+                self.ended.remove(key)
+
     def _remove(self, job: Job) -> None:
-        self.deletions.remove_objects(job)
+        self.deletions.remove_record(job)
+        outcome = self.records.outcome(job.id)
+        if outcome is not None:  # the key is made of the outcome and the result, which are removed after the entry
+            self.ended.remove(self.ended.key_of(job, outcome))
+        self.deletions.remove_files(job)
         self.results.drop(job.id)
         self.index.remove(job)
         self.computed.remove(job)

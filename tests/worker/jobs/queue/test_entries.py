@@ -5,7 +5,7 @@ from collections.abc import Callable
 import pytest
 from redis import Redis
 
-from helpers.jobs import SMALL, accepted, sphere
+from helpers.jobs import SMALL, accepted, sphere, unfinished
 from helpers.processes import StartWorker
 from helpers.waiting import wait_until
 from worker.jobs.job import Succeeded, new_job_id
@@ -62,5 +62,5 @@ def test_a_job_that_an_earlier_version_has_enqueued_is_dropped_unrun_and_then_fi
     wait_until(lambda: store.records.outcome(job.id))
     assert isinstance(store.records.outcome(job.id), Succeeded)
     assert len(store.records.attempts(job.id)) == 1
-    assert store.pending.all() == {}
+    assert unfinished(store) == {}
     wait_until(lambda: queue.held([job.id]) == set())
