@@ -49,24 +49,32 @@ class Installation:
 @contextmanager
 def installed(workers: int, settings: Mapping[str, str] = _SETTINGS) -> Iterator[Installation]:
     """Start an installation and wait until it is ready for jobs, or for requests if it has no workers."""
-    with tempfile.TemporaryDirectory(prefix="cleave-load-", ignore_cleanup_errors=True) as folder:
-        data_dir = Path(folder) / "data"
-        environment = os.environ | dict(settings) | {"CLEAVE_DATA_DIR": str(data_dir)}
-        with data_dir.with_suffix(".log").open("wb") as log:
-            process = subprocess.Popen(
-                cleave("serve", "--port", "0", "--workers", str(workers)),
-                env=environment,
-                stdout=subprocess.PIPE,
-                stderr=log,
-                text=True,
-            )
-        try:
-            yield _ready(process, data_dir, needs_workers=workers > 0)
-        finally:
-            process.terminate()
-            process.wait(_STOPPED_WITHIN_S)
-            assert process.stdout is not None
-            process.stdout.close()
+    with (
+        tempfile.TemporaryDirectory(prefix="cleave-load-", ignore_cleanup_errors=True) as folder,
+        installed_in(Path(folder) / "data", workers, settings) as installation,
+    ):
+        yield installation
+
+
+@contextmanager
+def installed_in(data_dir: Path, workers: int, settings: Mapping[str, str] = _SETTINGS) -> Iterator[Installation]:
+    """Start an installation with a data folder, which may have jobs already; its log lies beside the folder."""
+    environment = os.environ | dict(settings) | {"CLEAVE_DATA_DIR": str(data_dir)}
+    with data_dir.with_suffix(".log").open("wb") as log:
+        process = subprocess.Popen(
+            cleave("serve", "--port", "0", "--workers", str(workers)),
+            env=environment,
+            stdout=subprocess.PIPE,
+            stderr=log,
+            text=True,
+        )
+    try:
+        yield _ready(process, data_dir, needs_workers=workers > 0)
+    finally:
+        process.terminate()
+        process.wait(_STOPPED_WITHIN_S)
+        assert process.stdout is not None
+        process.stdout.close()
 
 
 @contextmanager

@@ -2,16 +2,14 @@
 
 from __future__ import annotations
 
-import resource
-import sys
 import time
 from collections.abc import Callable
 from concurrent.futures import ProcessPoolExecutor
 from dataclasses import dataclass
 from multiprocessing import get_context
-from pathlib import Path
 from typing import TYPE_CHECKING
 
+from bench.memory import peak_memory, reset_peak
 from segcore.progress import STAGES
 
 if TYPE_CHECKING:
@@ -53,7 +51,7 @@ def _measure(name: str, make: Callable[[], Mesh]) -> Cost:
 
     warm_up()
     mesh = make()
-    before = _reset_peak()
+    before = reset_peak()
     stage_s = dict.fromkeys(STAGES, 0.0)
     now, current, silence_s = time.process_time(), STAGES[0], 0.0
 
@@ -65,22 +63,4 @@ def _measure(name: str, make: Callable[[], Mesh]) -> Cost:
         current = stage
 
     segment(mesh, on_progress=on_progress)
-    return Cost(name, len(mesh.faces), stage_s, _peak_memory() - before, silence_s)
-
-
-def _reset_peak() -> int:
-    """Reset the peak memory of the process to its present memory, if the system supports that; return it in bytes."""
-    try:
-        Path("/proc/self/clear_refs").write_text("5", encoding="ascii")
-    except OSError:
-        return _peak_memory()
-    return _peak_memory()
-
-
-def _peak_memory() -> int:
-    """Return the peak memory of the process in bytes."""
-    try:
-        lines = Path("/proc/self/status").read_text(encoding="ascii").splitlines()
-    except OSError:
-        return resource.getrusage(resource.RUSAGE_SELF).ru_maxrss * (1 if sys.platform == "darwin" else 1024)
-    return next(1024 * int(line.split()[1]) for line in lines if line.startswith("VmHWM:"))
+    return Cost(name, len(mesh.faces), stage_s, peak_memory() - before, silence_s)
