@@ -3,7 +3,7 @@
 busy     status polls, uploads and memory while both workers segment; needs wrk
 waiting  the overhead of Prefer: wait=10
 levels   labels at any number of segments
-edits    the round trip of an edit, at 20,000 faces
+edits    the round trip of an edit, at 20,000 and 300,000 faces
 
 Each measurement starts `cleave serve` with its own data folder.
 """
@@ -66,10 +66,10 @@ def _levels() -> None:
 
 def _edits() -> None:
     with installed(workers=1) as installation, httpx.Client(base_url=installation.url, timeout=600) as client:
-        path, faces = finished_job(client, 20_000)
-        for name, operation in EDITS.items():
-            times = edit_times(client, path, partial(_of_mesh, operation, faces), 21)
-            _print(f"{name}, {faces:,} faces", times)
+        for wanted in (20_000, 300_000):
+            path, faces = finished_job(client, wanted)
+            for name, operation in EDITS.items():
+                _print(f"{name}, {faces:,} faces", edit_times(client, path, partial(_of_mesh, operation, faces), 21))
 
 
 def _of_mesh(operation: Callable[[int, int], dict[str, Any]], faces: int, number: int) -> dict[str, Any]:
