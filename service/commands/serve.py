@@ -43,10 +43,11 @@ def run(choices: argparse.Namespace) -> None:
         server = _own_queue_server(settings, stack)
         if server is not None:
             settings = settings.model_copy(update={"redis_url": server.url})
-        say(announcement(settings, counts, listening, own_queue=server is not None))
         queue = [] if server is None else [queue_server_program(server)]
         programs = [*queue, api_program(settings, listening.fileno()), *worker_programs(settings, counts)]
-        Supervisor(programs).run()
+        supervisor = Supervisor(programs)
+        say(announcement(settings, counts, listening, own_queue=server is not None))
+        supervisor.run()
 
 
 def _own_queue_server(settings: Settings, stack: ExitStack) -> QueueServer | None:

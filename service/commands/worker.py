@@ -51,8 +51,9 @@ def run(choices: argparse.Namespace) -> int | None:
         raise NoQueueServer("A worker needs the queue server of its service: set CLEAVE_REDIS_URL or give --redis-url.")
     check_queue_server(settings.redis_url)
     counts = worker_counts(choices.workers, None if choices.queue == "both" else SizeClass(choices.queue))
+    supervisor = Supervisor(worker_programs(settings, counts))
     say(announcement(settings, counts))
-    Supervisor(worker_programs(settings, counts)).run()
+    supervisor.run()
     return None
 
 

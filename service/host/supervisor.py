@@ -43,19 +43,22 @@ class Program:
 
 
 class Supervisor:
-    """Starts programs, restarts those that end, and stops them all on SIGINT or SIGTERM; a second signal kills them."""
+    """Starts programs, restarts those that end, and stops them all on SIGINT or SIGTERM; a second signal kills them.
+
+    Signals count from the making of the supervisor, which belongs, as ``run``, in the main thread.
+    """
 
     def __init__(self, programs: Iterable[Program]) -> None:
         self._children = [_Child(program) for program in programs]
         self._signals = 0
+        for number in (signal.SIGINT, signal.SIGTERM):
+            signal.signal(number, self._count_signal)
 
     def run(self) -> None:
         """Run the programs until a signal arrives, and return when every process has ended.
 
         Call it from the main thread: the kernel kills the children when the thread that started them ends.
         """
-        for number in (signal.SIGINT, signal.SIGTERM):
-            signal.signal(number, self._count_signal)
         try:
             while not self._signals:
                 for child in self._children:
