@@ -18,6 +18,8 @@ from bench.day.site import Site
 
 _RESULTS = ("", "/labels", "/hierarchy", "/model.glb", "/events", "/result.cleave")
 
+_NOTES = {"deleted", "gone"}  # folders of the present version and of earlier ones
+
 
 def examine(
     site: Site, members: Sequence[Member], receiver: Receiver, upgrade: Upgrade, versions: Versions
@@ -99,7 +101,7 @@ def _remains(site: Site, members: Sequence[Member], upgraded_at: datetime) -> li
     Versions before the present one left the message of a deleted job in the outbox for ten minutes.
     """
     deleted = {job.id: job.deleted_at for member in members for job in member.jobs if job.deleted_at}
-    left = [path for path in site.data_dir.rglob("*") if path.is_file() and path.parent.name != "gone"]
+    left = [path for path in site.data_dir.rglob("*") if path.is_file() and not _NOTES & {*path.parts}]
     return [
         str(path)
         for path in left

@@ -50,8 +50,13 @@ def _whole(bound: float | None) -> float | None:
 
 def description_of(schema: Schema) -> str:
     """Return the description of a value, with its default."""
-    default = f" Default: `{json.dumps(schema['default']).strip(chr(34))}`." if "default" in schema else ""
+    default = f" Default: `{_shown(schema['default'])}`." if "default" in schema else ""
     return f"{schema.get('description', '')}{default}".strip()
+
+
+def _shown(default: object) -> str:
+    """Return a default as JSON; of a text that is not empty without quotation marks."""
+    return str(default) if isinstance(default, str) and default else json.dumps(default)
 
 
 def fields_of(schema: Schema) -> Iterator[str]:

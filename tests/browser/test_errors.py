@@ -160,7 +160,7 @@ def test_an_error_of_a_download_is_shown_above_the_dialog(visit: Visit, job: str
     assert visit.page.evaluate("([x, y]) => document.elementsFromPoint(x, y)[0].closest('dialog')?.id", [x, y])
     assert visit.page.locator("#download #announcer").inner_text() == note.inner_text()
     visit.page.keyboard.press("Escape")
-    assert visit.page.locator("body > #announcer").count() == 1
+    visit.page.locator("body > #announcer").wait_for(state="attached")
     visit.faults = [fault for fault in visit.faults if "410" not in fault]
 
 

@@ -21,6 +21,7 @@ def test_parameters_speak_plainly_and_name_algorithms_only_behind_advanced(visit
     schema = parameters_schema()["properties"]
     visit.open()
     visit.page.click("#open-parameters")
+    visit.page.locator("#parameter-affinity").wait_for()
     plain = visit.page.inner_text("#usual-parameters")
     assert schema["affinity"]["title"] in plain
     choices = visit.page.locator("#parameter-affinity option").all_inner_texts()
