@@ -131,7 +131,7 @@ export class JobList {
   async #loadPicture(image: HTMLImageElement): Promise<void> {
     const id = image.dataset["job"]!;
     try {
-      const address = URL.createObjectURL(await getBlob(jobPath(id, `/preview.png?size=${THUMBNAIL}`)));
+      const address = URL.createObjectURL(await getBlob(jobPath(id, `/preview.png?size=${THUMBNAIL}&revision=latest`)));
       this.#pictures.set(id, address);
       image.src = address;
     } catch {
@@ -149,7 +149,7 @@ export class JobList {
 function stateOf(job: Job): string {
   switch (job.status) {
     case "succeeded":
-      return `${plural(job.automatic_segments ?? 1, "part")} · ${plural(job.mesh?.faces ?? 0, "face")}`;
+      return `${job.revision ? "Edited" : plural(job.automatic_segments ?? 1, "part")} · ${plural(job.mesh?.faces ?? 0, "face")}`;
     case "failed":
       return "Failed";
     case "canceled":

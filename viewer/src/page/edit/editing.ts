@@ -1,0 +1,57 @@
+/** Everything that edits parts, as the page uses it. */
+
+import type { Job } from "../api";
+import type { Session } from "../session";
+import { Described } from "./described";
+import { EditedSession } from "./edited_session";
+import { Editor, type EditorHost } from "./editor";
+import { RevisionCard } from "./revision_card";
+import { Toolbox } from "./toolbox";
+
+export class Editing {
+  readonly #host: EditorHost;
+  readonly #editor: Editor;
+  readonly #toolbox: Toolbox;
+  readonly #described: Described;
+  readonly #card: RevisionCard;
+
+  constructor(host: EditorHost) {
+    const session = () => host.session();
+    this.#host = host;
+    this.#editor = new Editor(host);
+    this.#toolbox = new Toolbox(host.viewer, this.#editor, session);
+    this.#described = new Described(host.viewer, this.#editor, session);
+    this.#card = new RevisionCard(this.#editor, () => this.#toolbox.reset());
+    this.#editor.onChange = () => this.#changed();
+  }
+
+  /** Begin with a job whose automatic result is shown. */
+  open(job: Job, levels: Session): Promise<void> {
+    return this.#editor.open(job, levels);
+  }
+
+  close(): void {
+    this.#toolbox.reset();
+    this.#editor.close();
+  }
+
+  /** Update the controls after the session has changed. */
+  update(): void {
+    this.#described.update();
+    this.#toolbox.update();
+  }
+
+  /** Merge exactly these parts: in the tree if they are a group of it, else as an edit. */
+  merge(ids: readonly number[]): void {
+    const session = this.#host.session();
+    if (session === null || ids.length < 2) return;
+    if (session instanceof EditedSession || session.groupOf(ids) !== null) return session.merge(ids);
+    const parts = ids.map((id) => session.numberOf(id)).filter((part) => part !== null);
+    void this.#editor.edit([{ op: "merge", parts }], `${parts.length} parts merged`);
+  }
+
+  #changed(): void {
+    this.#card.update();
+    this.#toolbox.update();
+  }
+}
