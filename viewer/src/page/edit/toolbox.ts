@@ -6,11 +6,12 @@ import type { Session } from "../session";
 import { Brush } from "./brush";
 import type { Editor } from "./editor";
 import { Gestures } from "./gestures";
+import { Lasso } from "./lasso";
 import { Overlay } from "./overlay";
 import { PartTool } from "./part_tool";
 import type { Desk, Tool } from "./tool";
 
-const KEYS: Readonly<Record<string, string>> = { v: "select", p: "part", b: "brush" };
+const KEYS: Readonly<Record<string, string>> = { v: "select", p: "part", b: "brush", e: "lasso" };
 
 export class Toolbox {
   readonly #viewer: CleaveViewer;
@@ -28,7 +29,7 @@ export class Toolbox {
     this.#session = session;
     this.#overlay = new Overlay(viewer);
     const desk: Desk = { viewer, editor, overlay: this.#overlay, session };
-    const tools = [new PartTool(desk), new Brush(desk)];
+    const tools = [new PartTool(desk), new Brush(desk), new Lasso(desk)];
     this.#tools = new Map(tools.map((tool) => [tool.id, tool]));
     this.#gestures = new Gestures(viewer, this.#overlay, () => this.#tool);
     byId("edit-tools").addEventListener("click", (event) => {
