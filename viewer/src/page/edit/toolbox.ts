@@ -4,6 +4,7 @@ import type { CleaveViewer } from "../../component/element";
 import { announce, byId } from "../dom";
 import type { Session } from "../session";
 import { Brush } from "./brush";
+import { CutTool } from "./cut";
 import type { Editor } from "./editor";
 import { Gestures } from "./gestures";
 import { Lasso } from "./lasso";
@@ -11,7 +12,7 @@ import { Overlay } from "./overlay";
 import { PartTool } from "./part_tool";
 import type { Desk, Tool } from "./tool";
 
-const KEYS: Readonly<Record<string, string>> = { v: "select", p: "part", b: "brush", e: "lasso" };
+const KEYS: Readonly<Record<string, string>> = { v: "select", p: "part", b: "brush", e: "lasso", k: "cut" };
 
 export class Toolbox {
   readonly #viewer: CleaveViewer;
@@ -29,7 +30,7 @@ export class Toolbox {
     this.#session = session;
     this.#overlay = new Overlay(viewer);
     const desk: Desk = { viewer, editor, overlay: this.#overlay, session };
-    const tools = [new PartTool(desk), new Brush(desk), new Lasso(desk)];
+    const tools = [new PartTool(desk), new Brush(desk), new Lasso(desk), new CutTool(desk)];
     this.#tools = new Map(tools.map((tool) => [tool.id, tool]));
     this.#gestures = new Gestures(viewer, this.#overlay, () => this.#tool);
     byId("edit-tools").addEventListener("click", (event) => {
