@@ -3,6 +3,7 @@
 import type { CleaveViewer } from "../../component/element";
 import { announce, byId } from "../dom";
 import type { Session } from "../session";
+import { BorderTool } from "./border";
 import { Brush } from "./brush";
 import { CutTool } from "./cut";
 import type { Editor } from "./editor";
@@ -12,7 +13,7 @@ import { Overlay } from "./overlay";
 import { PartTool } from "./part_tool";
 import type { Desk, Tool } from "./tool";
 
-const KEYS: Readonly<Record<string, string>> = { v: "select", p: "part", b: "brush", e: "lasso", k: "cut" };
+const KEYS: Readonly<Record<string, string>> = { v: "select", p: "part", b: "brush", e: "lasso", k: "cut", d: "border" };
 
 export class Toolbox {
   readonly #viewer: CleaveViewer;
@@ -30,7 +31,7 @@ export class Toolbox {
     this.#session = session;
     this.#overlay = new Overlay(viewer);
     const desk: Desk = { viewer, editor, overlay: this.#overlay, session };
-    const tools = [new PartTool(desk), new Brush(desk), new Lasso(desk), new CutTool(desk)];
+    const tools = [new PartTool(desk), new Brush(desk), new Lasso(desk), new CutTool(desk), new BorderTool(desk)];
     this.#tools = new Map(tools.map((tool) => [tool.id, tool]));
     this.#gestures = new Gestures(viewer, this.#overlay, () => this.#tool);
     byId("edit-tools").addEventListener("click", (event) => {
