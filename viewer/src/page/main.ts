@@ -36,6 +36,7 @@ class Page {
     onFinished: (job, purpose) => this.#finished(job, purpose),
     onRemedy: (remedy) => this.#applyRemedy(remedy),
     onLeave: () => this.#leave(),
+    onLabel: (models) => this.#editing.label(models),
   });
   readonly #level = new LevelSlider(() => this.#session);
   readonly #parts = new PartsPanel(this.#viewer, () => this.#session);
@@ -46,12 +47,14 @@ class Page {
       session: () => this.#session,
       replace: (make) => this.#replace(make((news) => this.#changed(news))),
     },
+    (job) => (location.hash = `job=${job}`),
   );
   readonly #tools = new Tools(this.#viewer, () => this.#session, (parts) => this.#editing.merge(parts));
   readonly #drawer = new ParameterDrawer((run) => this.#run(run));
   readonly #jobs = new JobList(
     (job, purpose) => this.#chosen(job, purpose === "beside"),
     (id) => this.#deleted(id),
+    (models) => this.#editing.label(models),
   );
   readonly #beside = new Beside(
     this.#viewer,
