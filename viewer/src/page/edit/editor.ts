@@ -45,6 +45,7 @@ export class Editor {
   #sending: Promise<unknown> = Promise.resolve();
   #waiting = 0;
   #isPreview = false;
+  /** Counts the jobs that were opened, so that answers about an earlier one are recognized. */
   #opened = 0;
 
   constructor(host: EditorHost) {
@@ -88,14 +89,14 @@ export class Editor {
 
   /** Begin with the newest revision of a job whose automatic result is shown. */
   async open(job: Job, levels: Session): Promise<void> {
-    const opened = ++this.#opened;
+    this.#opened++;
     this.#levels = levels;
     this.#shown = this.#stored = null;
     this.#isStored = false;
     this.#base = job.revision ?? 0;
     this.#undo = new Undo(this.#base);
     this.onChange();
-    if (this.#base > 0) await this.#load(job.id, () => opened === this.#opened);
+    if (this.#base > 0) await this.#load(job.id);
   }
 
   close(): void {
@@ -156,10 +157,16 @@ export class Editor {
     if (before !== this.#base) this.#noteRevision();
   }
 
-  /** Store operations on the shown parts as the next revision. Resolves with whether they are stored. */
+  /** Store operations on the shown parts as the next revision. Resolves with whether they are stored and shown. */
   edit(operations: readonly Operation[], done: string): Promise<boolean> {
     this.#waiting++;
-    const sent = this.#sending.then(() => this.#send(operations, done));
+    const [opened, before, base] = [this.#opened, this.#shown, this.#base];
+    const sent = this.#sending.then(() => {
+      if (opened !== this.#opened) return this.#refuse();
+      if (before === null || base === this.#base) return this.#send(operations, done);
+      // An edit that was sent in the meantime may have renumbered parts.
+      return this.#send(renumbered(operations, successors(before.labels, this.#shown!.labels)), done);
+    });
     this.#sending = sent.catch(() => undefined);
     return sent.finally(() => this.#waiting--);
   }
@@ -167,7 +174,8 @@ export class Editor {
   /** Return the parts that operations would make. */
   async preview(operations: readonly Operation[], signal: AbortSignal): Promise<Parts> {
     await this.#sending;
-    const edited = await previewEdit(this.#host.job()!.id, this.#document(operations), signal);
+    const onWait = () => toast("The server prepares this mesh for its first edit.");
+    const edited = await previewEdit(this.#host.job()!.id, this.#document(operations), signal, onWait);
     return { parts: edited.parts, labels: changedLabels(this.#stored!.labels, edited.changed) };
   }
 
@@ -213,6 +221,7 @@ export class Editor {
     await this.#sending;
     try {
       await putLabels(job.id, this.#base, file, mediaType);
+      if (this.#host.job() !== job) return;
       await this.#load(job.id);
       this.#noteRevision();
       announce(`Labels loaded: ${plural(this.parts.length, "part")}.`);
@@ -245,15 +254,23 @@ export class Editor {
     return { base: this.#base, operations: [{ op: "restore", revision: 0, level } as const, ...named, ...operations] };
   }
 
+  #refuse(): boolean {
+    toast("The last change was not saved: another model was opened.");
+    return false;
+  }
+
   async #send(operations: readonly Operation[], done: string): Promise<boolean> {
     const job = this.#host.job();
+    const opened = this.#opened;
     if (job === null || !this.begin()) return false;
     try {
       const edited = await postEdit(job.id, this.#document(operations));
+      if (opened !== this.#opened) return false; // it is stored, but another job is shown
       if (edited === null) await this.#load(job.id);
       else this.#took(edited);
       if (operations[0]?.op !== "restore") this.#noteRevision();
     } catch (error) {
+      if (opened !== this.#opened) return this.#refuse();
       if (isConflict(error)) return this.#settle(job.id, operations, done);
       toast(error instanceof ApiError ? `Not saved: ${error.message}` : `Not saved. ${explain(problemOf(error)).title}.`);
       this.drop();
@@ -270,8 +287,9 @@ export class Editor {
       this.drop();
       return false;
     }
-    const before = this.#shown!;
+    const [before, opened] = [this.#shown!, this.#opened];
     await this.#load(job);
+    if (opened !== this.#opened) return this.#refuse();
     this.#noteRevision();
     if (choice === "load") return false;
     return this.#send(renumbered(operations, successors(before.labels, this.#shown!.labels)), done);
@@ -285,9 +303,11 @@ export class Editor {
     this.#showParts(before);
   }
 
-  async #load(job: string, isWanted: () => boolean = () => true): Promise<void> {
+  /** Show the newest revision of the present job. */
+  async #load(job: string): Promise<void> {
+    const opened = this.#opened;
     const { number, parts, labels } = await newestRevision(job);
-    if (!isWanted()) return;
+    if (opened !== this.#opened) return;
     this.#base = number;
     this.#stored = this.#shown = { parts, labels };
     this.#isStored = true;
@@ -324,7 +344,7 @@ export class Editor {
 }
 
 function isConflict(error: unknown): boolean {
-  return error instanceof ApiError && (error.code === "revision_conflict" || error.code === "revision_not_found");
+  return error instanceof ApiError && error.code === "revision_conflict";
 }
 
 /** Return a CSS colour rgb(r g b) as #rrggbb. */

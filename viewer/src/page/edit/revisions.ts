@@ -80,14 +80,15 @@ export async function postEdit(job: string, edit: Edit): Promise<Edited | null> 
   return null;
 }
 
-/** Return what an edit would make; waits while the server prepares the mesh. */
-export async function previewEdit(job: string, edit: Edit, signal: AbortSignal): Promise<Edited> {
+/** Return what an edit would make; waits while the server prepares the mesh, and calls ``onWait`` before. */
+export async function previewEdit(job: string, edit: Edit, signal: AbortSignal, onWait: () => void): Promise<Edited> {
   const options = { method: "POST", headers: JSON_BODY, body: JSON.stringify(edit), signal };
-  for (;;) {
+  for (let wait = onWait; ; wait = () => undefined) {
     try {
       return (await (await request(jobPath(job, "/edits/preview"), options)).json()) as Edited;
     } catch (error) {
       if (!(error instanceof ApiError) || error.code !== "guide_not_ready" || signal.aborted) throw error;
+      wait();
       await pause(READY_PAUSE_MS);
     }
   }

@@ -62,6 +62,7 @@ export class Toolbox {
     document.body.classList.toggle("has-tool", tool !== null);
     tool?.update();
     const name = byId("edit-tools").querySelector(`[data-tool="${tool?.id ?? "select"}"]`)?.getAttribute("aria-label") ?? "";
+    byId("tool-bar").setAttribute("aria-label", name);
     announce(`${name}. ${tool?.hint ?? "Click a part to select it."}`);
   }
 
