@@ -20,7 +20,7 @@ async function built() {
     legalComments: "none",
     banner: { js: "/* Cleave, MIT. Contains three.js, copyright three.js authors, MIT. */" },
   });
-  const styles = await build({ ...common, entryPoints: ["src/page/page.css"] });
+  const styles = await build({ ...common, entryPoints: { page: "src/page/styles.css" } });
   const files = withPlainNames([...scripts.outputFiles, ...styles.outputFiles]);
   files.set(TYPES, await readFile(join("src/component", TYPES)));
   for (const name of await readdir("static")) files.set(name, await readFile(join("static", name)));

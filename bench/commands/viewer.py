@@ -1,7 +1,7 @@
 """Times of the viewer of a running service in headless Chromium, and pictures of it for docs/viewer.md.
 
 The processor draws the graphics, so the times of frames are upper limits. The times of updates are those of the page
-alone, for one move of the slider.
+alone, for one move of the slider, and for one move of a brush of two sizes.
 """
 
 from __future__ import annotations
@@ -48,11 +48,21 @@ def render(samples: list[float], figures: list[Figures]) -> str:
             number(statistics.median(one.update_ms), 2),
             number(max(one.update_ms), 2),
             number(statistics.median(one.frame_ms), 0),
+            *(f"{number(statistics.median(stroke), 1)} ({number(max(stroke), 1)})" for stroke in one.brush_ms),
             str(one.draw_calls),
         ]
         for one in figures
     ]
-    header = ["faces", "link to picture, ms", "update, ms", "longest", "frame, ms", "draw calls"]
+    header = [
+        "faces",
+        "link to picture, ms",
+        "update, ms",
+        "longest",
+        "frame, ms",
+        "brush, ms (longest)",
+        "largest brush",
+        "draw calls",
+    ]
     return "\n".join(
         [
             f"From a click on a sample to its first picture, including the job: {statistics.median(samples):.0f} ms "

@@ -6,18 +6,12 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+from bench.viewer.devices import DARK, DESKTOP, PHONE, new_page
+from bench.viewer.edit_pictures import take_edit_pictures
+
 if TYPE_CHECKING:
     from playwright.sync_api import Browser, Page
 
-_DESKTOP: dict[str, Any] = {"viewport": {"width": 1280, "height": 800}}
-_DARK = _DESKTOP | {"color_scheme": "dark"}
-_PHONE: dict[str, Any] = {
-    "viewport": {"width": 390, "height": 780},
-    "device_scale_factor": 2,
-    "is_mobile": True,
-    "has_touch": True,
-}
-_TIMEOUT_MS = 300_000  # the processor draws, and the largest mesh has 1.3 million faces
 _REST_MS = 1500  # until the page has drawn a sharp frame and the list of jobs; set by hand
 
 
@@ -27,19 +21,20 @@ class Shot:
 
     name: str  # of the file, without .png
     fragment: str = ""  # of the URL
-    device: dict[str, Any] = field(default_factory=lambda: _DESKTOP)  # options of the browser context
+    device: dict[str, Any] = field(default_factory=lambda: DESKTOP)  # options of the browser context
     button: str = ""  # selector of a button that is clicked first
 
 
 def take_pictures(browser: Browser, url: str, large_job: str, folder: Path) -> None:
     """Write the pictures to a folder; this submits the samples to the service."""
     folder.mkdir(parents=True, exist_ok=True)
-    page = _page(browser, _DESKTOP)
+    page = new_page(browser, DESKTOP)
     jobs = {name: _sample(page, url, name) for name in ("jack", "pawn", "stool")}
     other = _rerun(page, url, jobs["pawn"], {"affinity": "concavity"})
     page.context.close()
     for shot in _shots(jobs, other, large_job):
         _take(browser, shot, f"{url}/{shot.fragment}", folder / f"{shot.name}.png")
+    take_edit_pictures(browser, f"{url}/#job={jobs['stool']}", folder)
 
 
 def _shots(jobs: dict[str, str], other: str, large_job: str) -> list[Shot]:
@@ -48,18 +43,18 @@ def _shots(jobs: dict[str, str], other: str, large_job: str) -> list[Shot]:
         Shot("start"),
         Shot("desktop", pawn),
         Shot("selected", f"{pawn}&sel=3"),
-        Shot("dark", f"{jack}&explode=0.8&view=0.7_1.1_3.3_0_0_0", _DARK),
+        Shot("dark", f"{jack}&explode=0.8&view=0.7_1.1_3.3_0_0_0", DARK),
         Shot("thirty", f"{jack}&k=30"),
         Shot("concavity", f"{jack}&k=1&show=concavity.nolines"),
-        Shot("wireframe", f"{stool}&show=wires&explode=0.5", _DARK),
+        Shot("wireframe", f"{stool}&show=wires&explode=0.5", DARK),
         Shot("compare", f"{pawn}&k=8&beside={other}"),
         Shot("difference", f"{pawn}&k=8&beside={other}", button="#beside-difference"),
         Shot("why", pawn, button="#open-why"),
         Shot("download", pawn, button="#open-download"),
-        Shot("jobs", stool, _DARK, "#open-jobs"),
+        Shot("jobs", stool, DARK, "#open-jobs"),
         Shot("parameters", stool, button="#open-parameters"),
-        Shot("phone", stool, _PHONE),
-        Shot("phone-start", device=_PHONE),
+        Shot("phone", stool, PHONE),
+        Shot("phone-start", device=PHONE),
         Shot("million", f"#job={large_job}"),
     ]
 
@@ -80,7 +75,7 @@ def _rerun(page: Page, url: str, job: str, parameters: dict[str, Any]) -> str:
 
 
 def _take(browser: Browser, shot: Shot, url: str, target: Path) -> None:
-    page = _page(browser, shot.device)
+    page = new_page(browser, shot.device)
     page.goto(url)
     if shot.fragment:
         page.wait_for_selector("#work:not([hidden])")
@@ -90,9 +85,3 @@ def _take(browser: Browser, shot: Shot, url: str, target: Path) -> None:
     page.wait_for_timeout(_REST_MS)
     page.screenshot(path=target)
     page.context.close()
-
-
-def _page(browser: Browser, device: dict[str, Any]) -> Page:
-    page = browser.new_context(reduced_motion="reduce", **device).new_page()
-    page.set_default_timeout(_TIMEOUT_MS)
-    return page

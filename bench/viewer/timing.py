@@ -24,6 +24,27 @@ _MOVES = """(levels) => {
     return [updated - start, performance.now() - updated];
   });
 }"""
+# Moves a brush over the middle of the model as the page does; the faces that are drawn as numbers are read before.
+_STROKE = """([radius, moves]) => {
+  const viewer = document.getElementById('viewer');
+  const labels = viewer.labelsOfCut(viewer.cut);
+  const colors = viewer.parts.map((part) => viewer.colorOf(part)).map(() => '#808080');
+  viewer.partition = { labels, colors: [...colors, '#f5c400'] };
+  const [x, y] = [viewer.clientWidth / 2 - 60, viewer.clientHeight / 2];
+  viewer.sight.at([x, y]);
+  const painted = new Set();
+  const reach = viewer.sight.stroke(radius);
+  const times = Array.from({ length: moves }, (_, i) => {
+    const start = performance.now();
+    const added = reach([[x + 6 * i, y + i], [x + 6 * i + 6, y + i + 1]]);
+    for (const face of added) painted.add(face);
+    viewer.paint(added, colors.length);
+    return performance.now() - start;
+  });
+  viewer.partition = null;
+  return times;
+}"""
+_STROKES = ((18, 20), (80, 20))  # radii in CSS pixels, and moves: the first and the largest brush of the page
 _LEVELS = (2, 7, 16, 30, 64)  # from the coarsest to the finest that the default parameters give
 
 
@@ -35,6 +56,7 @@ class Figures:
     shown_ms: float  # from opening a link to the first frame
     update_ms: list[float]  # of the page, for each move of the slider
     frame_ms: list[float]  # of the frame after it
+    brush_ms: list[list[float]]  # of the page, for each move of a brush of each size, without the frame
     draw_calls: int
 
 
@@ -63,6 +85,7 @@ def times_of_link(browser: Browser, url: str) -> Figures:
     page.evaluate("() => document.getElementById('viewer').figures.frame()")
     shown_ms = float(page.evaluate("() => performance.now()"))
     moves = page.evaluate(_MOVES, list(_LEVELS))
+    strokes = [page.evaluate(_STROKE, list(stroke)) for stroke in _STROKES]
     faces, calls = page.evaluate(
         """() => {
           const viewer = document.getElementById('viewer');
@@ -70,7 +93,8 @@ def times_of_link(browser: Browser, url: str) -> Figures:
         }"""
     )
     page.context.close()
-    return Figures(faces, shown_ms, [update for update, _ in moves], [frame for _, frame in moves], calls)
+    update_ms, frame_ms = ([move[k] for move in moves] for k in (0, 1))
+    return Figures(faces, shown_ms, update_ms, frame_ms, strokes, calls)
 
 
 def _open(browser: Browser, url: str) -> Page:

@@ -87,18 +87,6 @@ def test_the_page_says_where_the_hierarchy_ends_and_why(visit: Visit, job: str) 
     assert visit.page.inner_text("#level-end") == f"The hierarchy ends at {most} parts: no sensible cut is left."
 
 
-def test_merging_two_parts_makes_the_smallest_group_that_contains_them(visit: Visit, job: str) -> None:
-    visit.open_job(job)
-    first, second = visit.parts()[1], visit.parts()[2]
-    visit.row(first).click()
-    visit.row(second).click(modifiers=["Control"])
-    group = visit.viewer(f"v.tree.commonAncestor([{first}, {second}])")
-    below = visit.viewer(f"v.tree.partsBelow(v.cut, {group})")
-    visit.page.click("#merge")
-    assert sorted(visit.parts()) == sorted({*range(0)} | ({*visit.parts()} - {*below}) | {group})
-    assert len(visit.parts()) == 7 - len(below) + 1
-
-
 def test_hidden_parts_are_invisible_and_isolated_parts_are_shown_alone(visit: Visit, job: str) -> None:
     visit.open_job(job)
     seen = visit.parts_at(visit.grid())

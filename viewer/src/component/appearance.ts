@@ -2,8 +2,7 @@
 
 import { DataTexture, FloatType, NearestFilter, RGBAFormat } from "three";
 import type { Colors } from "./cleave-viewer";
-import type { Model } from "./glb";
-import type { Surface } from "./surface";
+import type { PartitionedModel } from "./partition";
 import type { Cut } from "./tree";
 
 export interface Look {
@@ -13,6 +12,8 @@ export interface Look {
   readonly hovered: number;
   /** sRGB colours in 0..1 of nodes that have others than those of their labels. */
   readonly colors: Colors;
+  /** Whether parts are grey while others are selected. */
+  readonly isDimmed: boolean;
   /** 0..1 */
   readonly explode: number;
 }
@@ -28,10 +29,10 @@ export class Appearance {
   /** (L) part of every leaf. */
   readonly partOfLeaf: Int32Array;
   readonly #values: Float32Array;
-  readonly #model: Model;
+  readonly #model: PartitionedModel;
   readonly #centres: readonly (readonly [number, number, number])[];
 
-  constructor(model: Model, surface: Surface) {
+  constructor(model: PartitionedModel) {
     const leaves = model.leafNodes.length;
     this.#model = model;
     this.columns = Math.min(leaves, COLUMNS);
@@ -40,7 +41,7 @@ export class Appearance {
     this.texture = new DataTexture(this.#values, this.columns, rows, RGBAFormat, FloatType);
     this.texture.minFilter = this.texture.magFilter = NearestFilter;
     this.partOfLeaf = new Int32Array(leaves);
-    this.#centres = nodeCentres(model, surface);
+    this.#centres = nodeCentres(model);
   }
 
   show(look: Look): void {
@@ -53,12 +54,17 @@ export class Appearance {
       if (part === undefined) parts.set(node, (part = tree.partOf(look.cut, node)));
       this.partOfLeaf[leaf] = part;
       const color = look.colors.get(part) ?? palette[tree.node(part).label % palette.length] ?? [0.6, 0.6, 0.6];
-      const emphasis = part === look.hovered ? 1 : selected.size > 0 && !selected.has(part) ? -1 : 0;
+      const emphasis = part === look.hovered ? 1 : look.isDimmed && selected.size > 0 && !selected.has(part) ? -1 : 0;
       this.#write(leaf, 0, [...color, look.hidden.has(part) ? 0 : 1]);
       this.#write(leaf, 1, [...(offsets.get(part) ?? [0, 0, 0]), emphasis]);
       this.#write(leaf, 2, [part, selected.has(part) ? 1 : 0, 0, 0]);
     });
     this.texture.needsUpdate = true;
+  }
+
+  /** Show all leaves at their places. */
+  showAll(): void {
+    this.show({ cut: new Set(), hidden: new Set(), selected: [], hovered: -1, colors: new Map(), isDimmed: false, explode: 0 });
   }
 
   /** Return the offset of a leaf and whether it is hidden, as they were shown last. */
@@ -115,12 +121,12 @@ function smooth(t: number): number {
 }
 
 /** Return the area-weighted centre of every node of the tree. */
-function nodeCentres(model: Model, surface: Surface): [number, number, number][] {
-  const { tree, leafNodes } = model;
+function nodeCentres(model: PartitionedModel): [number, number, number][] {
+  const { tree, leafNodes, leafArea, leafCentre } = model;
   const sums = tree.nodes.map(() => [0, 0, 0, 0] as [number, number, number, number]);
   leafNodes.forEach((node, leaf) => {
-    const weight = surface.leafArea[leaf]! + Number.MIN_VALUE;
-    const [x, y, z] = surface.leafCentre.subarray(3 * leaf, 3 * leaf + 3) as unknown as [number, number, number];
+    const weight = leafArea[leaf]! + Number.MIN_VALUE;
+    const [x, y, z] = leafCentre.subarray(3 * leaf, 3 * leaf + 3) as unknown as [number, number, number];
     for (let id = node; id >= 0; id = tree.node(id).parent) {
       const sum = sums[id]!;
       sum[0] += weight * x;

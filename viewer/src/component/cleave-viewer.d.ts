@@ -83,6 +83,31 @@ export interface Tree {
   merge(cut: Cut, id: number): Cut;
 }
 
+/** Labels of the faces of the file. */
+export interface Partition {
+  /** (F) the part of each face, 0..K - 1. */
+  readonly labels: Int32Array;
+  /** (K) CSS colours #rrggbb. */
+  readonly colors: readonly string[];
+}
+
+/** A position on the element, in CSS pixels. */
+export type Point = readonly [x: number, y: number];
+
+/** The faces that are seen while a partition is shown, by their numbers in the file. */
+export interface Sight {
+  /** Return the face at a position; -1 if there is none. */
+  at(point: Point): number;
+  /** Return the visible faces in the discs around the points of a path. */
+  alongPath(path: readonly Point[], radius: number): number[];
+  /** Return a function that returns the visible faces in discs, those that it has not returned before. */
+  stroke(radius: number): (path: readonly Point[]) => number[];
+  /** Return the visible faces in a closed outline. */
+  inOutline(outline: readonly Point[]): number[];
+  /** Return where the middle of a face is; null if it is behind the camera. */
+  place(face: number): Point | null;
+}
+
 /** Detail of `cleave-load`. */
 export interface LoadDetail {
   readonly maxSegments: number;
@@ -166,6 +191,20 @@ export declare class CleaveViewer extends HTMLElement {
   readonly faces: FaceTable | null;
   /** Cover some faces, numbered as in the model, with a colour; null for none. */
   set marked(faces: Uint32Array | null);
+  /** Show any labels of the faces of the file as parts, the leaves of a tree of one step; null shows those of the cut. */
+  set partition(partition: Partition | null);
+  /** Show some faces of the file in another part of the partition, until the next one is set. */
+  paint(faces: readonly number[], part: number): void;
+  /** Return the part of each face of the file, as its place among the parts of a cut; null for files of earlier versions. */
+  labelsOfCut(cut: Cut): Int32Array | null;
+  /** The faces of a partition as they are seen; null if no model is shown. */
+  readonly sight: Sight | null;
+  /** Whether clicks select parts, and the part under the pointer is highlighted. */
+  selects: boolean;
+  /** Whether the main button and one finger are left to a tool; the others then turn the model. */
+  set isDrawing(isDrawing: boolean);
+  /** Whether parts are grey while others are selected. */
+  set isDimming(isDimming: boolean);
   /** Return the part at a position in the window; -1 if there is none. */
   partAt(clientX: number, clientY: number): number;
   /** Return a PNG of the present view, without a background. */

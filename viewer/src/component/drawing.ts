@@ -21,11 +21,14 @@ import {
   Vector4,
 } from "three";
 import { Appearance } from "./appearance";
+import { byFaceGeometry, gathered } from "./by_face";
 import { vertexConcavity } from "./concavity";
-import { borderLines, concaveLines, type SurfaceLines } from "./edges";
+import { borderLines, concaveLines, partBorders, type SurfaceLines } from "./edges";
+import type { FaceLabels } from "./face_labels";
 import type { Model } from "./glb";
 import type { Look } from "./look";
 import type { Original } from "./original";
+import type { PartitionedModel } from "./partition";
 import {
   LINE_FRAGMENT,
   LINE_VERTEX,
@@ -55,10 +58,13 @@ const GROWTH = 0.6; // of the radius at explode = 1
 
 export class Drawing {
   readonly group = new Group();
-  readonly appearance: Appearance;
   readonly #model: Model;
   readonly #surface: Surface;
+  readonly #leaves: Appearance;
   readonly #geometry: BufferGeometry;
+  /** What replaces the leaves by the parts of a partition. */
+  #partition: { appearance: Appearance; labels: FaceLabels; edges: Int32Array } | null = null;
+  #byFace: BufferGeometry | null = null;
   readonly #materials: RawShaderMaterial[] = [];
   readonly #surfaceMaterial: RawShaderMaterial;
   readonly #pickMaterial: RawShaderMaterial;
@@ -77,7 +83,7 @@ export class Drawing {
     this.#model = model;
     this.#surface = surface;
     this.#inks = inks;
-    this.appearance = new Appearance(model, surface);
+    this.#leaves = new Appearance({ ...model, ...surface });
     this.#geometry = surfaceGeometry(surface);
     this.#surfaceMaterial = this.#material(SURFACE_VERTEX, SURFACE_FRAGMENT, {
       fadeIn: { value: 1 },
@@ -92,6 +98,72 @@ export class Drawing {
     this.group.add(this.#surfaceMesh);
     this.explode = 0;
     this.applyInks(inks);
+  }
+
+  get appearance(): Appearance {
+    return this.#partition?.appearance ?? this.#leaves;
+  }
+
+  /** Show the parts of a partition in place of the leaves of the tree; ``edges`` as sharedEdges returns them. */
+  showPartition(model: PartitionedModel, labels: FaceLabels, edges: Int32Array): void {
+    if (this.#partition === null) {
+      this.#byFace ??= byFaceGeometry(this.#surface);
+      this.marked = null;
+      this.#leaves.showAll(); // the original moves and hides nothing
+    }
+    this.#partition?.appearance.dispose();
+    this.#partition = { appearance: new Appearance(model), labels, edges };
+    this.#useParts();
+    this.#redrawLines();
+  }
+
+  /** Show the leaves of the tree again. */
+  showLeaves(): void {
+    if (this.#partition === null) return;
+    this.#partition.appearance.dispose();
+    this.#partition = null;
+    this.#useParts();
+    this.#redrawLines();
+  }
+
+  #useParts(): void {
+    const { appearance } = this;
+    const geometry = this.#partition === null ? this.#geometry : this.#byFace!;
+    this.#surfaceMesh.geometry = geometry;
+    if (this.#wires !== null) this.#wires.geometry = geometry;
+    for (const material of this.#materials) this.#useAppearance(material, appearance);
+  }
+
+  #useAppearance(material: RawShaderMaterial, appearance: Appearance): void {
+    const { uniforms } = material;
+    uniforms["leaves"]!.value = appearance.texture;
+    uniforms["columns"]!.value = appearance.columns;
+    const isByFace = this.#partition !== null;
+    if (isByFace) uniforms["faceParts"] = { value: this.#partition!.labels.texture };
+    if (isByFace) uniforms["faceColumns"] = { value: this.#partition!.labels.columns };
+    if (isByFace === "BY_FACE" in material.defines) return;
+    material.defines = isByFace ? { BY_FACE: "" } : {};
+    material.needsUpdate = true;
+  }
+
+  #redrawLines(): void {
+    const [borders, concave] = [this.#borders, this.#concave];
+    if (borders !== null) replaceGeometry(borders, lineGeometry(this.#borderLines()));
+    if (concave === null) return;
+    if (concave.visible) replaceGeometry(concave, lineGeometry(concaveLines(this.#model, this.#surface, this.#partition?.labels.parts)));
+    this.#bend();
+  }
+
+  #borderLines(): SurfaceLines {
+    if (this.#partition === null) return borderLines(this.#model, this.#surface);
+    return partBorders(this.#model, this.#partition.edges, this.#partition.labels.parts);
+  }
+
+  /** Set the concavity of the vertices of the shown buffers. */
+  #bend(): void {
+    const bent = this.#geometry.getAttribute("concavity") as BufferAttribute;
+    if (this.#byFace !== null && !this.#byFace.hasAttribute("concavity"))
+      this.#byFace.setAttribute("concavity", new BufferAttribute(gathered(bent.array as Uint8Array, 1, this.#surface.index), 1, true));
   }
 
   /** Set the brightness during the entrance, 0..1. */
@@ -134,7 +206,7 @@ export class Drawing {
 
   /** Update what depends on the state of the parts. */
   update(): void {
-    this.#original?.show(this.appearance);
+    this.#original?.show(this.#leaves);
   }
 
   applyInks(inks: Inks): void {
@@ -161,7 +233,7 @@ export class Drawing {
     if (isShown && this.#wires === null) {
       const material = this.#material(WIRE_VERTEX, PLAIN_FRAGMENT, { ink: { value: new Vector4() } }, true);
       material.wireframe = true;
-      this.#wires = new Mesh(this.#geometry, material);
+      this.#wires = new Mesh(this.#surfaceMesh.geometry, material);
       this.#add(this.#wires, 2);
     }
     if (this.#wires !== null) this.#wires.visible = isShown;
@@ -169,7 +241,7 @@ export class Drawing {
 
   set borders(isShown: boolean) {
     if (isShown && this.#borders === null) {
-      this.#borders = this.#lineMesh(borderLines(this.#model, this.#surface));
+      this.#borders = this.#lineMesh(this.#borderLines());
       this.#add(this.#borders, 4);
     }
     if (this.#borders !== null) this.#borders.visible = isShown;
@@ -180,10 +252,13 @@ export class Drawing {
     if (isShown && this.#concave === null) {
       const bent = vertexConcavity(this.#model, this.#surface);
       this.#geometry.setAttribute("concavity", new BufferAttribute(bent, 1, true));
-      this.#concave = this.#lineMesh(concaveLines(this.#model, this.#surface));
+      this.#bend();
+      this.#concave = this.#lineMesh(concaveLines(this.#model, this.#surface, this.#partition?.labels.parts));
       this.#add(this.#concave, 3);
     }
-    if (this.#concave !== null) this.#concave.visible = isShown;
+    if (this.#concave === null || this.#concave.visible === isShown) return;
+    this.#concave.visible = isShown;
+    if (isShown) this.#redrawLines();
   }
 
   /** Cover some faces, numbered as in the model, with the ink of marks; null for none. */
@@ -203,7 +278,7 @@ export class Drawing {
     this.#add(this.#marks, 2);
   }
 
-  /** Call ``draw`` while the surface is drawn with leaf numbers as colours, for picking. */
+  /** Call ``draw`` while the surface is drawn with the numbers of leaves, or of faces in a partition, as colours. */
   withPickMaterial(draw: () => void): void {
     const others = [this.#wires, this.#borders, this.#concave, this.#marks, this.#original?.group].filter((one) => one?.visible) as Object3D[];
     for (const mesh of others) mesh.visible = false;
@@ -214,9 +289,11 @@ export class Drawing {
   }
 
   dispose(): void {
-    this.appearance.dispose();
+    this.#leaves.dispose();
+    this.#partition?.appearance.dispose();
     this.#original?.dispose();
     this.#geometry.dispose();
+    this.#byFace?.dispose();
     for (const mesh of [this.#borders, this.#concave, this.#marks]) mesh?.geometry.dispose();
     for (const material of this.#materials) material.dispose();
     this.group.removeFromParent();
@@ -265,6 +342,7 @@ export class Drawing {
       transparent: isInk,
     });
     if (isInk) blendAsInk(material);
+    this.#useAppearance(material, this.appearance);
     this.#materials.push(material);
     return material;
   }
@@ -304,6 +382,11 @@ function every(values: Float32Array, stride: number, start: number): Float32Arra
   const result = new Float32Array((values.length / stride) * 3);
   for (let i = 0, j = start; j < values.length; i += 3, j += stride) result.set(values.subarray(j, j + 3), i);
   return result;
+}
+
+function replaceGeometry(mesh: Mesh, geometry: BufferGeometry): void {
+  mesh.geometry.dispose();
+  mesh.geometry = geometry;
 }
 
 function setInk(mesh: Mesh | null, name: string, ink: readonly number[]): void {

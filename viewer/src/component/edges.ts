@@ -17,6 +17,29 @@ const LEAST_COSINE = Math.cos(LEAST_ANGLE);
 const FULL_ANGLE = (60 * Math.PI) / 180;
 const MOST_LINES = 60_000;
 
+/** Return pairs of corners, one after the other: the edges that two faces share. */
+export function sharedEdges(welded: Uint32Array): Int32Array {
+  const pairs = new Int32Array(welded.length); // an edge of two faces has two of the corners
+  let count = 0;
+  forAdjacentCorners(welded, null, (a, b) => {
+    pairs[count++] = a;
+    pairs[count++] = b;
+  });
+  return pairs.slice(0, count);
+}
+
+/** Return the edges between two parts, once for each side; ``parts`` has that of every face. */
+export function partBorders(model: Model, edges: Int32Array, parts: Uint16Array): SurfaceLines {
+  const kept: [number, number, number][] = [];
+  for (let i = 0; i < edges.length; i += 2) {
+    const [a, b] = [edges[i]!, edges[i + 1]!];
+    const own = parts[(a / 3) | 0]!;
+    const other = parts[(b / 3) | 0]!;
+    if (own !== other) kept.push([a, own, other], [b, other, own]);
+  }
+  return lines(model, kept, () => 1);
+}
+
 /** Return the edges between two leaves, once for each side. */
 export function borderLines(model: Model, surface: Surface): SurfaceLines {
   const leafOf = leafLookup(model);
@@ -29,8 +52,8 @@ export function borderLines(model: Model, surface: Surface): SurfaceLines {
   return lines(model, kept, () => 1);
 }
 
-/** Return the sharply concave edges; only the sharpest if there are more than MOST_LINES. */
-export function concaveLines(model: Model, surface: Surface): SurfaceLines {
+/** Return the sharply concave edges; only the sharpest if there are more than MOST_LINES. ``parts`` replaces the leaves. */
+export function concaveLines(model: Model, surface: Surface, parts?: Uint16Array): SurfaceLines {
   const normals = faceNormals(model);
   const found: { corner: number; angle: number }[] = [];
   forAdjacentCorners(surface.welded, null, (a, b) => {
@@ -38,7 +61,7 @@ export function concaveLines(model: Model, surface: Surface): SurfaceLines {
     if (angle >= LEAST_ANGLE) found.push({ corner: a, angle });
   });
   found.sort((one, other) => other.angle - one.angle);
-  const leafOf = leafLookup(model);
+  const leafOf = parts === undefined ? leafLookup(model) : (corner: number) => parts[(corner / 3) | 0]!;
   const kept = found.slice(0, MOST_LINES);
   return lines(
     model,

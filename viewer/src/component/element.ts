@@ -1,18 +1,24 @@
 /** The web component ``<cleave-viewer>``, which shows the GLB file of a job. docs/reference/viewer.md describes it. */
 
-import type { CleaveViewer as Declared, Color, Colors, ErrorDetail, FaceTable, LoadDetail, ViewerState } from "./cleave-viewer";
+import type { CleaveViewer as Declared, Color, Colors, ErrorDetail, FaceTable, LoadDetail, Partition, Point, ViewerState } from "./cleave-viewer";
 import { Drawing, type Inks } from "./drawing";
 import { faceTable } from "./faces";
 import { sphereAround } from "./framing";
 import { InvalidModel, parseModel, type Model } from "./glb";
+import { sharedEdges } from "./edges";
+import { FaceLabels } from "./face_labels";
 import { loadOriginal, lookNamed, NoOriginal, type Look } from "./look";
 import { segmentName } from "../page/lists.json";
+import { partitionModel, type PartitionedModel } from "./partition";
+import { Faces } from "./sight";
 import { FIRST_VIEW, Stage, type View } from "./stage";
 import { reasonOf, Status, unreachable } from "./status";
 import { buildSurface, type Surface } from "./surface";
 import type { Cut, PartTree } from "./tree";
 
-export type { Color, Colors, FaceTable, LoadDetail, Look, Model, View };
+export type { Color, Colors, FaceTable, LoadDetail, Look, Model, Partition, Point, View };
+export { nodeOfPart } from "./partition";
+export type { Faces } from "./sight";
 export { type Cut, type PartTree, type TreeNode } from "./tree";
 
 const LIGHT: Inks = {
@@ -44,6 +50,7 @@ p[hidden] { display: none; }
 @keyframes wait { from { visibility: hidden; } }
 canvas:focus-visible { box-shadow: inset 0 0 0 3px var(--cleave-focus, #5b5bd6); }
 `;
+const NO_COLORS: Colors = new Map();
 const CLICK_PIXELS = 5; // a pointer that moves farther drags
 const PAUSE_MS = 12; // of work on a model before control returns to the event loop
 
@@ -65,6 +72,10 @@ export class CleaveViewer extends HTMLElement implements Declared {
     "label",
   ];
 
+  /** Whether clicks select parts, and the part under the pointer is highlighted. */
+  selects = true;
+  #isDimming = true;
+
   /** Headers of the request for ``src``. */
   requestHeaders: Record<string, string> = {};
 
@@ -76,6 +87,14 @@ export class CleaveViewer extends HTMLElement implements Declared {
   #surface: Surface | null = null;
   #drawing: Drawing | null = null;
   #colors: Colors = new Map();
+  #sight: Faces | null = null;
+  #edges: Int32Array | null = null;
+  #labels: FaceLabels | null = null;
+  /** The tree of the parts of a partition, which replaces that of the model. */
+  #partitioned: PartitionedModel | null = null;
+  /** The cut that was shown before the partition. */
+  #cutBefore: Cut = new Set();
+  #placed = "";
   #loading: AbortController | null = null;
   #loadingLook: AbortController | null = null;
   #cut: Cut = new Set();
@@ -155,7 +174,75 @@ export class CleaveViewer extends HTMLElement implements Declared {
 
   /** The tree of cuts of the present model; null if no model is shown. */
   get tree(): PartTree | null {
-    return this.#model?.tree ?? null;
+    return this.#partitioned?.tree ?? this.#model?.tree ?? null;
+  }
+
+  /** The faces of the file as they are seen; null if no model is shown, or if its faces have no numbers. */
+  get sight(): Faces | null {
+    const [model, surface, stage] = [this.#model, this.#surface, this.#stage];
+    if (model === null || surface === null || stage === null || model.inputFaces === null) return null;
+    return (this.#sight ??= new Faces(model, model.inputFaces, this.#sharedEdges(surface), stage));
+  }
+
+  /**
+   * Show any labels of the faces as parts; null shows the parts of the cut again. The parts are then the leaves of a tree
+   * of one step, see nodeOfPart.
+   */
+  set partition(partition: Partition | null) {
+    const [model, drawing] = [this.#model, this.#drawing];
+    if (model === null || drawing === null || model.inputFaces === null) return;
+    if (partition === null && this.#partitioned !== null) this.#cut = this.#cutBefore;
+    else if (this.#partitioned === null) this.#cutBefore = this.#cut;
+    if ((partition === null) !== (this.#partitioned === null)) [this.#hidden, this.#selected] = [new Set(), []];
+    this.#partitioned = partition === null ? null : partitionModel(model, model.inputFaces, partition);
+    this.#hovered = -1;
+    if (partition === null) {
+      drawing.showLeaves();
+    } else {
+      this.#labels ??= new FaceLabels(model.inputFaces.length);
+      this.#labels.fill(partition.labels, model.inputFaces);
+      drawing.showPartition(this.#partitioned!, this.#labels, this.#sharedEdges(this.#surface!));
+      this.#cut = this.#partitioned!.tree.cutAt(Infinity);
+    }
+    this.#placed = "";
+    this.#updateLeaves();
+  }
+
+  #sharedEdges(surface: Surface): Int32Array {
+    return (this.#edges ??= sharedEdges(surface.welded));
+  }
+
+  /** Return for each face of the file the place of its part among the parts of the cut; null without numbers of faces. */
+  labelsOfCut(cut: Cut): Int32Array | null {
+    const model = this.#model;
+    if (model === null || model.inputFaces === null) return null;
+    const { tree, leafNodes, leafStart, inputFaces } = model;
+    const place = new Map(tree.parts(cut).map((id, number) => [id, number]));
+    const labels = new Int32Array(inputFaces.length);
+    leafNodes.forEach((node, leaf) => {
+      const number = place.get(tree.partOf(cut, node))!;
+      for (let drawn = leafStart[leaf]!; drawn < leafStart[leaf + 1]!; drawn++) labels[inputFaces[drawn]!] = number;
+    });
+    return labels;
+  }
+
+  /** Show some faces in another part of the partition until the next partition is set. */
+  paint(faces: readonly number[], part: number): void {
+    if (this.#partitioned === null || this.sight === null) return;
+    this.#labels?.paint(this.sight.drawn(faces), part);
+    this.#stage?.repaint();
+  }
+
+  /** Whether parts are grey while others are selected. */
+  set isDimming(isDimming: boolean) {
+    if (isDimming === this.#isDimming) return;
+    this.#isDimming = isDimming;
+    this.#updateLeaves();
+  }
+
+  /** Whether the main button and one finger belong to a tool that draws; the other ones then turn the model. */
+  set isDrawing(isDrawing: boolean) {
+    if (this.#stage !== null) this.#stage.isDrawing = isDrawing;
   }
 
   get automaticSegments(): number {
@@ -173,7 +260,7 @@ export class CleaveViewer extends HTMLElement implements Declared {
   }
 
   get parts(): number[] {
-    return this.#model?.tree.parts(this.#cut) ?? [];
+    return this.tree?.parts(this.#cut) ?? [];
   }
 
   get hiddenParts(): ReadonlySet<number> {
@@ -247,8 +334,9 @@ export class CleaveViewer extends HTMLElement implements Declared {
   focusOn(parts: readonly number[]): void {
     const [model, surface, drawing, stage] = [this.#model, this.#surface, this.#drawing, this.#stage];
     if (model === null || surface === null || drawing === null || stage === null) return;
-    const inside = model.leafNodes.flatMap((node, leaf) => (parts.includes(model.tree.partOf(this.#cut, node)) ? [leaf] : []));
-    const sphere = sphereAround(drawing, surface, new Set(inside));
+    const { leafNodes, tree } = this.#partitioned ?? model;
+    const inside = leafNodes.flatMap((node, leaf) => (parts.includes(tree.partOf(this.#cut, node)) ? [leaf] : []));
+    const sphere = sphereAround(drawing, surface, new Set(inside), this.#partitioned === null ? null : this.#labels!.parts);
     if (sphere === null) return;
     stage.glideTo({ ...stage.view, distance: FIRST_VIEW.distance * sphere.radius, target: sphere.center.toArray() });
   }
@@ -260,14 +348,15 @@ export class CleaveViewer extends HTMLElement implements Declared {
 
   /** Return the colour of a node; sRGB, 0..1. */
   shadeOf(node: number): Color {
-    const model = this.#model;
+    const model = this.#partitioned ?? this.#model;
     return this.#colors.get(node) ?? model?.palette[model.tree.node(node).label % model.palette.length] ?? [0.6, 0.6, 0.6];
   }
 
   /** Return the part at a position in the window; -1 if there is none. */
   partAt(clientX: number, clientY: number): number {
     const box = this.#canvas.getBoundingClientRect();
-    const leaf = this.#stage?.leafAt(clientX - box.left, clientY - box.top) ?? -1;
+    const id = this.#stage?.idAt(clientX - box.left, clientY - box.top) ?? -1;
+    const leaf = id < 0 || this.#partitioned === null ? id : this.#labels!.parts[id]!;
     return leaf < 0 ? -1 : (this.#drawing?.appearance.partOfLeaf[leaf] ?? -1);
   }
 
@@ -300,7 +389,8 @@ export class CleaveViewer extends HTMLElement implements Declared {
     this.#loadingLook?.abort();
     this.#drawing?.dispose();
     this.#drawing = null;
-    this.#model = this.#surface = null;
+    this.#labels?.dispose();
+    this.#model = this.#surface = this.#edges = this.#sight = this.#labels = this.#partitioned = null;
     this.#colors = new Map();
     this.#hovered = -1;
     this.#stage?.show(null);
@@ -407,13 +497,17 @@ export class CleaveViewer extends HTMLElement implements Declared {
       hidden: this.#hidden,
       selected: this.#selected,
       hovered: this.#hovered,
-      colors: this.#colors,
+      colors: this.#partitioned === null ? this.#colors : NO_COLORS,
+      isDimmed: this.#isDimming,
       explode,
     });
     this.#drawing.explode = explode;
     this.#drawing.update();
     this.#stage.reach = 1 + explode;
-    this.#stage.changed();
+    const placed = [explode, ...this.#hidden].join();
+    if (this.#partitioned !== null && placed === this.#placed) this.#stage.repaint();
+    else this.#stage.changed();
+    this.#placed = placed;
     this.#describe();
   }
 
@@ -434,7 +528,7 @@ export class CleaveViewer extends HTMLElement implements Declared {
       this.#canvas.setAttribute("aria-label", label ?? "No model");
       return;
     }
-    const { tree } = this.#model;
+    const tree = this.tree!;
     const parts = this.parts;
     const shown = parts.toSorted((a, b) => tree.node(b).area - tree.node(a).area).slice(0, 12);
     const list = shown.map((id) => `${this.#nameOf(id)} ${percent(tree.node(id).area / tree.totalArea)}`).join(", ");
@@ -463,7 +557,7 @@ export class CleaveViewer extends HTMLElement implements Declared {
   }
 
   #hover(event: PointerEvent): void {
-    if (event.pointerType === "touch" || event.buttons !== 0 || this.#hoverFrame !== 0) return;
+    if (!this.selects || event.pointerType === "touch" || event.buttons !== 0 || this.#hoverFrame !== 0) return;
     this.#hoverFrame = requestAnimationFrame(() => {
       this.#hoverFrame = 0;
       this.#setHovered(this.partAt(event.clientX, event.clientY));
@@ -480,7 +574,7 @@ export class CleaveViewer extends HTMLElement implements Declared {
   #click(event: PointerEvent): void {
     const from = this.#pressed;
     this.#pressed = null;
-    if (from === null || event.button !== 0) return;
+    if (from === null || event.button !== 0 || !this.selects) return;
     if (Math.hypot(event.clientX - from.x, event.clientY - from.y) > CLICK_PIXELS) return;
     const isMore = event.shiftKey || event.ctrlKey || event.metaKey;
     this.#pick(this.partAt(event.clientX, event.clientY), isMore);

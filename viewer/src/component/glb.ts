@@ -13,6 +13,8 @@ export interface Model {
   readonly normals: Float32Array | null;
   /** (3 F) vertices of every face, sorted by leaf. */
   readonly index: Uint32Array;
+  /** (F) number in the file that was sent of every face; null if the file is from before these were written. */
+  readonly inputFaces: Uint32Array | null;
   /** (L) tree node of every leaf. */
   readonly leafNodes: readonly number[];
   /** (L + 1) leaf i has the faces leafStart[i] to leafStart[i + 1] - 1. */
@@ -81,7 +83,7 @@ function modelOf(document: GltfDocument, data: ArrayBuffer, binary: number): Mod
     return new Float32Array(data, binary + (at(document.bufferViews, bufferView).byteOffset ?? 0), 3 * count);
   };
   const { POSITION, NORMAL } = at(primitives, 0).attributes;
-  const { automatic_segments: automatic, limit_reached: limit } = extras;
+  const { automatic_segments: automatic, limit_reached: limit, input_faces: faces } = extras;
   return {
     tree: new PartTree(isSplits(extras) ? nodesOfSplits(extras, document) : document.nodes.map((_, id) => treeNode(document, id))),
     automaticSegments: typeof automatic === "number" ? automatic : leaves.length,
@@ -89,11 +91,16 @@ function modelOf(document: GltfDocument, data: ArrayBuffer, binary: number): Mod
     positions: vectors(POSITION),
     normals: NORMAL === undefined ? null : vectors(NORMAL),
     index: new Uint32Array(data, binary + (indexView.byteOffset ?? 0), indexView.byteLength / WORD),
+    inputFaces: isView(faces) ? new Uint32Array(data, binary + (at(document.bufferViews, faces.bufferView).byteOffset ?? 0), faces.count) : null,
     leafNodes: order.map((i) => at(leaves, i).id),
     leafStart: [...order.map((i) => at(starts, i)), indexView.byteLength / (3 * WORD)],
     placement: matrixOf(at(document.nodes, 0)),
     palette: document.materials.map((material) => srgb(material.pbrMetallicRoughness.baseColorFactor)),
   };
+}
+
+function isView(value: unknown): value is { bufferView: number; count: number } {
+  return typeof value === "object" && value !== null && "bufferView" in value && "count" in value;
 }
 
 /** The splits of the levels that a file has, in the extras of its scene. */

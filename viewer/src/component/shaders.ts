@@ -8,6 +8,22 @@ vec4 leafTexel(int leaf, int row) {
 }
 `;
 
+/** The leaf of a vertex: that of its face if BY_FACE is defined, for buffers with three vertices for each face. */
+const OWN_LEAF = /* glsl */ `
+in vec4 normalAndLeaf;
+#ifdef BY_FACE
+uniform highp sampler2D faceParts;
+uniform int faceColumns;
+int ownLeaf() {
+  int face = gl_VertexID / 3;
+  vec4 bytes = texelFetch(faceParts, ivec2(face % faceColumns, face / faceColumns), 0);
+  return int(bytes.r * 255.0 + 0.5) + 256 * int(bytes.g * 255.0 + 0.5);
+}
+#else
+int ownLeaf() { return int(normalAndLeaf.w); }
+#endif
+`;
+
 const HIDDEN = /* glsl */ `gl_Position = vec4(2.0, 2.0, 2.0, 1.0);`;
 
 const HEAD = /* glsl */ `
@@ -21,7 +37,7 @@ ${LEAF}
 export const SURFACE_VERTEX = /* glsl */ `${HEAD}
 uniform float veil;
 in vec3 position;
-in vec4 normalAndLeaf;
+${OWN_LEAF}
 in float concavity;
 out vec3 seenFrom;
 out float bent;
@@ -29,7 +45,7 @@ out vec3 smoothNormal;
 flat out vec3 base;
 flat out float emphasis;
 void main() {
-  int leaf = int(normalAndLeaf.w);
+  int leaf = ownLeaf();
   vec4 color = leafTexel(leaf, 0);
   vec4 moved = leafTexel(leaf, 1);
   vec4 seen = modelViewMatrix * vec4(position + moved.xyz, 1.0);
@@ -92,23 +108,28 @@ void main() {
 }
 `;
 
+/** Writes numbers from 1 in three bytes, the lowest first: those of leaves, or of drawn faces if BY_FACE is defined. */
 export const PICK_FRAGMENT = /* glsl */ `
 precision highp float;
 flat in float number;
 out vec4 color;
 void main() {
   int n = int(number + 0.5);
-  color = vec4(float(n & 255), float((n >> 8) & 255), 0.0, 255.0) / 255.0;
+  color = vec4(float(n & 255), float((n >> 8) & 255), float((n >> 16) & 255), 255.0) / 255.0;
 }
 `;
 
 export const PICK_VERTEX = /* glsl */ `${HEAD}
 in vec3 position;
-in vec4 normalAndLeaf;
+${OWN_LEAF}
 flat out float number;
 void main() {
-  int leaf = int(normalAndLeaf.w);
+  int leaf = ownLeaf();
+#ifdef BY_FACE
+  number = float(gl_VertexID / 3) + 1.0;
+#else
   number = float(leaf) + 1.0;
+#endif
   gl_Position = projectionMatrix * modelViewMatrix * vec4(position + leafTexel(leaf, 1).xyz, 1.0);
   if (leafTexel(leaf, 0).a < 0.5) ${HIDDEN}
 }
@@ -116,9 +137,9 @@ void main() {
 
 export const WIRE_VERTEX = /* glsl */ `${HEAD}
 in vec3 position;
-in vec4 normalAndLeaf;
+${OWN_LEAF}
 void main() {
-  int leaf = int(normalAndLeaf.w);
+  int leaf = ownLeaf();
   gl_Position = projectionMatrix * modelViewMatrix * vec4(position + leafTexel(leaf, 1).xyz, 1.0);
   gl_Position.z -= 0.0004 * gl_Position.w;
   if (leafTexel(leaf, 0).a < 0.5) ${HIDDEN}

@@ -3,19 +3,23 @@
 import {
   DirectionalLight,
   Group,
+  Matrix4,
+  MOUSE,
   NeutralToneMapping,
   NoToneMapping,
   PerspectiveCamera,
   Scene,
   Spherical,
   type Texture,
+  TOUCH,
   Vector3,
   WebGLRenderer,
-  WebGLRenderTarget,
 } from "three";
 import { OrbitControls } from "three/addons/controls/OrbitControls.js";
 import type { View } from "./cleave-viewer";
 import type { Drawing } from "./drawing";
+import type { Projection } from "./sight";
+import { IdBuffer } from "./id_buffer";
 
 export type { View };
 
@@ -38,8 +42,7 @@ export class Stage {
   readonly #upright = new Group();
   readonly #camera = new PerspectiveCamera(FIELD_OF_VIEW, 1, 0.01, 100);
   readonly #controls: OrbitControls;
-  readonly #pickTarget = new WebGLRenderTarget(1, 1);
-  #pixels = new Uint8Array(0);
+  readonly #ids = new IdBuffer();
   #drawing: Drawing | null = null;
   #frame = 0;
   #requestedAt = 0;
@@ -47,8 +50,9 @@ export class Stage {
   #sharpness = 1;
   #resting = 0;
   #entrance = 0;
-  #pickTargetIsStale = true;
   #reach = 1;
+  /** The size for which the numbers of faces are drawn: a lower resolution of the picture leaves them. */
+  #framed = "";
 
   /** ``onView`` is called after the camera has moved. Throws if the browser has no WebGL 2. */
   constructor(canvas: HTMLCanvasElement, onView: () => void) {
@@ -117,6 +121,7 @@ export class Stage {
 
   show(drawing: Drawing | null): void {
     this.#drawing = drawing;
+    this.#framed = "";
     if (drawing !== null) this.#upright.add(drawing.group);
     this.resize();
   }
@@ -158,16 +163,24 @@ export class Stage {
     const shorter = Math.max(Math.min(width, height - top - bottom), height / 3);
     this.#camera.fov = (2 * Math.atan((Math.tan((FIELD_OF_VIEW * Math.PI) / 360) * height) / shorter) * 180) / Math.PI;
     this.#camera.setViewOffset(width, height, 0, (bottom - top) / 2, width, height);
-    this.#pickTarget.setSize(width, height);
+    this.#ids.resize(width, height);
     this.#drawing?.resize(width * ratio, height * ratio, ratio);
-    this.changed();
+    const framed = [width, height, top, bottom].join();
+    if (framed === this.#framed) this.repaint();
+    else this.changed();
+    this.#framed = framed;
     // A resized canvas is blank: draw before the browser shows it.
     this.draw();
   }
 
-  /** Request a new frame. */
+  /** Request a new frame after a change of what is where. */
   changed(): void {
-    this.#pickTargetIsStale = true;
+    this.#ids.isStale = true;
+    this.repaint();
+  }
+
+  /** Request a new frame after a change of colours. */
+  repaint(): void {
     if (this.#frame !== 0) return;
     this.#requestedAt = performance.now();
     this.#frame = requestAnimationFrame(() => {
@@ -190,13 +203,38 @@ export class Stage {
     gl.readPixels(0, 0, 1, 1, gl.RGBA, gl.UNSIGNED_BYTE, new Uint8Array(4));
   }
 
-  /** Return the leaf at a position of the canvas in CSS pixels; -1 if there is none. */
-  leafAt(x: number, y: number): number {
-    const { width, height } = this.#pickTarget;
-    if (this.#drawing === null || x < 0 || y < 0 || x >= width || y >= height) return -1;
-    if (this.#pickTargetIsStale) this.#drawPickTarget(this.#drawing);
-    const pixel = 4 * ((height - 1 - Math.floor(y)) * width + Math.floor(x));
-    return this.#pixels[pixel]! + 256 * this.#pixels[pixel + 1]! - 1;
+  /** Return the leaf at a position of the canvas in CSS pixels, or the drawn face in a partition; -1 if there is none. */
+  idAt(x: number, y: number): number {
+    return this.ids()?.at(x, y) ?? -1;
+  }
+
+  /** Return the numbers of what is drawn at each pixel; null if nothing is shown. */
+  ids(): IdBuffer | null {
+    const drawing = this.#drawing;
+    if (drawing === null) return null;
+    if (this.#ids.isStale) drawing.withPickMaterial(() => this.#ids.draw(this.#renderer, this.#scene, this.#camera));
+    return this.#ids;
+  }
+
+  /** Return how the coordinates of the model are projected; null if nothing is shown. */
+  projection(): Projection | null {
+    if (this.#drawing === null) return null;
+    this.#camera.updateMatrixWorld();
+    this.#drawing.group.updateWorldMatrix(true, false);
+    const world = this.#drawing.group.matrixWorld;
+    const toClip = new Matrix4().multiplyMatrices(this.#camera.projectionMatrix, this.#camera.matrixWorldInverse).multiply(world);
+    const eye = this.#camera.position.clone().applyMatrix4(world.clone().invert());
+    const { clientWidth: width, clientHeight: height } = this.canvas;
+    return { toClip: toClip.elements, eye: eye.toArray(), width, height };
+  }
+
+  /** What the main button or one finger does: turn the model, or nothing, so that a tool draws. */
+  set isDrawing(isDrawing: boolean) {
+    const { mouseButtons, touches } = this.#controls;
+    mouseButtons.LEFT = isDrawing ? null : MOUSE.ROTATE;
+    mouseButtons.RIGHT = isDrawing ? MOUSE.ROTATE : MOUSE.PAN;
+    touches.ONE = isDrawing ? null : TOUCH.ROTATE;
+    touches.TWO = isDrawing ? TOUCH.DOLLY_ROTATE : TOUCH.DOLLY_PAN;
   }
 
   /** Return a PNG of the present view, without a background. */
@@ -222,24 +260,10 @@ export class Stage {
     clearTimeout(this.#resting);
     this.#endEntrance();
     this.#controls.dispose();
-    this.#pickTarget.dispose();
+    this.#ids.dispose();
     this.#scene.environment?.dispose();
     this.#renderer.dispose();
     this.#renderer.forceContextLoss();
-  }
-
-  #drawPickTarget(drawing: Drawing): void {
-    drawing.withPickMaterial(() => {
-      this.#renderer.setRenderTarget(this.#pickTarget);
-      this.#renderer.clear();
-      this.#renderer.render(this.#scene, this.#camera);
-      this.#renderer.setRenderTarget(null);
-    });
-    // Read the whole target once: later positions of the pointer then need no read-back.
-    const { width, height } = this.#pickTarget;
-    if (this.#pixels.length !== 4 * width * height) this.#pixels = new Uint8Array(4 * width * height);
-    this.#renderer.readRenderTargetPixels(this.#pickTarget, 0, 0, width, height, this.#pixels);
-    this.#pickTargetIsStale = false;
   }
 
   /** Lower the resolution while frames are late, and restore it after a pause. */

@@ -23,6 +23,8 @@ export interface Job {
   readonly mesh: { readonly faces: number; readonly vertices: number; readonly report: Report | null } | null;
   readonly max_segments: number | null;
   readonly automatic_segments: number | null;
+  /** The newest revision of the parts; 0 if they were not edited. */
+  readonly revision?: number;
   readonly notes: readonly string[];
   readonly error: { readonly code: string; readonly message: string } | null;
 }

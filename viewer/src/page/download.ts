@@ -72,7 +72,7 @@ export class DownloadDialog {
 
   async #download({ path, ending }: Download): Promise<void> {
     const { job, session } = this.#shown()!;
-    const address = jobPath(job.id, `/${path}${query(session)}`);
+    const address = jobPath(job.id, `/${path}${session.query}`);
     const fileName = `${stem(nameOf(job))}-${session.parts.length}${ending}`;
     if (path === "labels") {
       const document = (await (await request(address)).json()) as object;
@@ -95,13 +95,6 @@ function modelDownload({ name, title, extension, path }: (typeof lists.formats)[
   return { id: name, title: short!, about: capitalized(about ?? ""), path, ending: `${kind}${extension}` };
 }
 
-/** Return the query string that selects the present cut. */
-function query(session: Session): string {
-  const { tree, work } = session;
-  const level = tree.levelOf(work.cut);
-  return level === null ? `?splits=${tree.splitsOf(work.cut).join(",")}` : `?segments=${level}`;
-}
-
 /** Return the query string with the names of the parts, by label: 0, 1, ... in the order of the parts. */
 function nameQuery({ parts, work }: Session): string {
   const named = parts.flatMap((id, label) => (work.names.has(id) ? [`${label}:${work.names.get(id)}`] : []));
@@ -121,12 +114,31 @@ function curlLines({ job, session }: Result, chosen: [string, unknown][]): strin
   const form = [`mesh=@${fileName}`, ...(chosen.length === 0 ? [] : [`parameters=${JSON.stringify(Object.fromEntries(chosen))}`])];
   return [
     `curl --fail-with-body${key} ${form.map((field) => `-F ${shellWord(field)}`).join(" ")} ${root}v1/jobs`,
-    `curl --fail-with-body${key} -o ${shellWord(`${stem(fileName)}.glb`)} "${root}${jobPath(job.id)}/model.glb${query(session)}${nameQuery(session)}"`,
-    `curl --fail-with-body${key} "${root}${jobPath(job.id)}/labels${query(session)}"`,
+    `curl --fail-with-body${key} -o ${shellWord(`${stem(fileName)}.glb`)} "${root}${jobPath(job.id)}/model.glb${session.query}${nameQuery(session)}"`,
+    `curl --fail-with-body${key} "${root}${jobPath(job.id)}/labels${session.query}"`,
   ].join("\n");
 }
 
-function pythonLines({ job, session }: Result, chosen: [string, unknown][]): string {
+function pythonLines(result: Result, chosen: [string, unknown][]): string {
+  return result.session.query.startsWith("?revision=") ? revisionLines(result) : segmentLines(result, chosen);
+}
+
+/** Return lines that get the parts of a revision, which were made by hand. */
+function revisionLines({ job, session }: Result): string {
+  const root = new URL(".", document.baseURI).href.replace(/\/$/, "");
+  const key = apiKey.get() === "" ? "" : ', api_key=os.environ["CLEAVE_KEY"]';
+  const revision = session.query.replace("?revision=", "");
+  return [
+    ...(key === "" ? [] : ["import os", ""]),
+    "from cleave.client import Client",
+    "",
+    `with Client("${root}"${key}) as client:`,
+    `    labels = client.labels(client.job("${job.id}"), revision=${revision}).labels  # (F,) part of every face`,
+    `    client.download("${job.id}", "model.glb", ${JSON.stringify(`${stem(nameOf(job))}.glb`)}, revision=${revision})`,
+  ].join("\n");
+}
+
+function segmentLines({ job, session }: Result, chosen: [string, unknown][]): string {
   const { tree, work } = session;
   const level = tree.levelOf(work.cut);
   const values = chosen.map(([name, value]) => `${name}=${literal(value)}`).join(", ");

@@ -1,6 +1,7 @@
 /** The drawer with the list of jobs: thumbnails, search, deletion. */
 
 import { deleteJob, getBlob, jobPath, listJobs, nameOf, type Job } from "./api";
+import type { BatchModel } from "./edit/batch";
 import { byId, h, icon, openDialog, toast } from "./dom";
 import { explain, problemOf } from "./problems";
 import { bytes, plural, when } from "./text";
@@ -15,13 +16,20 @@ export class JobList {
   readonly #search = byId<HTMLInputElement>("job-search");
   readonly #onChoose: (job: Job, purpose: Purpose) => void;
   readonly #onDeleted: (id: string) => void;
+  readonly #onLabel: (models: readonly BatchModel[]) => void;
   readonly #pictures = new Map<string, string>(); // object URLs by job id
   readonly #seen = new IntersectionObserver((entries) => this.#loadPictures(entries));
   #jobs: Job[] = [];
   #cursor: string | null = null;
   #purpose: Purpose = "open";
 
-  constructor(onChoose: (job: Job, purpose: Purpose) => void, onDeleted: (id: string) => void) {
+  constructor(
+    onChoose: (job: Job, purpose: Purpose) => void,
+    onDeleted: (id: string) => void,
+    onLabel: (models: readonly BatchModel[]) => void,
+  ) {
+    this.#onLabel = onLabel;
+    byId("label-jobs").addEventListener("click", () => this.#label());
     this.#onChoose = onChoose;
     this.#onDeleted = onDeleted;
     this.#search.addEventListener("input", () => this.#filter());
@@ -73,6 +81,18 @@ export class JobList {
     return row;
   }
 
+  /** Label the listed models one after the other. */
+  #label(): void {
+    this.#dialog.close();
+    this.#onLabel(this.#shown().map((job) => ({ job: job.id, name: nameOf(job) })));
+  }
+
+  /** Return the finished jobs that match the search. */
+  #shown(): Job[] {
+    const isShown = (id: string) => this.#list.querySelector<HTMLElement>(`[data-id="${id}"]`)?.hidden === false;
+    return this.#jobs.filter((job) => job.status === "succeeded" && isShown(job.id));
+  }
+
   #choose(job: Job): void {
     this.#dialog.close();
     this.#onChoose(job, this.#purpose);
@@ -116,6 +136,7 @@ export class JobList {
       (row as HTMLElement).hidden = !isShown;
       if (isShown) shown++;
     }
+    byId("label-jobs").hidden = this.#purpose !== "open" || this.#shown().length < 2;
     byId("no-jobs").hidden = shown > 0;
     byId("no-jobs").textContent = this.#jobs.length === 0 ? "No jobs yet. Drop a mesh to start." : "No job matches.";
   }
@@ -131,7 +152,7 @@ export class JobList {
   async #loadPicture(image: HTMLImageElement): Promise<void> {
     const id = image.dataset["job"]!;
     try {
-      const address = URL.createObjectURL(await getBlob(jobPath(id, `/preview.png?size=${THUMBNAIL}`)));
+      const address = URL.createObjectURL(await getBlob(jobPath(id, `/preview.png?size=${THUMBNAIL}&revision=latest`)));
       this.#pictures.set(id, address);
       image.src = address;
     } catch {
@@ -149,7 +170,7 @@ export class JobList {
 function stateOf(job: Job): string {
   switch (job.status) {
     case "succeeded":
-      return `${plural(job.automatic_segments ?? 1, "part")} · ${plural(job.mesh?.faces ?? 0, "face")}`;
+      return `${job.revision ? "Edited" : plural(job.automatic_segments ?? 1, "part")} · ${plural(job.mesh?.faces ?? 0, "face")}`;
     case "failed":
       return "Failed";
     case "canceled":

@@ -7,6 +7,8 @@ import { getJob, headers, jobPath, nameOf, type Job } from "./api";
 import { Beside } from "./beside";
 import { Camera } from "./camera";
 import { announce, byId, openDialog, toast } from "./dom";
+import { EditedSession } from "./edit/edited_session";
+import { Editing } from "./edit/editing";
 import { hasEnded } from "./follow";
 import { JobList } from "./jobs";
 import { forgetState, keptState } from "./kept";
@@ -34,18 +36,30 @@ class Page {
     onFinished: (job, purpose) => this.#finished(job, purpose),
     onRemedy: (remedy) => this.#applyRemedy(remedy),
     onLeave: () => this.#leave(),
+    onLabel: (models) => this.#editing.label(models),
   });
   readonly #level = new LevelSlider(() => this.#session);
   readonly #parts = new PartsPanel(this.#viewer, () => this.#session);
-  readonly #tools = new Tools(this.#viewer, () => this.#session);
+  readonly #editing = new Editing(
+    {
+      viewer: this.#viewer,
+      job: () => this.#job,
+      session: () => this.#session,
+      replace: (make) => this.#replace(make((news) => this.#changed(news))),
+    },
+    (job) => (location.hash = `job=${job}`),
+  );
+  readonly #tools = new Tools(this.#viewer, () => this.#session, (parts) => this.#editing.merge(parts));
   readonly #drawer = new ParameterDrawer((run) => this.#run(run));
   readonly #jobs = new JobList(
     (job, purpose) => this.#chosen(job, purpose === "beside"),
     (id) => this.#deleted(id),
+    (models) => this.#editing.label(models),
   );
   readonly #beside = new Beside(
     this.#viewer,
-    () => this.#result,
+    // Edited parts have no tree of cuts that could be compared.
+    () => (this.#session instanceof EditedSession ? null : this.#result),
     () => this.#saver.later(),
   );
   #opening: Address | null = null;
@@ -111,7 +125,7 @@ class Page {
   #accepted(job: Job, { isBeside }: Purpose): void {
     this.#saver.stop();
     if (isBeside && this.#session !== null && this.#job !== null) {
-      const state = { ...stateOf(this.#session, this.#camera.view, null), beside: job.id };
+      const state = this.#stateOf(this.#session, job.id);
       history.replaceState(null, "", writeAddress(this.#job.id, state));
     } else if (readAddress(location.hash).job !== job.id) {
       this.#opening = null;
@@ -143,6 +157,7 @@ class Page {
     const isSame = this.#job?.id === job.id && this.#session !== null;
     this.#job = job;
     if (isSame) return this.#restore();
+    this.#editing.close();
     this.#session = null;
     this.#beside.close();
     this.#camera.begin(null);
@@ -174,6 +189,7 @@ class Page {
     offerStructure(job, (structure) => this.#run({ parameters: { ...job.parameters, structure }, segments: null, isBeside: false }));
     this.#restore();
     announce(`${name}: ${plural(this.#session.parts.length, "part")}.`);
+    void this.#editing.open(job, this.#session).catch((error: unknown) => toast(explain(problemOf(error)).title));
   }
 
   #restore(): void {
@@ -183,7 +199,8 @@ class Page {
     this.#opening = this.#segments = null;
     this.#showWork(true);
     this.#camera.begin(state.view);
-    showState(this.#session, splits === null ? state : withSplits(state, this.#session, splits));
+    if (this.#session instanceof EditedSession) this.#session.setModes({ ...this.#session.firstModes, ...state.modes, selected: [] });
+    else showState(this.#session, splits === null ? state : withSplits(state, this.#session, splits));
     if (state.beside === null) this.#beside.close();
     else if (state.beside !== this.#beside.job) void this.#openBeside(state.beside);
     this.#update();
@@ -197,6 +214,13 @@ class Page {
     } catch (error) {
       toast(explain(problemOf(error)).title);
     }
+  }
+
+  /** Show another session of the same job. */
+  #replace(session: Session): void {
+    this.#session = session;
+    this.#changed();
+    this.#update();
   }
 
   /** Update the viewer at once after a change, the rest of the page with the next frame. */
@@ -217,13 +241,21 @@ class Page {
     this.#level.update();
     this.#parts.update();
     this.#tools.update();
+    this.#editing.update();
     this.#beside.update();
     this.#saver.later();
   }
 
   #state(beside: string | null): Shown | null {
     if (this.#session === null || this.#job === null || !byId("welcome").hidden) return null;
-    return { job: this.#job.id, state: stateOf(this.#session, this.#camera.view, beside) };
+    return { job: this.#job.id, state: this.#stateOf(this.#session, beside) };
+  }
+
+  /** Return what is kept of a session: of edited parts the modes, the parts themselves are stored with the job. */
+  #stateOf(session: Session, beside: string | null): JobState {
+    if (!(session instanceof EditedSession)) return stateOf(session, this.#camera.view, beside);
+    const { selected: _, ...modes } = stateOf(session, null, null).modes;
+    return { ...stateOf(session.levels, this.#camera.view, beside), modes };
   }
 
   /** Run the shown mesh again, or the next one that is chosen, with other parameters. */
@@ -270,6 +302,7 @@ class Page {
 
   #close(): void {
     this.#saver.stop();
+    this.#editing.close();
     this.#session = null;
     this.#job = null;
     this.#beside.close();

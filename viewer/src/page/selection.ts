@@ -23,15 +23,7 @@ export function describeSelection(session: Session): void {
   byId("detail-made").textContent = one === null || one.parent < 0 ? "–" : figure(tree.node(one.parent).cutValue);
   byId("detail-next").textContent = one === null || one.children.length === 0 ? "–" : figure(one.cutValue);
   byId<HTMLButtonElement>("split").disabled = nodes.every((node) => node.children.length === 0);
-  describeMerge(session);
+  byId<HTMLButtonElement>("merge").disabled = selected.length < 2;
   const isHidden = selected.every((id) => work.hidden.has(id));
   byId("hide").querySelector("span")!.textContent = isHidden ? "Show" : "Hide";
-}
-
-function describeMerge({ tree, work, modes: { selected } }: Session): void {
-  const merged = tree.partsBelow(work.cut, tree.commonAncestor(selected)).length;
-  const merge = byId<HTMLButtonElement>("merge");
-  merge.disabled = merged < 2;
-  merge.querySelector("span")!.textContent = merged > selected.length ? `Merge ${merged}` : "Merge";
-  merge.title = merged > selected.length ? `Merges the smallest group that contains the selection: ${merged} parts` : "";
 }

@@ -112,6 +112,18 @@ export class Session {
     return number === null ? "Group" : `${lists.segmentName} ${number}`;
   }
 
+  /** The query string that selects the present cut in the API. */
+  get query(): string {
+    const level = this.tree.levelOf(this.#work.cut);
+    return level === null ? `?splits=${this.tree.splitsOf(this.#work.cut).join(",")}` : `?segments=${level}`;
+  }
+
+  /** Set the first state without a notice. */
+  protected begin(work: Partial<Work>, modes: Modes): void {
+    this.#work = { ...this.#work, ...work };
+    this.#modes = modes;
+  }
+
   /** Replace the state by that of a link. */
   restore(work: Partial<Pick<Work, "level" | "edits" | "hidden" | "names">>, modes: Partial<Modes>): void {
     const { level, edits, hidden, names } = { ...this.#work, ...work };
@@ -165,6 +177,19 @@ export class Session {
       },
       () => `${plural(merged, "part")} merged into ${this.nameOf(id)}: ${this.#count()}.`,
     );
+  }
+
+  /** Merge parts that are all those below a node; others cannot be merged by a cut of the tree. */
+  merge(ids: readonly number[]): void {
+    const above = this.groupOf(ids);
+    if (above !== null) this.mergeBelow(above);
+  }
+
+  /** Return the node whose parts are exactly these; null if there is none. */
+  groupOf(ids: readonly number[]): number | null {
+    if (ids.length < 2) return null;
+    const above = this.tree.commonAncestor(ids);
+    return this.tree.partsBelow(this.#work.cut, above).length === ids.length ? above : null;
   }
 
   /** Undo all cuts by hand at once. */

@@ -1,6 +1,7 @@
 /** The card with several models: each becomes a job of its own, which can be opened when it has ended. */
 
 import { cancelJob, getJob, submit, type Job } from "./api";
+import type { BatchModel } from "./edit/batch";
 import { announce, byId, h } from "./dom";
 import { hasEnded } from "./follow";
 import { ApiError, explain, problemOf } from "./problems";
@@ -15,6 +16,7 @@ const FULL_PAUSE_MS = 5000; // until the next try if the server has enough jobs
 export interface SeveralEvents {
   onOpen(job: Job): void;
   onClose(): void;
+  onLabel(models: readonly BatchModel[]): void;
 }
 
 type Parameters = Readonly<Record<string, unknown>>;
@@ -101,6 +103,7 @@ export class Several {
     byId("several-stop").addEventListener("click", () => void this.#stop());
     byId("several-again").addEventListener("click", () => this.#again());
     byId("several-close").addEventListener("click", () => this.#close());
+    byId("several-label").addEventListener("click", () => this.#label());
   }
 
   get isOpen(): boolean {
@@ -185,6 +188,11 @@ export class Several {
     for (const { job } of unfinished) if (job !== null) await cancelJob(job.id).catch(() => undefined);
   }
 
+  #label(): void {
+    const done = this.#rows.filter(({ end }) => end === "succeeded");
+    this.#events.onLabel(done.map(({ job, model }) => ({ job: job!.id, name: model.name })));
+  }
+
   #close(): void {
     this.#rows = [];
     byId("several-list").replaceChildren();
@@ -200,6 +208,7 @@ export class Several {
     byId("several-summary").textContent = text;
     byId("several-stop").hidden = left === 0;
     byId("several-close").hidden = left > 0;
+    byId("several-label").hidden = left > 0 || count("succeeded") < 2;
     byId("several-again").hidden = left > 0 || !this.#rows.some(({ canBeTried }) => canBeTried);
   }
 }

@@ -10,6 +10,7 @@ import lists from "./lists.json";
 import { explain, problemOf, type Problem, type Remedy } from "./problems";
 import { modelOfFile, sorted, type Model } from "./sets";
 import { Several } from "./several";
+import type { BatchModel } from "./edit/batch";
 import { explainWaiting, openStages, showProgress, showStage } from "./stages";
 import { bytes, plural } from "./text";
 
@@ -32,6 +33,7 @@ export interface StartEvents {
   onRemedy(remedy: Remedy): void;
   /** Called if the user stops a job or goes back from an error. */
   onLeave(): void;
+  onLabel(models: readonly BatchModel[]): void;
 }
 
 const SAMPLES: readonly [name: string, title: string][] = [
@@ -53,6 +55,7 @@ export class Start {
   readonly #several = new Several({
     onOpen: (job) => this.#events.onFinished(job, TO_SHOW),
     onClose: () => this.#events.onLeave(),
+    onLabel: (models) => this.#events.onLabel(models),
   });
   #running: AbortController | null = null;
   #job: Job | null = null;

@@ -9,13 +9,15 @@ type Toggle = "wireframe" | "concavity" | "lines";
 export class Tools {
   readonly #viewer: CleaveViewer;
   readonly #session: () => Session | null;
+  readonly #onMerge: (parts: readonly number[]) => void;
   readonly #explode = byId<HTMLInputElement>("explode");
   /** The camera before parts were isolated; null if none are. */
   #before: { session: Session; view: View } | null = null;
 
-  constructor(viewer: CleaveViewer, session: () => Session | null) {
+  constructor(viewer: CleaveViewer, session: () => Session | null, onMerge: (parts: readonly number[]) => void) {
     this.#viewer = viewer;
     this.#session = session;
+    this.#onMerge = onMerge;
     const toggle = (name: Toggle) => () => this.#with((now) => now.setModes({ [name]: !now.modes[name] }));
     const actions: Record<string, () => void> = {
       undo: () => this.#with((now) => now.undo()),
@@ -76,7 +78,7 @@ export class Tools {
   }
 
   #merge(): void {
-    this.#with((now) => now.modes.selected.length > 0 && now.mergeBelow(now.tree.commonAncestor(now.modes.selected)));
+    this.#with((now) => this.#onMerge(now.modes.selected));
   }
 
   #hide(): void {

@@ -1,0 +1,94 @@
+/** The state of a job whose parts were edited by hand: its parts are those of a revision, and changes become revisions. */
+
+import type { PartTree } from "../../component/element";
+import { announce } from "../dom";
+import { Session, type Modes } from "../session";
+import type { Editor } from "./editor";
+import type { Part } from "./revisions";
+
+export class EditedSession extends Session {
+  /** The session of the automatic result. */
+  readonly levels: Session;
+  readonly details: readonly Part[];
+  readonly #editor: Editor;
+
+  /** ``tree`` has one step, whose leaves are the parts in the order of ``details``. */
+  constructor(
+    editor: Editor,
+    tree: PartTree,
+    levels: Session,
+    details: readonly Part[],
+    modes: Modes,
+    hidden: readonly number[],
+    onChange: (news?: string) => void,
+  ) {
+    const { limitReached, firstModes } = levels;
+    super(tree, { maxSegments: details.length, automaticSegments: details.length, limitReached, faces: 0 }, firstModes.up, onChange);
+    this.#editor = editor;
+    this.levels = levels;
+    this.details = details;
+    const names = new Map(this.parts.flatMap((id, part) => (details[part]!.name === "" ? [] : [[id, details[part]!.name] as const])));
+    this.begin({ hidden: new Set(hidden), names }, modes);
+  }
+
+  override get query(): string {
+    return this.#editor.query;
+  }
+
+  override get isEdited(): boolean {
+    return false; // there are no cuts by hand
+  }
+
+  override get canUndo(): boolean {
+    return this.#editor.canUndo;
+  }
+
+  override get canRedo(): boolean {
+    return this.#editor.canRedo;
+  }
+
+  override undo(): void {
+    void this.#editor.undo();
+  }
+
+  override redo(): void {
+    void this.#editor.redo();
+  }
+
+  override rename(id: number, name: string): void {
+    const part = this.numberOf(id);
+    if (part === null) return;
+    const text = name.trim();
+    const isNone = text === "" || text === this.usualName(id);
+    void this.#editor.edit([isNone ? { op: "delete_name", part } : { op: "name", part, name: text }], isNone ? "Name deleted" : `Named ${text}`);
+  }
+
+  override merge(ids: readonly number[]): void {
+    const parts = ids.map((id) => this.numberOf(id)).filter((part) => part !== null);
+    if (parts.length > 1) void this.#editor.edit([{ op: "merge", parts }], `${parts.length} parts merged`);
+  }
+
+  override mergeBelow(): void {
+    this.#refuse();
+  }
+
+  override split(): void {
+    announce("Edited parts have no cuts of their own: cut them along a line.");
+  }
+
+  override slide(): void {
+    this.#refuse();
+  }
+
+  override showLevel(): void {
+    this.#refuse();
+  }
+
+  override showStep(): void {
+    this.#refuse();
+  }
+
+  #refuse(): void {
+    announce("The parts were edited: start again from a level to change their number.");
+  }
+}
