@@ -23,6 +23,8 @@ export interface Eye {
 }
 
 const NONE = -1;
+/** Cosine below which a face with a pixel may be one of the far side, at the outline of the model; set by hand. */
+const LEAST_FACING = 0.1;
 
 export class Faces implements Sight {
   /** (F) face of the file of every drawn face. */
@@ -126,13 +128,15 @@ export class Faces implements Sight {
     if (projection === null) return [];
     const { toClip: m, width, height, eye } = projection;
     const c = this.#centres;
+    const shown = found.length;
     for (let next = 0; next < found.length; next++) {
       const from = found[next]!;
       const side = this.#facing(eye, from);
+      if (next < shown && !(Math.abs(side) > LEAST_FACING * this.#distance(eye, from))) continue;
       for (let corner = 3 * from; corner < 3 * from + 3; corner++) {
         const drawn = this.#neighbours[corner]!;
         if (drawn === NONE || seen[drawn] === 1) continue;
-        if (this.#facing(eye, drawn) * side <= 0) continue;
+        if (!(this.#facing(eye, drawn) * side > 0)) continue; // NaN for a face without area, from which none is reached
         // As project(), without an array for each of many thousand faces.
         const [x, y, z] = [c[3 * drawn]!, c[3 * drawn + 1]!, c[3 * drawn + 2]!];
         const w = m[3]! * x + m[7]! * y + m[11]! * z + m[15]!;
@@ -146,6 +150,12 @@ export class Faces implements Sight {
     return found.map((drawn) => this.faceOf[drawn]!);
   }
 
+  #distance(eye: Projection["eye"], drawn: number): number {
+    const [c, i] = [this.#centres, 3 * drawn];
+    return Math.hypot(eye[0]! - c[i]!, eye[1]! - c[i + 1]!, eye[2]! - c[i + 2]!);
+  }
+
+  /** Return the distance to a face times the cosine of the angle between its normal and the direction of the camera. */
   #facing(eye: Projection["eye"], drawn: number): number {
     const [n, c, i] = [this.#normals, this.#centres, 3 * drawn];
     return n[i]! * (eye[0]! - c[i]!) + n[i + 1]! * (eye[1]! - c[i + 1]!) + n[i + 2]! * (eye[2]! - c[i + 2]!);
