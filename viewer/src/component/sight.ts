@@ -25,6 +25,8 @@ export interface Eye {
 const NONE = -1;
 /** Cosine below which a face with a pixel may be one of the far side, at the outline of the model; set by hand. */
 const LEAST_FACING = 0.1;
+/** How much farther than the face at its pixel the middle of a face may be that has no pixel, as a factor; set by hand. */
+const HIDDEN_BEHIND = 1.01;
 
 export class Faces implements Sight {
   /** (F) face of the file of every drawn face. */
@@ -121,11 +123,13 @@ export class Faces implements Sight {
 
   /**
    * Add to drawn faces their neighbours whose middle is inside, because small faces may have no pixel, and return the
-   * faces of the file. A neighbour counts if it faces the camera as the face from which it was reached.
+   * faces of the file. A neighbour counts if it faces the camera as the face from which it was reached, and is not
+   * behind the face that is drawn at its middle.
    */
   #grown(found: number[], seen: Uint8Array, isInside: (x: number, y: number) => boolean): number[] {
     const projection = this.#eye.projection();
-    if (projection === null) return [];
+    const ids = this.#eye.ids();
+    if (projection === null || ids === null) return [];
     const { toClip: m, width, height, eye } = projection;
     const c = this.#centres;
     const shown = found.length;
@@ -142,7 +146,10 @@ export class Faces implements Sight {
         const w = m[3]! * x + m[7]! * y + m[11]! * z + m[15]!;
         const right = (m[0]! * x + m[4]! * y + m[8]! * z + m[12]!) / w;
         const up = (m[1]! * x + m[5]! * y + m[9]! * z + m[13]!) / w;
-        if (w <= 0 || !isInside(((right + 1) / 2) * width, ((1 - up) / 2) * height)) continue;
+        const [column, row] = [((right + 1) / 2) * width, ((1 - up) / 2) * height];
+        if (w <= 0 || !isInside(column, row)) continue;
+        const front = ids.at(column, row);
+        if (front < 0 || this.#distance(eye, drawn) > HIDDEN_BEHIND * this.#distance(eye, front)) continue;
         seen[drawn] = 1;
         found.push(drawn);
       }
