@@ -38,6 +38,7 @@ _HYPOTHESIS = tempfile.TemporaryDirectory(prefix="hypothesis-")
 set_hypothesis_home_dir(_HYPOTHESIS.name)
 
 _BROWSER = "tests/browser/"
+_SECOND_HALF = "test_list"  # the browser tests from this name on take about as long as those before it
 _SEPARATE = {"tests/end_to_end/test_faults.py", "tests/worker/process/test_process.py"}
 _EVERYDAY = "not slow"  # the marker expression of the everyday run
 _SLOW = (
@@ -105,13 +106,19 @@ def pytest_xdist_make_scheduler(config: pytest.Config, log: Producer) -> LoadSco
 
 
 class _FileByFile(LoadScopeScheduling):
-    """All tests of a file run in one process, except in files whose tests share nothing; so do the browser tests."""
+    """All tests of a file run in one process, except in files whose tests share nothing.
+
+    The browser tests run in three processes, each with a browser and a service that its tests share.
+    """
 
     def _split_scope(self, nodeid: str) -> str:
         path = nodeid.partition("::")[0]
         if path in _SEPARATE:
             return nodeid
-        return _BROWSER if path.startswith(_BROWSER) else path
+        if not path.startswith(_BROWSER):
+            return path
+        name = path.removeprefix(_BROWSER)
+        return f"{_BROWSER}{'edit' if '/' in name else 'first' if name < _SECOND_HALF else 'second'}"
 
 
 def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
