@@ -146,7 +146,7 @@ def test_edits_leave_locked_parts_alone_and_merge_exactly_those_that_are_selecte
     before = edited.labels()
     first, second = visit.parts()[2], visit.parts()[5]
     visit.row(first).click()
-    assert visit.page.is_disabled("#merge")
+    visit.page.locator("#merge:disabled").wait_for()
     visit.row(second).click(modifiers=["Control"])
     visit.page.click("#merge")
     wait_for_revision(visit, 1)
