@@ -19,6 +19,7 @@ from bench.assets.dataset import Asset
 from bench.clicks.evaluation import group_of, segmentations_of
 from bench.clicks.person import Shape
 from bench.errors import BenchmarkError
+from bench.learning.fitting import LEAST_SCALE, rounded
 from bench.learning.folds import Documents, apply_unseen, with_unseen
 from bench.pool import map_in_processes
 from bench.princeton.dataset import Model
@@ -28,7 +29,6 @@ from segcore.edit.guide_graph import face_guide_graph, guide_clusters
 from segcore.edit.tree_parts import FEATURES as PART_FEATURES
 from segcore.edit.tree_parts import TreeParts
 from segcore.learned.choices import ChoiceModel, ChoiceModels
-from segcore.parameters import SegmentationParameters
 
 if TYPE_CHECKING:
     from segcore.arrays import BoolArray, FloatArray
@@ -36,7 +36,6 @@ if TYPE_CHECKING:
 _ROUNDS = 3  # the first with the best candidates
 _CORRECTIONS = 5  # clicks after the first
 _RIDGE = 1e-3
-_DIGITS = 5  # significant digits of the numbers of a model
 _EXPLORED = 0.4  # share of the first round's choices that are made at random
 
 
@@ -118,7 +117,7 @@ def choices_of(
     hierarchy = segmenter(mesh, 0)
     surface = build_surface(mesh)
     shape = Shape.of(mesh, surface)
-    faces = face_guide_graph(surface, SegmentationParameters())
+    faces = face_guide_graph(surface)
     clusters = guide_clusters(faces, hierarchy.face_leaf[shape.input_face], faces.count)
     parts = TreeParts.of(hierarchy, clusters.graph, clusters.leaf)
     rng = np.random.default_rng(0)
@@ -198,8 +197,8 @@ def fit(names: tuple[str, ...], choices: Sequence[Choice]) -> ChoiceModel:
     sizes = np.bincount(is_asset, minlength=2)
     weight = 1.0 / sizes[is_asset.astype(np.int64)]
     weight /= weight.sum()
-    mean = _rounded(features.mean(axis=0))
-    scale = _rounded(np.maximum(features.std(axis=0), 1e-6))
+    mean = rounded(features.mean(axis=0))
+    scale = rounded(np.maximum(features.std(axis=0), LEAST_SCALE))
     columns = (features - mean) / scale
 
     def cost(w: FloatArray) -> tuple[float, FloatArray]:
@@ -212,8 +211,4 @@ def fit(names: tuple[str, ...], choices: Sequence[Choice]) -> ChoiceModel:
         return _RIDGE * float(w @ w) - float(weight @ expected), 2.0 * _RIDGE * w - slope
 
     solution = minimize(cost, np.zeros(len(names)), jac=True, method="L-BFGS-B")
-    return ChoiceModel(names, mean, scale, _rounded(solution.x))
-
-
-def _rounded(values: FloatArray) -> FloatArray:
-    return np.array([float(f"{value:.{_DIGITS - 1}e}") for value in values])
+    return ChoiceModel(names, mean, scale, rounded(solution.x))

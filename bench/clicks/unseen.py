@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import json
 from collections.abc import Callable, Mapping, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -10,6 +9,7 @@ from typing import TYPE_CHECKING, Any
 from bench.assets.dataset import Asset
 from bench.clicks.evaluation import ClickResult
 from bench.errors import BenchmarkError
+from bench.learning.folds import read_learned, save_learned
 from bench.princeton.dataset import Model
 
 if TYPE_CHECKING:
@@ -20,8 +20,7 @@ def save_choices(folder: Path, folds: Sequence[Learned]) -> None:
     """Write a file for each group that was left out."""
     folder.mkdir(parents=True, exist_ok=True)
     for fold in folds:
-        document = {"left_out": sorted(fold.left_out, key=str), "choices": fold.models.document()}
-        (folder / f"{str(fold.group).lower()}.json").write_text(json.dumps(document), encoding="utf-8")
+        save_learned(folder, str(fold.group), fold.left_out, {"choices": fold.models.document()})
 
 
 def read_choices(folder: Path) -> dict[int | str, dict[str, Any]]:
@@ -32,16 +31,7 @@ def read_choices(folder: Path) -> dict[int | str, dict[str, Any]]:
     BenchmarkError
         If the folder has no such file, or one cannot be read.
     """
-    found: dict[int | str, dict[str, Any]] = {}
-    for path in sorted(folder.glob("*.json")):
-        try:
-            document = json.loads(path.read_text(encoding="utf-8"))
-            found.update(dict.fromkeys(document["left_out"], document["choices"]))
-        except (OSError, ValueError, KeyError, TypeError) as error:
-            raise BenchmarkError(f"{path} was not written by 'bench clicks --choice-folds': {error!r}.") from error
-    if not found:
-        raise BenchmarkError(f"{folder} has no files of 'bench clicks --choice-folds'.")
-    return found
+    return read_learned(folder, "choices", "bench clicks --choice-folds")
 
 
 def apply_choices(

@@ -16,7 +16,7 @@ _STEPS = 30  # a limit, in case the cost does not settle
 _SETTLED = 1e-7  # decrease of the cost that ends the iteration; set by hand
 _DIGITS = 5  # significant digits of the numbers in a model: further ones depend on the order of additions
 # Guards against log(0) and divisions by zero, far below the values of real data.
-_LEAST_SCALE = 1e-6
+LEAST_SCALE = 1e-6
 _LEAST_CHANCE = 1e-6
 _LEAST_CURVATURE = 1e-9
 
@@ -54,14 +54,14 @@ def fit(names: tuple[str, ...], rows: Rows, ridge: float) -> LogisticModel:
     The model, its numbers rounded to five significant digits so that they are the same on every machine.
     """
     weight = rows.weight / rows.weight.sum()
-    mean = _rounded(np.einsum("i,ij->j", weight, rows.features))
+    mean = rounded(np.einsum("i,ij->j", weight, rows.features))
     deviation = np.sqrt(np.einsum("i,ij->j", weight, (rows.features - mean) ** 2))
-    scale = _rounded(np.maximum(deviation, _LEAST_SCALE))
+    scale = rounded(np.maximum(deviation, LEAST_SCALE))
     columns = basis((rows.features - mean) / scale)
     columns = np.concatenate([columns, np.ones((len(columns), 1))], axis=1)
     penalty = np.full(columns.shape[1], ridge)
     penalty[-1] = 0.0
-    solution = _rounded(_minimise(_Problem(columns, rows.target, weight, penalty)))
+    solution = rounded(_minimise(_Problem(columns, rows.target, weight, penalty)))
     return LogisticModel(names, mean, scale, solution[:-1], float(solution[-1]))
 
 
@@ -86,5 +86,6 @@ def _logistic(score: FloatArray) -> FloatArray:
     return 1.0 / (1.0 + np.exp(-np.clip(score, -500, 500)))  # exp(710) is infinite
 
 
-def _rounded(values: FloatArray) -> FloatArray:
+def rounded(values: FloatArray) -> FloatArray:
+    """Return numbers with five significant digits, which are the same on every machine."""
     return np.array([float(f"{value:.{_DIGITS - 1}e}") for value in values])

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import json
 import sys
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence, Set
 from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Protocol, TypeVar
@@ -41,8 +41,13 @@ class Fold:
 
 def save_fold(folder: Path, fold: Fold) -> None:
     """Write a fold to a file of the folder, with the name of the fold in lower case."""
-    document = {"left_out": sorted(fold.left_out, key=_numbers_first), "models": fold.models.document()}
-    (folder / f"{fold.name.lower()}.json").write_text(json.dumps(document), encoding="utf-8")
+    save_learned(folder, fold.name, fold.left_out, {"models": fold.models.document()})
+
+
+def save_learned(folder: Path, name: str, left_out: Set[int | str], learned: Document) -> None:
+    """Write what was learned without some meshes to a file of the folder, with a name in lower case."""
+    document = {"left_out": sorted(left_out, key=_numbers_first), **learned}
+    (folder / f"{name.lower()}.json").write_text(json.dumps(document), encoding="utf-8")
 
 
 def _numbers_first(model: int | str) -> tuple[int, str]:
@@ -59,15 +64,30 @@ def read_folds(folder: Path) -> dict[int | str, dict[str, Any]]:
     BenchmarkError
         If the folder has no such file, or one cannot be read.
     """
+    return read_learned(folder, "models", "bench train --folds")
+
+
+def read_learned(folder: Path, field: str, command: str) -> dict[int | str, dict[str, Any]]:
+    """Return, for every mesh that a file of the folder leaves out, a field of that file.
+
+    Parameters
+    ----------
+    command : writes such files.
+
+    Raises
+    ------
+    BenchmarkError
+        If the folder has no such file, or one cannot be read.
+    """
     found: dict[int | str, dict[str, Any]] = {}
     for path in sorted(folder.glob("*.json")):
         try:
             document = json.loads(path.read_text(encoding="utf-8"))
-            found.update(dict.fromkeys(document["left_out"], document["models"]))
+            found.update(dict.fromkeys(document["left_out"], document[field]))
         except (OSError, ValueError, KeyError, TypeError) as error:
-            raise BenchmarkError(f"{path} was not written by 'bench train --folds': {error!r}.") from error
+            raise BenchmarkError(f"{path} was not written by '{command}': {error!r}.") from error
     if not found:
-        raise BenchmarkError(f"{folder} has no files of 'bench train --folds'.")
+        raise BenchmarkError(f"{folder} has no files of '{command}'.")
     return found
 
 

@@ -8,6 +8,8 @@ import heapq
 import numpy as np
 from numba import njit
 
+_NONE = -1  # in place of a node
+
 
 @njit(cache=True)
 def distances_from_border(rows, step, region, limit):  # type: ignore[no-untyped-def]
@@ -21,19 +23,17 @@ def distances_from_border(rows, step, region, limit):  # type: ignore[no-untyped
     """
     start, neighbour, edge = rows
     distance = np.full(len(region), np.inf)
-    heap = [(0.0, np.int64(0))]
-    heap.pop()
+    heap = _empty_heap()
     for i in range(len(region)):
         if region[i]:
+            nearest = np.inf
             for k in range(start[i], start[i + 1]):
                 if not region[neighbour[k]]:
-                    distance[i] = min(distance[i], 0.5 * step[edge[k]])
-            if distance[i] <= limit:
-                heapq.heappush(heap, (distance[i], np.int64(i)))
-    _expand(rows, step, region, limit, heap, distance)
-    for i in range(len(region)):
-        if distance[i] > limit:
-            distance[i] = np.inf
+                    nearest = min(nearest, 0.5 * step[edge[k]])
+            if nearest < np.inf and nearest <= limit:
+                distance[i] = nearest
+                heapq.heappush(heap, (nearest, np.int64(i)))
+    _search(rows, step, region, limit, heap, distance, _NONE)
     return distance
 
 
@@ -42,29 +42,8 @@ def distances_from(rows, step, seeds, limit):  # type: ignore[no-untyped-def]
     """(N,) the distance from the nearest of some nodes; inf beyond ``limit``."""
     count = len(rows.start) - 1
     distance = np.full(count, np.inf)
-    heap = [(0.0, np.int64(0))]
-    heap.pop()
-    for seed in seeds:
-        distance[seed] = 0.0
-        heapq.heappush(heap, (0.0, np.int64(seed)))
-    _expand(rows, step, np.ones(count, dtype=np.bool_), limit, heap, distance)
+    _search(rows, step, np.ones(count, dtype=np.bool_), limit, _heap_of(seeds, distance), distance, _NONE)
     return distance
-
-
-@njit(cache=True)
-def _expand(rows, step, region, limit, heap, distance):  # type: ignore[no-untyped-def]
-    """Carry distances on from the nodes of a heap, within a region and up to a limit."""
-    start, neighbour, edge = rows
-    while len(heap) > 0:
-        reached, i = heapq.heappop(heap)
-        if reached > distance[i]:
-            continue
-        for k in range(start[i], start[i + 1]):
-            j = neighbour[k]
-            further = reached + step[edge[k]]
-            if region[j] and further < distance[j] and further <= limit:
-                distance[j] = further
-                heapq.heappush(heap, (further, np.int64(j)))
 
 
 @njit(cache=True)
@@ -75,35 +54,62 @@ def nearest_seed(rows, step, region, seeds):  # type: ignore[no-untyped-def]
     ----------
     seeds : (K,) nodes of the region.
     """
-    start, neighbour, edge = rows
     distance = np.full(len(region), np.inf)
+    before = _search(rows, step, region, np.inf, _heap_of(seeds, distance), distance, _NONE)
     nearest = np.full(len(region), -1, dtype=np.int32)
-    heap = [(0.0, np.int64(0))]
-    heap.pop()
     for k in range(len(seeds)):
-        distance[seeds[k]], nearest[seeds[k]] = 0.0, k
-        heapq.heappush(heap, (0.0, np.int64(seeds[k])))
-    while len(heap) > 0:
-        reached, i = heapq.heappop(heap)
-        if reached > distance[i]:
-            continue
-        for k in range(start[i], start[i + 1]):
-            j = neighbour[k]
-            further = reached + step[edge[k]]
-            if region[j] and further < distance[j]:
-                distance[j], nearest[j] = further, nearest[i]
-                heapq.heappush(heap, (further, np.int64(j)))
+        nearest[seeds[k]] = k
+    path = np.empty(len(region), dtype=np.int32)
+    for i in range(len(region)):
+        length, node = 0, i
+        while nearest[node] < 0 and before[node] != _NONE:
+            path[length] = node
+            length, node = length + 1, before[node]
+        for k in range(length):
+            nearest[path[k]] = nearest[node]
     return nearest
 
 
 @njit(cache=True)
 def shortest_path(rows, step, region, origin, target):  # type: ignore[no-untyped-def]
     """The nodes of the shortest path within a region between two of its nodes; these two if there is none."""
-    start, neighbour, edge = rows
     distance = np.full(len(region), np.inf)
-    before = np.full(len(region), -1, dtype=np.int32)
-    distance[origin] = 0.0
-    heap = [(0.0, np.int64(origin))]
+    before = _search(rows, step, region, np.inf, _heap_of(np.array([origin]), distance), distance, target)
+    path = [np.int64(target)]
+    while path[-1] != origin and before[path[-1]] != _NONE:
+        path.append(np.int64(before[path[-1]]))
+    if path[-1] != origin:
+        path.append(np.int64(origin))
+    return np.array(path[::-1], dtype=np.int32)
+
+
+@njit(cache=True)
+def _empty_heap():  # type: ignore[no-untyped-def]
+    heap = [(0.0, np.int64(0))]  # numba takes the type of a list from its first entry
+    heap.pop()
+    return heap
+
+
+@njit(cache=True)
+def _heap_of(seeds, distance):  # type: ignore[no-untyped-def]
+    """A heap of seeds, whose distances become 0."""
+    heap = _empty_heap()
+    for seed in seeds:
+        distance[seed] = 0.0
+        heapq.heappush(heap, (0.0, np.int64(seed)))
+    return heap
+
+
+@njit(cache=True)
+def _search(rows, step, region, limit, heap, distance, target):  # type: ignore[no-untyped-def]
+    """Carry distances on from the nodes of a heap, within a region, up to a limit and until a target is reached.
+
+    Returns
+    -------
+    (N,) the node before each on its shortest path; -1 if there is none.
+    """
+    start, neighbour, edge = rows
+    before = np.full(len(region), _NONE, dtype=np.int32)
     while len(heap) > 0:
         reached, i = heapq.heappop(heap)
         if i == target:
@@ -113,15 +119,10 @@ def shortest_path(rows, step, region, origin, target):  # type: ignore[no-untype
         for k in range(start[i], start[i + 1]):
             j = neighbour[k]
             further = reached + step[edge[k]]
-            if region[j] and further < distance[j]:
+            if region[j] and further < distance[j] and further <= limit:
                 distance[j], before[j] = further, i
                 heapq.heappush(heap, (further, np.int64(j)))
-    path = [np.int64(target)]
-    while path[-1] != origin and before[path[-1]] >= 0:
-        path.append(np.int64(before[path[-1]]))
-    if path[-1] != origin:
-        path.append(np.int64(origin))
-    return np.array(path[::-1], dtype=np.int32)
+    return before
 
 
 @njit(cache=True)

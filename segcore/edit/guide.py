@@ -16,7 +16,6 @@ from segcore.edit.tree_parts import TreeParts
 from segcore.errors import InvalidParameters
 from segcore.hierarchy import Hierarchy
 from segcore.mesh import Mesh
-from segcore.parameters import SegmentationParameters
 
 # Above this number of faces the parts are found among clusters of faces, and their borders then drawn on the faces.
 # Set by hand.
@@ -26,16 +25,16 @@ _MOST_NODES = 24_000
 class Guide:
     """The weights of one mesh, and the parts of its hierarchy, for corrections by hand.
 
-    Faces are given by their numbers in the mesh. Results depend on the arguments alone. Making a guide costs about as
-    much as the first stages of :func:`segcore.segment`; it holds about 300 bytes for each face. A guide is not to be
-    used by several threads at once.
+    The weights are those of the default parameters, whatever the parameters of the hierarchy. Faces are given by their
+    numbers in the mesh. Results depend on the arguments alone. Making a guide costs about as much as the first stages
+    of :func:`segcore.segment`; it holds about 300 bytes for each face. A guide is not to be used by several threads at
+    once.
 
     Parameters
     ----------
     mesh : any mesh.
     hierarchy : the result of :func:`segcore.segment` for this mesh.
     surface : ``build_surface(mesh)``, if the caller has computed it already.
-    parameters : those of the segmentation; they determine the weights of borders.
 
     Raises
     ------
@@ -48,7 +47,6 @@ class Guide:
         mesh: Mesh,
         hierarchy: Hierarchy,
         surface: Surface | None = None,
-        parameters: SegmentationParameters | None = None,
     ) -> None:
         if len(hierarchy.face_leaf) != len(mesh.faces):
             raise InvalidParameters(
@@ -57,7 +55,7 @@ class Guide:
         surface = surface or build_surface(mesh)
         self._face_of_input = surface.face_of_input
         self._normals = surface.normals
-        self._faces = face_guide_graph(surface, parameters or SegmentationParameters())
+        self._faces = face_guide_graph(surface)
         leaf = np.empty(self._faces.count, dtype=np.int32)
         leaf[self._face_of_input] = hierarchy.face_leaf
         clusters = guide_clusters(self._faces, leaf, _MOST_NODES)

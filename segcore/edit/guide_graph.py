@@ -4,7 +4,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from segcore.affinity.mesh_graphs import mesh_graph
+from segcore.affinity.mesh_graphs import face_dual_graph
 from segcore.arrays import FloatArray, IntArray, at_least, distinct_pairs, group_sums
 from segcore.clean.edge_geometry import edge_lengths
 from segcore.clean.refinement import refine
@@ -32,6 +32,7 @@ class GuideGraph:
     rows: Rows
     weight: FloatArray  # (E,) length times affinity
     length: FloatArray  # (E,) of the common border of two nodes
+    cost: FloatArray  # (E,) of a border along every edge, as in :mod:`segcore.label.boundary`
     step: FloatArray  # (E,) distance between the centres of two nodes
     points: FloatArray  # (N, 3) the centres
     area: FloatArray  # (N,) > 0
@@ -41,12 +42,8 @@ class GuideGraph:
         """The nodes and edges of a graph whose volumes are areas."""
         away = np.linalg.norm(points[graph.edges[:, 0]] - points[graph.edges[:, 1]], axis=1)
         step = at_least(away, _SHORTEST)
-        return cls(graph.edges, graph.rows(), graph.weight, graph.length, step, points, graph.volume)
-
-    @property
-    def cost(self) -> FloatArray:
-        """(E,) the cost of a border along every edge, as in :mod:`segcore.label.boundary`."""
-        return self.weight + STIFFNESS * self.length
+        cost = graph.weight + STIFFNESS * graph.length
+        return cls(graph.edges, graph.rows(), graph.weight, graph.length, cost, step, points, graph.volume)
 
     @property
     def resistance(self) -> FloatArray:
@@ -60,10 +57,10 @@ class GuideGraph:
         return len(self.area)
 
 
-def face_guide_graph(surface: Surface, parameters: SegmentationParameters) -> GuideGraph:
-    """The faces of a surface with the weights of the method, and links between components that touch."""
+def face_guide_graph(surface: Surface) -> GuideGraph:
+    """The faces of a surface with the default weights of the method, and links between components that touch."""
     refinement = refine(surface)
-    nodes = mesh_graph(refinement.surface, parameters, refinement.is_piece)
+    nodes = face_dual_graph(refinement.surface, SegmentationParameters(), refinement.is_piece)
     if refinement.surface is not surface:
         nodes = whole_faces(nodes, refinement, surface)
     return GuideGraph.of(_linked(surface, nodes), nodes.points)

@@ -4,7 +4,8 @@ import numpy as np
 from numba import njit
 
 from segcore.arrays import BoolArray, FloatArray
-from segcore.graphs.max_flow import Arcs, push
+from segcore.graphs.inner_arcs import arcs_among
+from segcore.graphs.max_flow import push
 from segcore.graphs.surface_graph import Rows
 
 
@@ -50,33 +51,10 @@ def _network(rows, cost, inside, nodes, count):  # type: ignore[no-untyped-def]
     local = np.full(count, -1, dtype=np.int32)
     for i in range(len(nodes)):
         local[nodes[i]] = i
-    arcs = 0
-    for node in nodes:
-        for k in range(start[node], start[node + 1]):
-            if local[neighbour[k]] >= 0:
-                arcs += 1
-    begin = np.empty(len(nodes) + 1, dtype=np.uint32)
-    target = np.empty(arcs, dtype=np.uint32)
-    reverse = np.empty(arcs, dtype=np.uint32)
-    capacity = np.empty(arcs)
+    arcs, capacity = arcs_among(nodes, rows, cost, local, np.full(len(cost), -1, dtype=np.int32))
     excess = np.zeros(len(nodes))
-    first = np.full(len(cost), -1, dtype=np.int32)
-    arc = 0
     for i in range(len(nodes)):
-        begin[i] = arc
         for k in range(start[nodes[i]], start[nodes[i] + 1]):
-            j, e = neighbour[k], edge[k]
-            if local[j] >= 0:
-                target[arc], capacity[arc] = local[j], cost[e]
-                if first[e] < 0:
-                    first[e] = arc
-                else:
-                    reverse[arc] = first[e]
-                    reverse[first[e]] = arc
-                arc += 1
-            elif inside[j]:
-                excess[i] += cost[e]
-            else:
-                excess[i] -= cost[e]
-    begin[len(nodes)] = arc
-    return Arcs(begin, target, reverse), capacity, excess
+            if local[neighbour[k]] < 0:
+                excess[i] += cost[edge[k]] if inside[neighbour[k]] else -cost[edge[k]]
+    return arcs, capacity, excess

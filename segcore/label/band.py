@@ -6,6 +6,7 @@ import numpy as np
 from numba import njit
 
 from segcore.arrays import FloatArray, IntArray
+from segcore.graphs.inner_arcs import arcs_among
 from segcore.graphs.max_flow import Arcs
 
 
@@ -162,37 +163,17 @@ def band_network(free, graph, place, bounds, local, arc_of):  # type: ignore[no-
     weight = graph.weight
     for i in range(len(free)):
         local[free[i]] = i
-    arcs = 0
-    for f in free:
-        for entry in range(start[f], start[f + 1]):
-            if local[neighbour[entry]] >= 0:
-                arcs += 1
-    begin = np.empty(len(free) + 1, dtype=np.uint32)
-    target = np.empty(arcs, dtype=np.uint32)
-    reverse = np.empty(arcs, dtype=np.uint32)
-    capacity = np.empty(arcs)
+    arcs, capacity = arcs_among(free, graph.rows, weight, local, arc_of)
     excess = np.zeros(len(free))
-    count = 0
     for i in range(len(free)):
-        f = free[i]
-        begin[i] = count
-        for entry in range(start[f], start[f + 1]):
+        for entry in range(start[free[i]], start[free[i] + 1]):
             g, e = neighbour[entry], edge_of[entry]
             if local[g] >= 0:
-                target[count] = local[g]
-                capacity[count] = weight[e]
-                if arc_of[e] < 0:
-                    arc_of[e] = count
-                else:
-                    reverse[count] = arc_of[e]
-                    reverse[arc_of[e]] = count
-                    arc_of[e] = -1
-                count += 1
-            elif low <= place[g] < middle:
+                continue
+            if low <= place[g] < middle:
                 excess[i] += weight[e]
             elif middle <= place[g] < high:
                 excess[i] -= weight[e]
-    begin[len(free)] = count
     for f in free:
         local[f] = -1
-    return BandNetwork(Arcs(begin, target, reverse), capacity, excess)
+    return BandNetwork(arcs, capacity, excess)

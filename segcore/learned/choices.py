@@ -1,17 +1,13 @@
 """The learned choices between candidates that ship with the package."""
 
-import json
-from collections.abc import Iterator, Mapping
-from contextlib import contextmanager
-from contextvars import ContextVar
+from collections.abc import Mapping
 from dataclasses import dataclass
-from functools import cache
-from importlib.resources import files
 from typing import Any
 
 import numpy as np
 
 from segcore.arrays import FloatArray
+from segcore.learned.shipped import Shipped
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -68,24 +64,6 @@ class ChoiceModels:
         return {"part": self.part.document(), "correction": self.correction.document()}
 
 
-_override: ContextVar[ChoiceModels | None] = ContextVar("choice models", default=None)
-
-
-def choice_models() -> ChoiceModels:
-    """The models of the data file choices.json in this package, or those of an enclosing ``using_choices``."""
-    return _override.get() or _shipped()
-
-
-@contextmanager
-def using_choices(models: ChoiceModels) -> Iterator[None]:
-    """Context manager that replaces the models, to train them or to evaluate them on shapes they have not seen."""
-    token = _override.set(models)
-    try:
-        yield
-    finally:
-        _override.reset(token)
-
-
-@cache
-def _shipped() -> ChoiceModels:
-    return ChoiceModels.from_document(json.loads(files("segcore.learned").joinpath("choices.json").read_text("utf-8")))
+_SHIPPED = Shipped("choices.json", ChoiceModels.from_document)
+choice_models = _SHIPPED.current
+using_choices = _SHIPPED.using

@@ -1,16 +1,12 @@
 """The learned models that ship with the package."""
 
-import json
-from collections.abc import Iterator, Mapping
-from contextlib import contextmanager
-from contextvars import ContextVar
+from collections.abc import Mapping
 from dataclasses import dataclass
-from functools import cache
-from importlib.resources import files
 from typing import Any
 
 from segcore.learned.forest import Forest
 from segcore.learned.logistic import LogisticModel
+from segcore.learned.shipped import Shipped
 
 _LOGISTIC = ("boundary", "split", "split_of_bodies")
 
@@ -37,24 +33,6 @@ class LearnedModels:
         return {**logistic, "order": None if self.order is None else self.order.document()}
 
 
-_override: ContextVar[LearnedModels | None] = ContextVar("learned models", default=None)
-
-
-def learned_models() -> LearnedModels:
-    """The models of the data file models.json in this package, or those of an enclosing ``using``."""
-    return _override.get() or _shipped()
-
-
-@contextmanager
-def using(models: LearnedModels) -> Iterator[None]:
-    """Context manager that replaces the models, to train them or to evaluate them on shapes they have not seen."""
-    token = _override.set(models)
-    try:
-        yield
-    finally:
-        _override.reset(token)
-
-
-@cache
-def _shipped() -> LearnedModels:
-    return LearnedModels.from_document(json.loads(files("segcore.learned").joinpath("models.json").read_text("utf-8")))
+_SHIPPED = Shipped("models.json", LearnedModels.from_document)
+learned_models = _SHIPPED.current
+using = _SHIPPED.using

@@ -25,13 +25,12 @@ from service.edit.parts import parts_of
 from service.result_cache import ResultCache
 from worker.edits.operation_documents import EditDocument
 from worker.edits.perform import guide_of
-from worker.jobs.job import Job
 from worker.jobs.store.opening import open_store
 from worker.jobs.store.revisions import RevisionDamaged, UnknownRevision
 from worker.jobs.store.store import JobStore, UnknownJob
 from worker.process.work_horse import limit_resources
 
-GuideOf: TypeAlias = Callable[[Segmentation, Job], PartFinder]
+GuideOf: TypeAlias = Callable[[Segmentation], PartFinder]
 
 _FACE_BYTES = 400  # of a Guide and its mesh
 _UNLIMITED_CPU_S = 10**9  # the service limits the time of each edit
@@ -88,11 +87,10 @@ class Editor:
         return self._guides.get(job_id, lambda: self._made(job_id))
 
     def _made(self, job_id: str) -> tuple[PartFinder, int]:
-        job = self._store.records.job(job_id)
-        if job is None:
+        if self._store.records.job(job_id) is None:
             raise UnknownJob(job_id)
         result = self._results.get(job_id)
-        return self._guide_of(result, job), _FACE_BYTES * len(result.mesh.faces)
+        return self._guide_of(result), _FACE_BYTES * len(result.mesh.faces)
 
 
 def main(guide_of: GuideOf = guide_of) -> None:

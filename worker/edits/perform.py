@@ -13,13 +13,13 @@ import segcore
 from cleave.logs import configure_logging
 from cleave.parent_death import die_with_parent
 from cleave.settings import Settings, load_settings
-from segcore import CleaveError, Partition, SegmentationParameters
+from segcore import CleaveError, Partition
 from segcore.edit.operations import Restore, apply_all, in_words
 from segcore.edit.tools import PartFinder, Tools
 from segcore.io import Segmentation, read_result
 from segcore.levels import Level
 from worker.edits.operation_documents import EditDocument
-from worker.jobs.job import Job, now
+from worker.jobs.job import now
 from worker.jobs.queued_edit import EditOutcome, QueuedEdit
 from worker.jobs.revision import Revision, words_of_revision
 from worker.jobs.store.opening import open_store
@@ -93,8 +93,7 @@ def parts_after(store: JobStore, job_id: str, document: EditDocument) -> Partiti
         If an operation cannot be applied.
     UnknownJob, UnknownRevision, RevisionDamaged
     """
-    job = store.records.job(job_id)
-    if job is None:
+    if store.records.job(job_id) is None:
         raise UnknownJob(job_id)
     with store.results.open(job_id) as file:
         result = read_result(file)
@@ -105,13 +104,12 @@ def parts_after(store: JobStore, job_id: str, document: EditDocument) -> Partiti
     operations, level = document.all(), document.level_of_base(document.base)
     is_replaced = isinstance(operations[0], Restore)  # then the parts of the base may be lost
     before = parts_of(0, Level()) if is_replaced else parts_of(document.base, level)
-    return apply_all(before, operations, Tools(_once(lambda: guide_of(result, job)), parts_of))
+    return apply_all(before, operations, Tools(_once(lambda: guide_of(result)), parts_of))
 
 
-def guide_of(result: Segmentation, job: Job) -> PartFinder:
-    """Return the Guide of a job, with the weights of its segmentation."""
-    parameters = SegmentationParameters.from_mapping(job.parameters)
-    return segcore.Guide(result.mesh, result.hierarchy, parameters=parameters)
+def guide_of(result: Segmentation) -> PartFinder:
+    """Return the Guide of the result of a job."""
+    return segcore.Guide(result.mesh, result.hierarchy)
 
 
 def _once(make: Callable[[], PartFinder]) -> Callable[[], PartFinder]:

@@ -8,7 +8,6 @@ from segcore.arrays import BoolArray, IntArray
 from segcore.edit.tools import PartFinder
 from segcore.io import Segmentation
 from service.edit.program import main
-from worker.jobs.job import Job
 
 SLOW, DEADLY, LARGE = 7, 8, 9  # a mark of this face alone
 
@@ -24,8 +23,7 @@ class Moody(MarksOnly):
         return super().part(inside, outside)
 
 
-def moody(result: Segmentation, job: Job) -> PartFinder:
-    del job
+def moody(result: Segmentation) -> PartFinder:
     return Moody(len(result.mesh.faces))
 
 

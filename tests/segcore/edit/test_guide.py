@@ -7,6 +7,7 @@ from helpers.meshes import agreement, areas, exploded, pieces_of_labels
 from segcore import shapes
 from segcore.edit import guide as guide_module
 from segcore.errors import InvalidParameters
+from segcore.parameters import SegmentationParameters
 
 MESH = creature()
 LIMB = limb_of_face(MESH)
@@ -213,6 +214,14 @@ def test_a_part_is_divided_along_a_stroke(guide):
 def test_wrong_arguments_are_explained(guide, call, message):
     with pytest.raises(InvalidParameters, match=message):
         call(guide)
+
+
+def test_a_hierarchy_of_the_vertex_graph_is_corrected_too():
+    mesh = creature(subdivisions=3)
+    hierarchy = segcore.segment(mesh, SegmentationParameters.from_mapping({"preset": "chahhou2014"}))
+    part = segcore.Guide(mesh, hierarchy).part([5], [200])
+    assert part[5]
+    assert not part[200]
 
 
 def test_a_hierarchy_of_another_mesh_is_refused(hierarchy):

@@ -23,7 +23,7 @@ SLOW_EDIT: dict[str, Any] = {"base": 1, "operations": [{"op": "part", "inside": 
 @pytest.fixture
 def run_edit(edit_store: JobStore, monkeypatch: pytest.MonkeyPatch) -> Callable[[str], None]:
     """Return a function that runs the edit at a path, as a worker does, with the stand-in for a Guide."""
-    monkeypatch.setattr(perform, "guide_of", lambda result, _: MarksOnly(len(result.mesh.faces)))
+    monkeypatch.setattr(perform, "guide_of", lambda result: MarksOnly(len(result.mesh.faces)))
     return lambda path: perform.perform_edit(edit_store, path.rpartition("/")[2])
 
 
