@@ -235,6 +235,7 @@ class Page {
   }
 
   #update(): void {
+    cancelAnimationFrame(this.#frame);
     this.#frame = 0;
     if (this.#session === null) return;
     this.#viewer.names = this.#session.work.names;

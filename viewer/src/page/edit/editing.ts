@@ -28,7 +28,7 @@ export class Editing {
     this.#card = new RevisionCard(this.#editor, () => this.#toolbox.reset());
     this.#batch = new Batch(onOpen);
     new LabelsDialog(() => host.job(), this.#editor, () => this.#described.update());
-    this.#editor.onChange = () => this.#changed();
+    this.#editor.onChange = () => this.#card.update();
   }
 
   /** Begin with a job whose automatic result is shown. */
@@ -61,10 +61,5 @@ export class Editing {
   /** Label models one after the other. */
   label(models: readonly BatchModel[]): void {
     this.#batch.begin(models);
-  }
-
-  #changed(): void {
-    this.#card.update();
-    this.#toolbox.update();
   }
 }
