@@ -4,6 +4,7 @@ import { Branches } from "./branches";
 import type { CleaveViewer } from "../component/element";
 import { byId } from "./dom";
 import { PartList } from "./list";
+import type { RowPanel } from "./row_panel";
 import { idOf, rowOf } from "./rows";
 import { describeSelection } from "./selection";
 import type { Session } from "./session";
@@ -53,7 +54,7 @@ export class PartsPanel {
     this.#shown.rows.get(part)?.classList.add("is-hovered");
   }
 
-  get #shown(): PartList | Branches {
+  get #shown(): RowPanel {
     return this.#isTree ? this.#branches : this.#list;
   }
 

@@ -2,6 +2,7 @@
 
 import type { CleaveViewer, Look, View } from "../component/element";
 import { announce, byId, openDialog, toast } from "./dom";
+import { toggleHidden } from "./rows";
 import { LOOKS, type Modes, type Session } from "./session";
 
 type Toggle = "wireframe" | "concavity" | "lines";
@@ -84,7 +85,7 @@ export class Tools {
   #hide(): void {
     this.#with((now) => {
       const { selected } = now.modes;
-      if (selected.length > 0) now.setHidden(selected, !selected.every((id) => now.work.hidden.has(id)));
+      if (selected.length > 0) toggleHidden(now, selected);
     });
   }
 
