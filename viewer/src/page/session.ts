@@ -101,6 +101,11 @@ export class Session {
     return this.#numbersOfParts().get(id) ?? null;
   }
 
+  /** Return the numbers of parts; groups are left out. */
+  numbersOf(ids: readonly number[]): number[] {
+    return ids.map((id) => this.numberOf(id)).filter((part) => part !== null);
+  }
+
   /** Return the name of a node: the given one, or that of the files. */
   nameOf(id: number): string {
     return this.#work.names.get(id) ?? this.usualName(id);
@@ -179,13 +184,7 @@ export class Session {
     );
   }
 
-  /** Merge parts that are all those below a node; others cannot be merged by a cut of the tree. */
-  merge(ids: readonly number[]): void {
-    const above = this.groupOf(ids);
-    if (above !== null) this.mergeBelow(above);
-  }
-
-  /** Return the node whose parts are exactly these; null if there is none. */
+  /** Return the node whose parts are exactly these; null if there is none, so that no cut of the tree merges them. */
   groupOf(ids: readonly number[]): number | null {
     if (ids.length < 2) return null;
     const above = this.tree.commonAncestor(ids);

@@ -83,7 +83,6 @@ export class Described {
 
   #numbers(): number[] {
     const session = this.#session();
-    if (session === null) return [];
-    return session.modes.selected.map((id) => session.numberOf(id)).filter((part) => part !== null);
+    return session === null ? [] : session.numbersOf(session.modes.selected);
   }
 }

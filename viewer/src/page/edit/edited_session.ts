@@ -35,10 +35,6 @@ export class EditedSession extends Session {
     return this.#editor.query;
   }
 
-  override get isEdited(): boolean {
-    return false; // there are no cuts by hand
-  }
-
   override get canUndo(): boolean {
     return this.#editor.canUndo;
   }
@@ -63,11 +59,6 @@ export class EditedSession extends Session {
     void this.#editor.edit([isNone ? { op: "delete_name", part } : { op: "name", part, name: text }], isNone ? "Name deleted" : `Named ${text}`);
   }
 
-  override merge(ids: readonly number[]): void {
-    const parts = ids.map((id) => this.numberOf(id)).filter((part) => part !== null);
-    if (parts.length > 1) void this.#editor.edit([{ op: "merge", parts }], `${parts.length} parts merged`);
-  }
-
   override mergeBelow(): void {
     this.#refuse();
   }
@@ -81,10 +72,6 @@ export class EditedSession extends Session {
   }
 
   override showLevel(): void {
-    this.#refuse();
-  }
-
-  override showStep(): void {
     this.#refuse();
   }
 

@@ -53,8 +53,9 @@ export class Editing {
   merge(ids: readonly number[]): void {
     const session = this.#host.session();
     if (session === null || ids.length < 2) return;
-    if (session instanceof EditedSession || session.groupOf(ids) !== null) return session.merge(ids);
-    const parts = ids.map((id) => session.numberOf(id)).filter((part) => part !== null);
+    const group = session instanceof EditedSession ? null : session.groupOf(ids);
+    if (group !== null) return session.mergeBelow(group);
+    const parts = session.numbersOf(ids);
     void this.#editor.edit([{ op: "merge", parts }], `${parts.length} parts merged`);
   }
 

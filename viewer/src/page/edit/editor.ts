@@ -336,7 +336,7 @@ export class Editor {
     const { labels, parts } = this.#shown!;
     const old = before instanceof EditedSession ? this.#labelsOfSession : this.#host.viewer.labelsOfCut(before.work.cut);
     if (ids.length === 0 || old === null) return [];
-    const own = ids.map((id) => before.numberOf(id)).filter((part) => part !== null);
+    const own = before.numbersOf(ids);
     const after = successors(old, labels, new Set(own));
     const numbers = own.map((part) => after[part]).filter((part) => part !== undefined);
     return [...new Set(numbers)].map((part) => nodeOfPart(part, parts.length));
