@@ -3,6 +3,7 @@
 import type { CleaveViewer } from "../../component/element";
 import { announce, byId, h } from "../dom";
 import type { Session } from "../session";
+import { partOfLevel } from "./automatic";
 import { classes } from "./classes";
 import { EditedSession } from "./edited_session";
 import type { Editor } from "./editor";
@@ -76,9 +77,7 @@ export class Described {
   #details(part: number): Part {
     const session = this.#session()!;
     if (session instanceof EditedSession) return session.details[part]!;
-    const id = session.parts[part]!;
-    const channels = this.#viewer.colorOf(id).match(/\d+/g)!.map((channel) => Number(channel).toString(16).padStart(2, "0"));
-    return { name: session.work.names.get(id) ?? "", class: "", color: `#${channels.join("")}`, locked: false, faces: session.tree.node(id).faces };
+    return partOfLevel(this.#viewer, session, session.parts[part]!);
   }
 
   #numbers(): number[] {

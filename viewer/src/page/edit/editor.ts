@@ -6,12 +6,13 @@ import { announce, toast } from "../dom";
 import { ApiError, explain, problemOf } from "../problems";
 import type { Session } from "../session";
 import { plural } from "../text";
+import { levelOf, partOfLevel } from "./automatic";
 import { askAboutConflict } from "./conflict";
 import { EditedSession } from "./edited_session";
 import { changedLabels, successors } from "./face_runs";
 import { renumbered } from "./renumbering";
 import { newestRevision, postEdit, previewEdit, putLabels, type Edited, type Operation, type Part } from "./revisions";
-import { levelOf, Undo } from "./undo";
+import { Undo } from "./undo";
 
 export interface EditorHost {
   readonly viewer: CleaveViewer;
@@ -114,14 +115,7 @@ export class Editor {
       toast("This job is from an earlier version, whose files have no numbers of faces: run it again to edit its parts.");
       return false;
     }
-    const parts = levels.parts.map((id) => ({
-      name: levels.work.names.get(id) ?? "",
-      color: hexOf(viewer.colorOf(id)),
-      class: "",
-      locked: false,
-      faces: levels.tree.node(id).faces,
-    }));
-    this.#shown = { labels, parts };
+    this.#shown = { labels, parts: levels.parts.map((id) => partOfLevel(viewer, levels, id)) };
     if (this.#base === 0) this.#stored = this.#shown;
     this.#showParts(levels);
     return true;
@@ -345,9 +339,4 @@ export class Editor {
 
 function isConflict(error: unknown): boolean {
   return error instanceof ApiError && error.code === "revision_conflict";
-}
-
-/** Return a CSS colour rgb(r g b) as #rrggbb. */
-function hexOf(color: string): string {
-  return `#${(color.match(/\d+/g) ?? ["153", "153", "153"]).map((channel) => Number(channel).toString(16).padStart(2, "0")).join("")}`;
 }

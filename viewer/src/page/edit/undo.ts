@@ -1,8 +1,5 @@
 /** The order of revisions for undo and redo, which restore earlier ones as new revisions. */
 
-import type { Session } from "../session";
-import type { Level } from "./revisions";
-
 export class Undo {
   /** Revisions with different parts, oldest first. */
   readonly #revisions: number[];
@@ -31,10 +28,4 @@ export class Undo {
   move(by: 1 | -1): void {
     this.#at += by;
   }
-}
-
-/** Return the level of the automatic result that a session shows, as the API takes it. */
-export function levelOf({ tree, work }: Session): Level {
-  const level = tree.levelOf(work.cut);
-  return level === null ? { splits: tree.splitsOf(work.cut) } : { segments: level };
 }
