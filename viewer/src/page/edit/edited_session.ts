@@ -3,29 +3,33 @@
 import type { PartTree } from "../../component/element";
 import { announce } from "../dom";
 import { Session, type Modes } from "../session";
-import type { Editor } from "./editor";
+import type { Editor, Parts } from "./editor";
 import type { Part } from "./revisions";
 
 export class EditedSession extends Session {
   /** The session of the automatic result. */
   readonly levels: Session;
+  /** (F) the part of each face of the file. */
+  readonly labels: Int32Array;
   readonly details: readonly Part[];
   readonly #editor: Editor;
 
-  /** ``tree`` has one step, whose leaves are the parts in the order of ``details``. */
+  /** ``tree`` has one step, whose leaves are the parts in the order of ``shown``. */
   constructor(
     editor: Editor,
     tree: PartTree,
     levels: Session,
-    details: readonly Part[],
+    shown: Parts,
     modes: Modes,
     hidden: readonly number[],
     onChange: (news?: string) => void,
   ) {
     const { limitReached, firstModes } = levels;
+    const { labels, parts: details } = shown;
     super(tree, { maxSegments: details.length, automaticSegments: details.length, limitReached, faces: 0 }, firstModes.up, onChange);
     this.#editor = editor;
     this.levels = levels;
+    this.labels = labels;
     this.details = details;
     const names = new Map(this.parts.flatMap((id, part) => (details[part]!.name === "" ? [] : [[id, details[part]!.name] as const])));
     this.begin({ hidden: new Set(hidden), names }, modes);

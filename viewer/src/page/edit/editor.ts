@@ -1,6 +1,6 @@
 /** The parts of a job as a person edits them: what is shown, what is stored, and the edits that are on their way. */
 
-import { nodeOfPart, type CleaveViewer } from "../../component/element";
+import { nodeOfPart, type CleaveViewer, type Partition } from "../../component/element";
 import type { Job } from "../api";
 import { announce, toast } from "../dom";
 import { ApiError, explain, problemOf } from "../problems";
@@ -23,7 +23,7 @@ export interface EditorHost {
 }
 
 /** Parts that are stored, or that a level of the automatic result has. */
-interface Parts {
+export interface Parts {
   readonly labels: Int32Array;
   readonly parts: readonly Part[];
 }
@@ -180,7 +180,7 @@ export class Editor {
     if (session === null) return;
     this.#isPreview = true;
     const count = preview.parts.length;
-    viewer.partition = { labels: preview.labels, colors: preview.parts.map(({ color }) => color) };
+    viewer.partition = partitionOf(preview);
     viewer.hiddenParts = new Set([...session.work.hidden].map((id) => nodeOfPart(session.numberOf(id) ?? 0, count)));
     viewer.selected = [nodeOfPart(strong, count)];
   }
@@ -190,7 +190,7 @@ export class Editor {
     const [session, { viewer }] = [this.#host.session(), this.#host];
     if (this.#shown === null || session === null) return;
     this.#isPreview = false;
-    viewer.partition = { labels: this.#shown.labels, colors: this.#shown.parts.map(({ color }) => color) };
+    viewer.partition = partitionOf(this.#shown);
     viewer.hiddenParts = session.work.hidden;
     viewer.selected = session.modes.selected;
   }
@@ -311,30 +311,31 @@ export class Editor {
   /** Show the parts in a new session that carries the selection of another one over. */
   #showParts(before: Session): void {
     const { viewer } = this.#host;
-    const { labels, parts } = this.#shown!;
+    const shown = this.#shown!;
     const selected = this.#carried(before, before.modes.selected);
     const hidden = this.#carried(before, [...before.work.hidden]);
     this.#isPreview = false;
-    viewer.partition = { labels, colors: parts.map(({ color }) => color) };
-    this.#labelsOfSession = labels;
+    viewer.partition = partitionOf(shown);
     const modes = { ...before.modes, selected };
-    this.#host.replace((onChange) => new EditedSession(this, viewer.tree!, this.#levels!, parts, modes, hidden, onChange));
+    this.#host.replace((onChange) => new EditedSession(this, viewer.tree!, this.#levels!, shown, modes, hidden, onChange));
     this.onChange();
   }
-
-  /** (F) the labels of the present session. */
-  #labelsOfSession: Int32Array | null = null;
 
   /** Return the nodes of parts of a session in the tree of the shown parts. */
   #carried(before: Session, ids: readonly number[]): number[] {
     const { labels, parts } = this.#shown!;
-    const old = before instanceof EditedSession ? this.#labelsOfSession : this.#host.viewer.labelsOfCut(before.work.cut);
-    if (ids.length === 0 || old === null) return [];
+    if (ids.length === 0) return [];
+    const old = before instanceof EditedSession ? before.labels : this.#host.viewer.labelsOfCut(before.work.cut);
+    if (old === null) return [];
     const own = before.numbersOf(ids);
     const after = successors(old, labels, new Set(own));
     const numbers = own.map((part) => after[part]).filter((part) => part !== undefined);
     return [...new Set(numbers)].map((part) => nodeOfPart(part, parts.length));
   }
+}
+
+function partitionOf({ labels, parts }: Parts): Partition {
+  return { labels, colors: parts.map(({ color }) => color) };
 }
 
 function isConflict(error: unknown): boolean {
