@@ -21,7 +21,6 @@ import {
   Vector4,
 } from "three";
 import { Appearance } from "./appearance";
-import { byFaceGeometry, gathered } from "./by_face";
 import { vertexConcavity } from "./concavity";
 import { borderLines, concaveLines, partBorders, type SurfaceLines } from "./edges";
 import type { FaceLabels } from "./face_labels";
@@ -64,6 +63,7 @@ export class Drawing {
   readonly #geometry: BufferGeometry;
   /** What replaces the leaves by the parts of a partition. */
   #partition: { appearance: Appearance; labels: FaceLabels; edges: Int32Array } | null = null;
+  /** The surface with three vertices for each face, so that the shaders can look up the part of the face of a vertex. */
   #byFace: BufferGeometry | null = null;
   readonly #materials: RawShaderMaterial[] = [];
   readonly #surfaceMaterial: RawShaderMaterial;
@@ -107,7 +107,6 @@ export class Drawing {
   /** Show the parts of a partition in place of the leaves of the tree; ``edges`` as sharedEdges returns them. */
   showPartition(model: PartitionedModel, labels: FaceLabels, edges: Int32Array): void {
     if (this.#partition === null) {
-      this.#byFace ??= byFaceGeometry(this.#surface);
       this.marked = null;
       this.#leaves.showAll(); // the original moves and hides nothing
     }
@@ -128,7 +127,7 @@ export class Drawing {
 
   #useParts(): void {
     const { appearance } = this;
-    const geometry = this.#partition === null ? this.#geometry : this.#byFace!;
+    const geometry = this.#partition === null ? this.#geometry : (this.#byFace ??= unshared(this.#geometry));
     this.#surfaceMesh.geometry = geometry;
     if (this.#wires !== null) this.#wires.geometry = geometry;
     for (const material of this.#materials) this.#useAppearance(material, appearance);
@@ -149,9 +148,7 @@ export class Drawing {
   #redrawLines(): void {
     const [borders, concave] = [this.#borders, this.#concave];
     if (borders !== null) replaceGeometry(borders, lineGeometry(this.#borderLines()));
-    if (concave === null) return;
-    if (concave.visible) replaceGeometry(concave, lineGeometry(concaveLines(this.#model, this.#surface, this.#partition?.labels.parts)));
-    this.#bend();
+    if (concave?.visible) replaceGeometry(concave, lineGeometry(this.#concaveLines()));
   }
 
   #borderLines(): SurfaceLines {
@@ -159,11 +156,8 @@ export class Drawing {
     return partBorders(this.#model, this.#partition.edges, this.#partition.labels.parts);
   }
 
-  /** Set the concavity of the vertices of the shown buffers. */
-  #bend(): void {
-    const bent = this.#geometry.getAttribute("concavity") as BufferAttribute;
-    if (this.#byFace !== null && !this.#byFace.hasAttribute("concavity"))
-      this.#byFace.setAttribute("concavity", new BufferAttribute(gathered(bent.array as Uint8Array, 1, this.#surface.index), 1, true));
+  #concaveLines(): SurfaceLines {
+    return concaveLines(this.#model, this.#surface, this.#partition?.labels.parts);
   }
 
   /** Set the brightness during the entrance, 0..1. */
@@ -252,8 +246,10 @@ export class Drawing {
     if (isShown && this.#concave === null) {
       const bent = vertexConcavity(this.#model, this.#surface);
       this.#geometry.setAttribute("concavity", new BufferAttribute(bent, 1, true));
-      this.#bend();
-      this.#concave = this.#lineMesh(concaveLines(this.#model, this.#surface, this.#partition?.labels.parts));
+      this.#byFace?.dispose(); // it has no concavity
+      this.#byFace = null;
+      this.#useParts();
+      this.#concave = this.#lineMesh(this.#concaveLines());
       this.#add(this.#concave, 3);
     }
     if (this.#concave === null || this.#concave.visible === isShown) return;
@@ -362,6 +358,13 @@ function surfaceGeometry(surface: Surface): BufferGeometry {
   geometry.setIndex(new BufferAttribute(surface.index, 1));
   geometry.boundingSphere = new Sphere(new Vector3(...surface.centre), surface.radius);
   return geometry;
+}
+
+/** Return a geometry with vertices that no faces share, in the order of its faces. */
+function unshared(geometry: BufferGeometry): BufferGeometry {
+  const result = geometry.toNonIndexed();
+  result.boundingSphere = geometry.boundingSphere;
+  return result;
 }
 
 function lineGeometry(lines: SurfaceLines): InstancedBufferGeometry {
