@@ -531,14 +531,11 @@ export class CleaveViewer extends HTMLElement implements Declared {
     const tree = this.tree!;
     const parts = this.parts;
     const shown = parts.toSorted((a, b) => tree.node(b).area - tree.node(a).area).slice(0, 12);
-    const list = shown.map((id) => `${this.#nameOf(id)} ${percent(tree.node(id).area / tree.totalArea)}`).join(", ");
+    const nameOf = (id: number) => this.#names.get(id) ?? `${segmentName} ${parts.indexOf(id)}`;
+    const list = shown.map((id) => `${nameOf(id)} ${percent(tree.node(id).area / tree.totalArea)}`).join(", ");
     const rest = parts.length > shown.length ? `, and ${parts.length - shown.length} smaller ones` : "";
     const title = label === null ? "" : `${label}: `;
     this.#canvas.setAttribute("aria-label", `${title}${parts.length} ${parts.length === 1 ? "part" : "parts"}. ${list}${rest}.`);
-  }
-
-  #nameOf(id: number): string {
-    return this.#names.get(id) ?? `${segmentName} ${this.parts.indexOf(id)}`;
   }
 
   #newCanvas(): HTMLCanvasElement {

@@ -136,8 +136,10 @@ export class PartTree implements Tree {
 
   /** Return the part that contains a node; -1 if the node itself is split. */
   partOf(cut: Cut, id: number): number {
-    let part = -1;
-    for (let at = id; at >= 0; at = this.node(at).parent) if (!cut.has(at)) part = at;
+    if (cut.has(id)) return -1;
+    let part = id;
+    // A cut contains the parents of its nodes: all above the first one in it are in it, too.
+    for (let above = this.node(id).parent; above >= 0 && !cut.has(above); above = this.node(above).parent) part = above;
     return part;
   }
 
