@@ -1,6 +1,7 @@
 /** Follows a job to its end by server-sent events, or by polling if the event stream fails. */
 
 import { getJob, headers, jobPath, type Job } from "./api";
+import { pause } from "./pause";
 import { ApiError } from "./problems";
 
 const ENDED = new Set(["succeeded", "failed", "canceled"]);
@@ -52,7 +53,7 @@ function jobIn(event: string): Job | null {
 }
 
 async function poll(id: string, follower: Follower, signal: AbortSignal): Promise<Job> {
-  let pause = POLL_MS;
+  let pause_ms = POLL_MS;
   for (;;) {
     signal.throwIfAborted();
     try {
@@ -60,12 +61,12 @@ async function poll(id: string, follower: Follower, signal: AbortSignal): Promis
       follower.onConnection(true);
       follower.onJob(job);
       if (hasEnded(job)) return job;
-      pause = POLL_MS;
+      pause_ms = POLL_MS;
     } catch (error) {
       if (error instanceof ApiError && error.status < 500) throw error;
       follower.onConnection(false);
-      pause = Math.min(1.5 * pause, LONGEST_PAUSE_MS);
+      pause_ms = Math.min(1.5 * pause_ms, LONGEST_PAUSE_MS);
     }
-    await new Promise((resolve) => setTimeout(resolve, pause));
+    await pause(pause_ms);
   }
 }

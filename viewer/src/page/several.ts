@@ -4,6 +4,7 @@ import { cancelJob, getJob, submit, type Job } from "./api";
 import type { BatchModel } from "./edit/batch";
 import { announce, byId, h } from "./dom";
 import { hasEnded } from "./follow";
+import { pause } from "./pause";
 import { ApiError, explain, problemOf } from "./problems";
 import type { Model } from "./sets";
 import { shareOf, stageOf, titleOf } from "./stages";
@@ -212,5 +213,3 @@ export class Several {
     byId("several-again").hidden = left > 0 || !this.#rows.some(({ canBeTried }) => canBeTried);
   }
 }
-
-const pause = (ms: number): Promise<void> => new Promise((resolve) => setTimeout(resolve, ms));

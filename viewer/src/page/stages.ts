@@ -3,6 +3,7 @@
 import { getReadiness, type Job } from "./api";
 import { announce, byId, h, icon } from "./dom";
 import lists from "./lists.json";
+import { pause } from "./pause";
 
 const UPLOAD = 0.1; // share of the bar; set by hand: most uploads are much shorter than their jobs
 const ASKED_MS = 2000; // between two questions whether workers are ready
@@ -67,7 +68,7 @@ export async function explainWaiting(signal: AbortSignal): Promise<void> {
   const note = byId("progress-wait");
   note.textContent = "";
   while (!signal.aborted) {
-    await new Promise((resolve) => setTimeout(resolve, ASKED_MS));
+    await pause(ASKED_MS);
     const isWaiting = byId("stages").querySelector("[data-state=now]")?.getAttribute("data-stage") === "queued";
     const readiness = isWaiting && !signal.aborted ? await getReadiness() : null;
     const text = readiness?.ready === false ? STARTING : "";

@@ -1,6 +1,7 @@
 /** Client for edits of parts: operations, revisions and labels. */
 
 import { jobPath, request } from "../api";
+import { pause } from "../pause";
 import { ApiError } from "../problems";
 import type { ChangedFaces, FaceRuns } from "./face_runs";
 
@@ -106,8 +107,6 @@ export async function newestRevision(job: string): Promise<Revision & { parts: r
   const raw = await (await request(jobPath(job, `/labels?revision=${revision.number}&format=raw`))).arrayBuffer();
   return { ...revision, labels: new Int32Array(raw) };
 }
-
-const pause = (ms: number): Promise<void> => new Promise((resolve) => setTimeout(resolve, ms));
 
 /** Return a text that no other request has; crypto.randomUUID exists over HTTPS only. */
 function newKey(): string {

@@ -1,0 +1,3 @@
+/** A pause in an asynchronous function. */
+
+export const pause = (ms: number): Promise<void> => new Promise((resolve) => setTimeout(resolve, ms));
