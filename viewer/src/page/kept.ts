@@ -1,6 +1,7 @@
 /** Keeps the states of jobs in this browser, so that a job that is opened from the list is as it was left. */
 
 import type { JobState } from "./state";
+import { stored } from "./storage";
 
 const KEY = "cleave.states";
 const MOST = 100; // jobs; set by hand: a state has a few hundred bytes
@@ -26,11 +27,7 @@ export function forgetStates(): void {
 }
 
 function read(): States {
-  try {
-    return JSON.parse(localStorage.getItem(KEY) ?? "{}") as States;
-  } catch {
-    return {};
-  }
+  return (stored(KEY) ?? {}) as States;
 }
 
 function write(states: States): void {

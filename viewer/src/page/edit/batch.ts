@@ -1,8 +1,8 @@
 /** Models that are labelled one after the other: their list, what is done, and the way to the next one. */
 
 import { byId, h, openDialog } from "../dom";
+import { keep, stored } from "../storage";
 import { plural } from "../text";
-import { keep } from "./storage";
 
 export interface BatchModel {
   readonly job: string;
@@ -104,10 +104,6 @@ export class Batch {
 }
 
 function read(): Kept {
-  try {
-    const { models, states } = JSON.parse(localStorage.getItem(KEY) ?? "{}") as Partial<Kept>;
-    return { models: Array.isArray(models) ? models : [], states: states ?? {} };
-  } catch {
-    return { models: [], states: {} };
-  }
+  const { models, states } = (stored(KEY) ?? {}) as Partial<Kept>;
+  return { models: Array.isArray(models) ? models : [], states: states ?? {} };
 }

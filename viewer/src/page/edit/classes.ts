@@ -1,18 +1,14 @@
 /** The classes that parts of many meshes are labelled with, kept in this browser. */
 
-import { keep } from "./storage";
+import { keep, stored } from "../storage";
 
 const KEY = "cleave.classes";
 const MOST = 1000; // that the API takes
 const LONGEST = 200; // characters, as in the API
 
 export function classes(): string[] {
-  try {
-    const kept: unknown = JSON.parse(localStorage.getItem(KEY) ?? "[]");
-    return Array.isArray(kept) ? kept.filter((name) => typeof name === "string") : [];
-  } catch {
-    return [];
-  }
+  const kept = stored(KEY);
+  return Array.isArray(kept) ? kept.filter((name) => typeof name === "string") : [];
 }
 
 /** Keep the classes of a text, one a line; returns them. */

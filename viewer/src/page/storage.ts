@@ -1,6 +1,15 @@
 /** Values that this browser keeps. */
 
-import { toast } from "../dom";
+import { toast } from "./dom";
+
+/** Return a value; null if there is none, or if it cannot be read. */
+export function stored(key: string): unknown {
+  try {
+    return JSON.parse(localStorage.getItem(key) ?? "null");
+  } catch {
+    return null;
+  }
+}
 
 /** Keep a value; says so if the storage is full or forbidden. */
 export function keep(key: string, value: unknown): void {
