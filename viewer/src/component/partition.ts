@@ -10,7 +10,7 @@ export function nodeOfPart(part: number, parts: number): number {
 }
 
 /** Return the tree whose leaves are K parts with these areas and numbers of faces. */
-export function treeOfParts(areas: Float64Array, faces: Int32Array): PartTree {
+function treeOfParts(areas: Float64Array, faces: Int32Array): PartTree {
   const count = areas.length;
   const leaf = { children: [], cutValue: null, step: null };
   const total = (values: ArrayLike<number>) => Array.from(values).reduce((sum, value) => sum + value, 0);

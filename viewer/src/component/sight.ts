@@ -69,7 +69,7 @@ export class Faces implements Sight {
 
   /** Return the visible faces in the discs around the points of a path. */
   alongPath(path: readonly Point[], radius: number): number[] {
-    return this.#inDiscs(dense(path, Math.max(radius / 2, 1)), radius, new Uint8Array(this.count));
+    return this.stroke(radius)(path);
   }
 
   /** Return a function that returns the visible faces in discs, those that it has not returned before. */
@@ -170,7 +170,7 @@ export class Faces implements Sight {
 }
 
 /** Return points on a path that are at most ``step`` apart. */
-export function dense(path: readonly Point[], step: number): Point[] {
+function dense(path: readonly Point[], step: number): Point[] {
   const points: Point[] = path.slice(0, 1);
   for (let i = 1; i < path.length; i++) {
     const [[ax, ay], [bx, by]] = [path[i - 1]!, path[i]!];

@@ -1,14 +1,13 @@
 /** Finds the part that is meant by clicks inside and outside of it. */
 
-import type { Point } from "../../component/element";
+import { nodeOfPart, type Point } from "../../component/element";
 import { announce, byId, h, toast } from "../dom";
-import { ApiError } from "../problems";
+import { problemOf } from "../problems";
 import { plural } from "../text";
 import { runsOf } from "./face_runs";
 import type { Mark } from "./overlay";
 import type { Operation } from "./revisions";
 import { facesOf, type Desk, type Tool } from "./tool";
-import { nodeOfPart } from "../../component/element";
 
 const PAUSE_MS = 40; // after a click, before the server is asked
 
@@ -114,7 +113,7 @@ export class PartTool implements Tool {
       announce(`Part of ${plural(found.parts[part]!.faces, "face")}. Enter makes it a part.`);
     } catch (error) {
       if (signal.aborted) return;
-      toast(error instanceof ApiError ? error.message : "The server is not responding.");
+      toast(problemOf(error).detail);
     }
     byId("tool-bar").removeAttribute("aria-busy");
   }
