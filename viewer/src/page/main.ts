@@ -127,10 +127,15 @@ class Page {
     if (isBeside && this.#session !== null && this.#job !== null) {
       const state = this.#stateOf(this.#session, job.id);
       history.replaceState(null, "", writeAddress(this.#job.id, state));
-    } else if (readAddress(location.hash).job !== job.id) {
-      this.#opening = null;
-      history.pushState(null, "", `#job=${job.id}`);
+    } else {
+      this.#nameInAddress(job);
     }
+  }
+
+  #nameInAddress(job: Job): void {
+    if (readAddress(location.hash).job === job.id) return;
+    this.#opening = null;
+    history.pushState(null, "", `#job=${job.id}`);
   }
 
   #finished(job: Job, { segments, isBeside }: Purpose): void {
@@ -138,10 +143,7 @@ class Page {
       this.#showWork(true);
       return this.#beside.open(job);
     }
-    if (readAddress(location.hash).job !== job.id) {
-      this.#opening = null;
-      history.pushState(null, "", `#job=${job.id}`);
-    }
+    this.#nameInAddress(job);
     this.#segments = segments;
     this.#show(job);
   }
