@@ -90,11 +90,18 @@ def test_the_code_that_is_shown_gives_the_same_labels(
     expected = json.loads(download_as(visit, "json")[1])["labels"]
     visit.page.wait_for_function("() => document.getElementById('python').textContent !== ''")
     (tmp_path / "burr.ply").write_bytes(small_burr())
-    program = visit.page.inner_text("#python") + "\nimport json\nprint(json.dumps(labels.tolist()))"
+    shown = visit.page.inner_text("#python")
+    program = shown + "\nimport json\nprint(json.dumps(labels.tolist()))"
     command = [sys.executable, "-c", program]
     environment = {"PYTHONPATH": str(Path.cwd()), "PATH": "/usr/bin:/bin"}
     printed = subprocess.run(command, cwd=tmp_path, env=environment, capture_output=True, text=True, check=True)
     assert json.loads(printed.stdout) == expected
+    visit.page.keyboard.press("Escape")
+    visit.page.click("[data-tool=brush]")
+    visit.page.evaluate("() => document.getElementById('python').replaceChildren()")
+    visit.page.click("#open-download")
+    visit.page.wait_for_function("() => document.getElementById('python').textContent !== ''")
+    assert visit.page.inner_text("#python") == shown
     lines = visit.page.inner_text("#curl").splitlines()
     subprocess.run(lines[0], shell=True, cwd=tmp_path, capture_output=True, check=True)
     fetched = subprocess.run(lines[2], shell=True, cwd=tmp_path, capture_output=True, check=True)

@@ -3,6 +3,7 @@
 import type { CleaveViewer } from "../component/element";
 import { apiKey, getBlob, getMethods, jobPath, nameOf, request, type Job } from "./api";
 import { byId, h, icon, openDialog, save, toast } from "./dom";
+import { EditedSession } from "./edit/edited_session";
 import lists from "./lists.json";
 import { explain, problemOf } from "./problems";
 import type { Result, Session } from "./session";
@@ -139,7 +140,8 @@ function revisionLines({ job, session }: Result): string {
 }
 
 function segmentLines({ job, session }: Result, chosen: [string, unknown][]): string {
-  const { tree, work } = session;
+  // Before the first edit of a tool is stored, the files are those of the automatic result.
+  const { tree, work } = session instanceof EditedSession ? session.levels : session;
   const level = tree.levelOf(work.cut);
   const values = chosen.map(([name, value]) => `${name}=${literal(value)}`).join(", ");
   const call = values === "" ? "mesh" : `mesh, segcore.SegmentationParameters(${values})`;
