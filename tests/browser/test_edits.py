@@ -35,7 +35,7 @@ def test_the_slider_keeps_cuts_by_hand(visit: Visit, job: str) -> None:
 
 def test_a_split_by_hand_waits_for_the_levels_that_reach_it(visit: Visit, job: str) -> None:
     visit.open_job(job)
-    part = next(p for p in visit.parts() if visit.viewer(f"v.tree.node({p}).children.length"))
+    part = visit.splittable()
     visit.row(part).click()
     visit.page.click("#split")
     after = visit.parts()
@@ -47,7 +47,7 @@ def test_a_split_by_hand_waits_for_the_levels_that_reach_it(visit: Visit, job: s
 
 def test_a_job_opened_from_the_list_is_as_it_was_left(visit: Visit, job: str) -> None:
     visit.open_job(job)
-    part = next(p for p in visit.parts() if visit.viewer(f"v.tree.node({p}).children.length"))
+    part = visit.splittable()
     visit.row(part).click()
     visit.page.click("#split")
     visit.page.click("#hide")
@@ -71,7 +71,7 @@ def test_a_link_of_an_earlier_version_shows_its_parts(visit: Visit, job: str) ->
 
 def test_split_and_merge_are_announced(visit: Visit, job: str) -> None:
     visit.open_job(job)
-    part = next(p for p in visit.parts() if visit.viewer(f"v.tree.node({p}).children.length"))
+    part = visit.splittable()
     name = f"segment {visit.parts().index(part)}"
     visit.row(part).click()
     for button, news in (("split", f"{name} split: "), ("merge", "parts merged into "), ("undo", "Undone: ")):

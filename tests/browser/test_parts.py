@@ -36,7 +36,7 @@ def test_the_details_of_a_part_are_those_of_the_service(visit: Visit, job: str) 
 def test_split_merge_undo_and_redo_change_only_the_part(visit: Visit, job: str) -> None:
     visit.open_job(job)
     before = visit.parts()
-    part = next(p for p in before if visit.viewer(f"v.tree.node({p}).children.length"))
+    part = visit.splittable()
     visit.row(part).click()
     sent = len(visit.requests)
     visit.page.click("#split")
@@ -113,9 +113,7 @@ def test_parts_that_are_moved_apart_do_not_cover_each_other(visit: Visit, job: s
 
 def test_a_link_restores_the_same_view(visit: Visit, job: str) -> None:
     visit.open_job(job)
-    parts = visit.parts()
-    splittable = next(p for p in parts if visit.viewer(f"v.tree.node({p}).children.length"))
-    visit.row(splittable).click()
+    visit.row(visit.splittable()).click()
     visit.page.click("#split")
     named, hidden = visit.parts()[2], visit.parts()[4]
     visit.row(hidden).click()

@@ -14,6 +14,13 @@ from worker.jobs.store.opening import open_store
 from worker.process.perform import perform
 
 
+def run_beside(visit: Visit, most: int) -> None:
+    """Run the shown mesh again with the dialog of parameters, with a limit of segments, and compare."""
+    visit.page.fill("#parameter-max_segments", str(most))
+    visit.page.click("text=Run and compare")
+    visit.page.wait_for_function("(most) => document.querySelector('#beside-level').max === most", arg=str(most))
+
+
 def test_a_dropped_mesh_is_submitted_followed_and_shown(visit: Visit, installation: Installation) -> None:
     visit.open()
     seen = visit.page.evaluate_handle(
@@ -94,9 +101,7 @@ def test_a_mesh_can_be_segmented_again_with_other_parameters_and_compared(visit:
     visit.wait_for_parts()
     visit.page.click("#open-parameters")
     visit.page.select_option("#parameter-affinity", "adjacency")
-    visit.page.fill("#parameter-max_segments", "12")
-    visit.page.click("text=Run and compare")
-    visit.page.wait_for_function("() => document.querySelector('#beside-level').max === '12'")
+    run_beside(visit, 12)
     assert "adjacency" in visit.page.locator("#beside-about").inner_text()
     visit.viewer("(v.view = { ...v.view, azimuth: 1.25, distance: 5 })")
     view = visit.page.evaluate("document.querySelector('#beside cleave-viewer').view")
@@ -114,9 +119,7 @@ def test_a_new_mesh_after_a_comparison_is_shown_alone(visit: Visit) -> None:
     visit.drop("first.ply", small_burr() + b"   ")
     visit.wait_for_parts()
     visit.page.click("#open-parameters")
-    visit.page.fill("#parameter-max_segments", "11")
-    visit.page.click("text=Run and compare")
-    visit.page.wait_for_function("() => document.querySelector('#beside-level').max === '11'")
+    run_beside(visit, 11)
     visit.drop("second.off", OFF)
     visit.page.wait_for_function("() => document.getElementById('title').textContent === 'second.off'")
     visit.settle()

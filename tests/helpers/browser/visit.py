@@ -129,6 +129,10 @@ class Visit:
     def parts(self) -> list[int]:
         return list(self.viewer("v.parts"))
 
+    def splittable(self) -> int:
+        """Return the first part that has cuts below it."""
+        return next(part for part in self.parts() if self.viewer(f"v.tree.node({part}).children.length"))
+
     def selected(self) -> list[int]:
         return list(self.viewer("[...v.selected]"))
 
