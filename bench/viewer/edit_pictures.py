@@ -5,12 +5,11 @@ from __future__ import annotations
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from bench.viewer.devices import DARK, DESKTOP, PHONE, new_page
+from bench.viewer.devices import DARK, DESKTOP, PHONE, new_page, save_picture
 
 if TYPE_CHECKING:
     from playwright.sync_api import Browser, Page
 
-_REST_MS = 1500  # until the page has drawn a sharp frame; set by hand
 _NAMES = ("seat", "left leg", "right leg")
 
 # Returns a point in the visible area of the part that is the n-th of the list, near its middle.
@@ -31,11 +30,11 @@ def take_edit_pictures(browser: Browser, url: str, folder: Path) -> None:
     """Edit the parts of a job, of which ``url`` is the link, and write pictures of it to a folder."""
     page = _opened(browser, url, DESKTOP)
     _find_part(page)
-    _save(page, folder, "edit-part")
+    save_picture(page, folder / "edit-part.png")
     page.keyboard.press("Enter")
     _wait_for_revision(page, 1)
     _brush(page)
-    _save(page, folder, "edit-brush")
+    save_picture(page, folder / "edit-brush.png")
     page.mouse.up()
     _wait_for_revision(page, 2)
     page.click("[data-tool=select]")
@@ -48,7 +47,7 @@ def take_edit_pictures(browser: Browser, url: str, folder: Path) -> None:
     page = _opened(browser, url, DARK)
     _wait_for_revision(page, 2 + len(_NAMES))
     page.locator("#list .row").nth(1).click()
-    _save(page, folder, "edit-dark")
+    save_picture(page, folder / "edit-dark.png")
     page.context.close()
     page = _opened(browser, url, PHONE)
     _wait_for_revision(page, 2 + len(_NAMES))
@@ -56,7 +55,7 @@ def take_edit_pictures(browser: Browser, url: str, folder: Path) -> None:
     x, y = page.evaluate(_PLACE, 0)
     page.touchscreen.tap(x, y)
     page.wait_for_selector("#tool-options .primary:enabled")
-    _save(page, folder, "edit-phone")
+    save_picture(page, folder / "edit-phone.png")
     page.context.close()
 
 
@@ -88,8 +87,3 @@ def _wait_for_revision(page: Page, number: int) -> None:
     page.wait_for_function(
         "(text) => document.getElementById('edit-state').textContent.endsWith(text)", arg=f"revision {number}."
     )
-
-
-def _save(page: Page, folder: Path, name: str) -> None:
-    page.wait_for_timeout(_REST_MS)
-    page.screenshot(path=folder / f"{name}.png")

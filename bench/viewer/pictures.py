@@ -6,13 +6,11 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from bench.viewer.devices import DARK, DESKTOP, PHONE, new_page
+from bench.viewer.devices import DARK, DESKTOP, PHONE, new_page, save_picture
 from bench.viewer.edit_pictures import take_edit_pictures
 
 if TYPE_CHECKING:
     from playwright.sync_api import Browser, Page
-
-_REST_MS = 1500  # until the page has drawn a sharp frame and the list of jobs; set by hand
 
 
 @dataclass(frozen=True, slots=True)
@@ -82,6 +80,5 @@ def _take(browser: Browser, shot: Shot, url: str, target: Path) -> None:
         page.evaluate("() => document.getElementById('viewer').figures.frame()")
     if shot.button:
         page.click(shot.button)
-    page.wait_for_timeout(_REST_MS)
-    page.screenshot(path=target)
+    save_picture(page, target)
     page.context.close()

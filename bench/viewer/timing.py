@@ -28,7 +28,7 @@ _MOVES = """(levels) => {
 _STROKE = """([radius, moves]) => {
   const viewer = document.getElementById('viewer');
   const labels = viewer.labelsOfCut(viewer.cut);
-  const colors = viewer.parts.map((part) => viewer.colorOf(part)).map(() => '#808080');
+  const colors = viewer.parts.map(() => '#808080');
   viewer.partition = { labels, colors: [...colors, '#f5c400'] };
   const [x, y] = [viewer.clientWidth / 2 - 60, viewer.clientHeight / 2];
   viewer.sight.at([x, y]);
