@@ -4,6 +4,7 @@ import argparse
 import sys
 from dataclasses import replace
 from datetime import UTC, datetime
+from functools import cache
 from pathlib import Path
 
 import segcore
@@ -80,7 +81,7 @@ def edited_result(result: Segmentation, document: LocalEditDocument) -> Segmenta
         )
     operations, level = document.all(), document.level_of_base(newest)
     tools = Tools(
-        guide=lambda: segcore.Guide(result.mesh, result.hierarchy),
+        guide=cache(lambda: segcore.Guide(result.mesh, result.hierarchy)),
         earlier=lambda number, of: _parts_of(result, number, of),
     )
     after = apply_all(_parts_of(result, newest, level), operations, tools)
