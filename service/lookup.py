@@ -68,8 +68,8 @@ def result_of(context: Context, job: Job) -> Segmentation:
     return context.results.get(job.id)
 
 
-def check_succeeded(context: Context, job: Job) -> None:
-    """Check that a job has a result.
+def check_succeeded(context: Context, job: Job) -> Succeeded:
+    """Return the outcome of a job that has a result.
 
     Raises
     ------
@@ -77,8 +77,8 @@ def check_succeeded(context: Context, job: Job) -> None:
         If the job has not finished, has failed or was canceled.
     """
     match context.store.records.outcome(job.id):
-        case Succeeded():
-            return
+        case Succeeded() as outcome:
+            return outcome
         case Failed(code=code, message=message):
             raise Problem("job_failed", f"The job failed: {message}", JobError(code=code, message=message))
         case Canceled():
@@ -89,11 +89,7 @@ def check_succeeded(context: Context, job: Job) -> None:
 
 def face_count(context: Context, job: Job) -> int:
     """Return the number of faces of a job that has a result; errors as of :func:`check_succeeded`."""
-    check_succeeded(context, job)
-    outcome = context.store.records.outcome(job.id)
-    if not isinstance(outcome, Succeeded):
-        raise UnknownJob(job.id)  # it was deleted meanwhile
-    return outcome.faces
+    return check_succeeded(context, job).faces
 
 
 def find_batch(context: Context, caller: Caller, batch_id: str) -> Batch:

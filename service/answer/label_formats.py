@@ -130,15 +130,13 @@ def labels_rendition(
     """
     name = format or negotiate(accept)
     encoding, identity = LABELS[name], f"{cut.job_id}/labels?{cut.name}&format={name}"
-    if by == "class":
-        shown = ShownLabels.of_classes(cut, list(class_names))
-        identity += f"&by=class&class={json.dumps(shown.said)}"
-    else:
-        shown = ShownLabels.of_parts(cut)
+    classes = ShownLabels.of_classes(cut, list(class_names)) if by == "class" else None
+    if classes is not None:
+        identity += f"&by=class&class={json.dumps(classes.said)}"
     return Rendition(
         identity=identity,
         media_type=encoding.media_type,
-        render=lambda: encoding.encode(shown),
+        render=lambda: encoding.encode(classes or ShownLabels.of_parts(cut)),
         file_name=f"{cut.job_id}{encoding.extension}" if encoding.is_binary else None,
         vary=None if format else "Accept",
         may_change=cut.is_newest,

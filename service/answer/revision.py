@@ -8,7 +8,7 @@ from segcore.errors import InvalidParameters
 from segcore.levels import Level
 from service.answer.level import ChosenCut, cut_at, revised_cut
 from service.context import Context
-from service.lookup import check_succeeded, result_of
+from service.lookup import check_succeeded
 from worker.jobs.job import Job
 
 NEWEST = "latest"
@@ -54,7 +54,7 @@ def chosen_cut(context: Context, job: Job, level: Level, revision: str | None) -
         raise InvalidParameters("A revision has no levels: give a level or revision=latest, not both.")
     number = revision_number(context, job, revision)
     if number == 0:
-        cut = cut_at(job.id, result_of(context, job), level)
+        cut = cut_at(job.id, context.results.get(job.id), level)
         return cut.of_newest() if revision == NEWEST else cut
     if not level.is_automatic:
         raise InvalidParameters("A revision has no levels: give a level or a revision, not both.")

@@ -8,8 +8,15 @@ from segcore.io import with_coordinates
 from segcore.io.result import read_result
 from segcore.levels import Fineness
 from service.commands.arguments import add_coordinates, add_level
-from service.commands.inputs import STANDARD, standard_input
-from service.commands.outputs import add_outputs, check_outputs, output_options, write_edited, write_model
+from service.commands.inputs import standard_input
+from service.commands.outputs import (
+    add_outputs,
+    check_outputs,
+    output_options,
+    tell_written,
+    write_edited,
+    write_model,
+)
 from service.commands.summary import level_lines
 
 
@@ -52,6 +59,4 @@ def run(choices: argparse.Namespace) -> None:
         lines = level_lines(result.hierarchy, segments, fineness)
     for line in (*notes, *lines):
         tell(line)
-    for path in outputs:
-        if path != STANDARD:
-            tell(f"wrote {path}")
+    tell_written(tell, outputs)

@@ -4,6 +4,7 @@ import argparse
 import sys
 from dataclasses import replace
 from datetime import UTC, datetime
+from functools import cache
 from pathlib import Path
 
 import segcore
@@ -13,7 +14,7 @@ from segcore.edit.tools import Tools
 from segcore.io import Edited, RevisionNote, Segmentation, read_result
 from segcore.levels import Level
 from service.commands.inputs import STANDARD, standard_input
-from service.commands.outputs import add_outputs, check_outputs, output_options, write_edited
+from service.commands.outputs import add_outputs, check_outputs, output_options, tell_written, write_edited
 from worker.edits.operation_documents import LocalEditDocument, parsed_as
 
 
@@ -59,9 +60,7 @@ def run(choices: argparse.Namespace) -> None:
     assert edited.edited is not None, "it was edited"
     made = edited.edited.revisions[-1]
     tell(f"revision {made.number}: {made.what}; {made.parts} part{'s' if made.parts != 1 else ''}")
-    for path in outputs:
-        if path != STANDARD:
-            tell(f"wrote {path}")
+    tell_written(tell, outputs)
 
 
 def edited_result(result: Segmentation, document: LocalEditDocument) -> Segmentation:
@@ -80,7 +79,7 @@ def edited_result(result: Segmentation, document: LocalEditDocument) -> Segmenta
         )
     operations, level = document.all(), document.level_of_base(newest)
     tools = Tools(
-        guide=lambda: segcore.Guide(result.mesh, result.hierarchy),
+        guide=cache(lambda: segcore.Guide(result.mesh, result.hierarchy)),
         earlier=lambda number, of: _parts_of(result, number, of),
     )
     after = apply_all(_parts_of(result, newest, level), operations, tools)

@@ -157,6 +157,13 @@ def check_outputs(paths: Sequence[Path]) -> Callable[[str], None]:
     return say_beside if STANDARD in paths else say
 
 
+def tell_written(tell: Callable[[str], None], paths: Sequence[Path]) -> None:
+    """Say which files were written."""
+    for path in paths:
+        if path != STANDARD:
+            tell(f"wrote {path}")
+
+
 def write_model(
     path: Path, mesh: Mesh, hierarchy: Hierarchy, segments: int | None, options: OutputOptions
 ) -> tuple[str, ...]:

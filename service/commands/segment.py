@@ -21,6 +21,7 @@ from service.commands.outputs import (
     add_outputs,
     check_outputs,
     output_options,
+    tell_written,
     write_file,
     write_model,
 )
@@ -75,9 +76,7 @@ def run(choices: argparse.Namespace) -> None:
         tell(line)
     for line in _structure_lines(structure_counts(mesh, surface), parameters):
         tell(line)
-    for path in outputs:
-        if path != STANDARD:
-            tell(f"wrote {path}")
+    tell_written(tell, outputs)
 
 
 def _parameters(choices: argparse.Namespace) -> segcore.SegmentationParameters:

@@ -44,7 +44,8 @@ class EditorProcess:
             write_message(process.stdin, message)
             return read_message(process.stdout)
         except (OSError, EOFError) as error:
-            log.warning("the process of edits was killed after %g s, or has died", limit_s)
+            if self._process is process:  # else it was stopped
+                log.warning("the process of edits was killed after %g s, or has died", limit_s)
             self.stop()
             raise EditorFailed from error
         finally:

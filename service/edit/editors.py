@@ -78,8 +78,8 @@ class Editors:
     def stop(self) -> None:
         """End the processes."""
         for slot in self._slots:
+            slot.thread.shutdown(wait=False, cancel_futures=True)  # first, so that no message starts a process again
             slot.process.stop()
-            slot.thread.shutdown(wait=False, cancel_futures=True)
 
     def _slot_for(self, job_id: str) -> _Slot:
         holding = [slot for slot in self._slots if job_id in slot.held]

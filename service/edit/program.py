@@ -1,9 +1,9 @@
 """The process that edits: it keeps the Guides of the jobs that were edited last, and applies operations with them.
 
 The service writes messages to its standard input and reads the answers from its standard output. The first message has
-the settings. Each further one has ``job_id``, ``base`` and ``edit`` (an EditDocument), and the parts of the base as
-data. Its answer has the parts after the edit as data, or ``code`` and ``message`` of an error; ``held`` lists the jobs
-whose Guides are in memory.
+the settings. Each further one has ``job_id`` and ``edit`` (an EditDocument; null if only the Guide is to be made), and
+the parts before the edit as data. Its answer has the parts after the edit as data, or ``code`` and ``message`` of an
+error; ``held`` lists the jobs whose Guides are in memory.
 """
 
 import os

@@ -91,9 +91,10 @@ def begin_edit(context: Context, job: Job, document: EditDocument, request: Requ
     """
     check_succeeded(context, job)
     operations, level = document.all(), document.level_of_base(document.base)
-    check_base(context, job, document.base)
+    newest = context.store.revisions.newest(job.id)
+    check_base(document.base, newest)
     before = _parts_before(context, job, document.base, level, operations)
-    if context.store.revisions.newest(job.id) != document.base:
+    if document.base != newest:
         return made_before(context, job, document.base, before, request)
     return Edit(job, document.base, before, document, operations, request)
 
@@ -108,9 +109,9 @@ def _parts_before(context: Context, job: Job, base: int, level: Level, operation
         return parts_of(context.results, job.id, 0, Level())
 
 
-def check_base(context: Context, job: Job, base: int) -> None:
+def check_base(base: int, newest: int) -> None:
     """Raise UnknownRevision if a base is newer than the newest revision."""
-    if base > context.store.revisions.newest(job.id):
+    if base > newest:
         raise UnknownRevision(base)
 
 

@@ -40,7 +40,7 @@ def store_labels(context: Context, caller: Caller, job: Job, upload: LabelUpload
     if upload.if_match is not None and not _matches(context, job, upload.if_match):
         raise conflict(context, job, "precondition_failed")
     base = upload.base if upload.base is not None else newest if upload.if_match is not None else 0
-    check_base(context, job, base)
+    check_base(base, newest)
     before = parts_of(context.results, job.id, base, Level())
     if base != newest:
         return made_before(context, job, base, before, upload.request)

@@ -30,7 +30,7 @@ from service.edit.result_documents import (
 from service.edit.revising import EDIT_PROBLEMS, Revised, request_key
 from service.edit.uploading import LabelUpload, store_labels
 from service.guard.callers import CallerOf
-from service.lookup import JOB_PROBLEMS, RESULT_PROBLEMS, JobId, face_count, find_job
+from service.lookup import JOB_PROBLEMS, RESULT_PROBLEMS, JobId, check_succeeded, face_count, find_job
 from service.mount import public_path
 from service.openapi.document import ref
 from service.problems import documented
@@ -218,7 +218,7 @@ def list_revisions(
 ) -> Response:
     """The revisions, newest first."""
     job = find_job(context, caller, job_id)
-    face_count(context, job)
+    check_succeeded(context, job)
     page = context.store.revisions.page(job.id, before, limit)
     document = RevisionsDocument(
         newest=context.store.revisions.newest(job.id),
@@ -243,7 +243,7 @@ def get_revision(
 ) -> Response:
     """A revision with its parts."""
     job = find_job(context, caller, job_id)
-    face_count(context, job)
+    check_succeeded(context, job)
     number = revision_number(context, job, revision)
     document = revision_parts(
         context.store.revisions.revision(job.id, number), parts_of(context.results, job.id, number, Level())

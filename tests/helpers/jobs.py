@@ -35,7 +35,7 @@ def sphere(rows: int, bumps: float = 0.25) -> bytes:
     return mesh_bytes(Mesh(vertices.round(6), faces), "off")
 
 
-def accepted(store: JobStore, mesh: bytes, **parameters: object) -> Job:
+def accepted(store: JobStore, mesh: bytes, owner: str | None = None, **parameters: object) -> Job:
     """Put a job in a store, as the service does when it accepts a request."""
     with store.spool.begin_upload() as upload:
         upload.write(mesh)
@@ -46,6 +46,7 @@ def accepted(store: JobStore, mesh: bytes, **parameters: object) -> Job:
             mesh_format=None,
             parameters=dict(parameters),
             created_at=now(),
+            owner=owner,
         )
         store.accept(job, upload)
     return job

@@ -7,7 +7,7 @@ an edit again after a crash changes nothing: the revision names the request that
 import logging
 import os
 import sys
-from collections.abc import Callable
+from functools import cache
 
 import segcore
 from cleave.logs import configure_logging
@@ -104,23 +104,12 @@ def parts_after(store: JobStore, job_id: str, document: EditDocument) -> Partiti
     operations, level = document.all(), document.level_of_base(document.base)
     is_replaced = isinstance(operations[0], Restore)  # then the parts of the base may be lost
     before = parts_of(0, Level()) if is_replaced else parts_of(document.base, level)
-    return apply_all(before, operations, Tools(_once(lambda: guide_of(result)), parts_of))
+    return apply_all(before, operations, Tools(cache(lambda: guide_of(result)), parts_of))
 
 
 def guide_of(result: Segmentation) -> PartFinder:
     """Return the Guide of the result of a job."""
     return segcore.Guide(result.mesh, result.hierarchy)
-
-
-def _once(make: Callable[[], PartFinder]) -> Callable[[], PartFinder]:
-    made: list[PartFinder] = []
-
-    def get() -> PartFinder:
-        if not made:
-            made.append(make())
-        return made[0]
-
-    return get
 
 
 def run(settings: Settings, edit_id: str) -> int:

@@ -4,6 +4,7 @@ import logging
 import os
 import socket
 import time
+from collections.abc import Iterable
 
 from cleave.logs import about, configure_logging
 from cleave.settings import Settings, load_settings
@@ -28,6 +29,21 @@ MISSING_S = 5.0
 _LEADER_INTERVALS = 3  # sweeps that a leader may miss before another janitor takes over; set by hand
 
 
+class _Absences:
+    """Since when jobs or edits have been missing from the queue."""
+
+    def __init__(self) -> None:
+        self._since: dict[str, float] = {}
+
+    def lost(self, missing: Iterable[str], at_s: float) -> list[str]:
+        """Return those of the ids missing at this time that have been missing for so long that they are lost."""
+        self._since = {one: self._since.get(one, at_s) for one in missing}
+        return [one for one, since in self._since.items() if at_s - since >= MISSING_S]
+
+    def clear(self) -> None:
+        self._since.clear()
+
+
 class Janitor:
     """Compares store and queue at every sweep; in between it only keeps the time since which each job is missing."""
 
@@ -41,8 +57,8 @@ class Janitor:
         # The process id of the supervisor, so that a restarted janitor is the leader at once.
         self._name = f"{socket.gethostname()}.{os.getppid()}"
         self._search = Search(store, queue, settings.key_max_running_jobs)
-        self._missing_since: dict[str, float] = {}
-        self._edits_missing_since: dict[str, float] = {}
+        self._missing_jobs = _Absences()
+        self._missing_edits = _Absences()
 
     def sweep(self, at_s: float) -> None:
         """Enqueue every unfinished job that neither waits nor runs, or fail it if it has had all its attempts.
@@ -53,7 +69,8 @@ class Janitor:
         if not self._locks.lead(self._name, _LEADER_INTERVALS * self._settings.janitor_interval_s):
             self._forget_missing()
             return
-        for job_id in reversed(self._lost(at_s)):  # each is put at the front, the oldest last
+        lost = self._missing_jobs.lost(self._search.next_missing(), at_s)
+        for job_id in reversed(lost):  # each is put at the front, the oldest last
             job = self._store.records.job(job_id)
             if job is not None:
                 with about(job_id, job.traceparent):
@@ -70,24 +87,17 @@ class Janitor:
 
     def _forget_missing(self) -> None:
         self._search.restart()
-        self._missing_since.clear()
-        self._edits_missing_since.clear()
-
-    def _lost(self, at_s: float) -> list[str]:
-        missing = self._search.next_missing()
-        self._missing_since = {job_id: self._missing_since.get(job_id, at_s) for job_id in missing}
-        return [job_id for job_id in missing if at_s - self._missing_since[job_id] >= MISSING_S]
+        self._missing_jobs.clear()
+        self._missing_edits.clear()
 
     def _recover_edits(self, at_s: float) -> None:
         """Enqueue the edits that the queue has lost."""
         waiting = self._store.queued_edits.waiting_ids()
-        held = self._queue.held(waiting) if waiting else set()
-        missing = [edit_id for edit_id in waiting if edit_id not in held]
-        self._edits_missing_since = {edit_id: self._edits_missing_since.get(edit_id, at_s) for edit_id in missing}
-        for edit_id in missing:
+        held = self._queue.held(waiting)
+        for edit_id in self._missing_edits.lost((edit_id for edit_id in waiting if edit_id not in held), at_s):
             edit = self._store.queued_edits.waiting(edit_id)
             job = None if edit is None else self._store.records.job(edit.job_id)
-            if job is not None and at_s - self._edits_missing_since[edit_id] >= MISSING_S:
+            if job is not None:
                 log.warning("edit %s was lost by the queue and waits again", edit_id)
                 self._queue.requeue(edit_id, size_class(job, self._settings.large_job_bytes))
 

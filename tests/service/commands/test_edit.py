@@ -10,6 +10,8 @@ import numpy as np
 import pytest
 import trimesh
 
+import segcore
+from helpers.edits.guide import MarksOnly
 from segcore.io import read_result
 from service.commands.main import main
 
@@ -55,6 +57,18 @@ def test_a_file_is_edited_again_and_again_and_written_in_any_format(
     assert len(trimesh.load(glb).geometry["body"].faces) == (labels == 0).sum()
     assert main(["convert", str(stored), "-o", str(seg), "--segments", "4"]) == 0
     assert (np.loadtxt(seg, dtype=int) == automatic.labels(4)).all()
+
+
+def test_operations_share_one_guide(stored: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    made: list[MarksOnly] = []
+
+    def guide(mesh: segcore.Mesh, _: object) -> MarksOnly:
+        made.append(MarksOnly(len(mesh.faces)))
+        return made[-1]
+
+    monkeypatch.setattr(segcore, "Guide", guide)
+    assert edit(stored, {"operations": [{"op": "part", "inside": [face]} for face in (3, 9)]}) == 0
+    assert len(made) == 1
 
 
 def test_an_output_in_place_of_the_file_and_operations_on_the_standard_input(

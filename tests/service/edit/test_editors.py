@@ -1,5 +1,6 @@
 """Edits that need a Guide: in other processes, which may die or take too long without harm."""
 
+import asyncio
 import os
 import threading
 import time
@@ -17,8 +18,9 @@ from helpers.processes import children_of
 from helpers.waiting import wait_until
 from segcore import Partition
 from segcore.io import decode_partition, encode_partition, read_result
-from service.edit.editor_process import EditorProcess
-from service.edit.editors import PROGRAM
+from service.edit import editors
+from service.edit.editor_process import EditorFailed, EditorProcess
+from service.edit.editors import PROGRAM, Editors
 from service.edit.messages import Message
 from worker.jobs.store.store import JobStore
 
@@ -47,10 +49,11 @@ def test_a_preview_of_marks_is_answered_from_the_same_guide(api: httpx.Client, j
     assert answer.json()["changed"]["starts"] == [3]
 
 
-def test_a_process_that_dies_costs_one_edit(api: httpx.Client, job: str) -> None:
+def test_a_process_that_dies_costs_one_edit(api: httpx.Client, job: str, caplog: pytest.LogCaptureFixture) -> None:
     edit(api, job, 0, marks(0))
     deadly = {"base": 1, "operations": [marks(DEADLY)]}
     problem(api.post(f"{job}/edits/preview", json=deadly), 503, "preview_too_slow")
+    assert "or has died" in caplog.text
     assert edit(api, job, 1, marks(3))["revision"]["number"] == 2
 
 
@@ -112,6 +115,27 @@ def test_a_process_ends_with_its_service(edit_settings: Settings) -> None:
     (pid,) = (pid for pid in children_of(os.getpid()) if b"edits.program" in _command(pid))
     editor.stop()
     wait_until(lambda: not Path(f"/proc/{pid}").exists())
+
+
+def test_processes_that_are_stopped_are_not_reported_as_dead_and_are_not_started_again(
+    edit_settings: Settings, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, caplog: pytest.LogCaptureFixture
+) -> None:
+    starts = tmp_path / "starts"
+    program = f"import sys; open({str(starts)!r}, 'a').write('.'); sys.stdin.read()"  # it does not answer
+    monkeypatch.setattr(editors, "PROGRAM", ("-c", program))
+    stopped = Editors(edit_settings.model_copy(update={"edit_processes": 1, "edit_timeout_s": 60.0}))
+
+    async def stop_while_two_wait() -> list[Message | BaseException]:
+        asked = [stopped.ask(job_id, Message({"job_id": job_id, "edit": {}})) for job_id in "ab"]
+        waiting = [asyncio.ensure_future(one) for one in asked]
+        while not (starts.exists() and starts.read_text()):
+            await asyncio.sleep(0.01)
+        stopped.stop()
+        return await asyncio.gather(*waiting, return_exceptions=True)
+
+    assert [type(one) for one in asyncio.run(stop_while_two_wait())] == [EditorFailed, asyncio.CancelledError]
+    assert starts.read_text() == "."
+    assert caplog.messages == []
 
 
 def _command(pid: int) -> bytes:

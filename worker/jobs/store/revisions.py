@@ -76,7 +76,7 @@ class Revisions:
         ------
         UnknownRevision, RevisionDamaged
         """
-        return self._read(job_id, number)[0]
+        return _REVISION.validate_json(self._read(job_id, number)[0])
 
     def partition(self, job_id: str, number: int) -> Partition:
         """Return the parts of a revision.
@@ -85,7 +85,10 @@ class Revisions:
         ------
         UnknownRevision, RevisionDamaged
         """
-        return self._read(job_id, number)[1]
+        try:
+            return decode_partition(self._read(job_id, number)[1])
+        except InvalidMesh as error:
+            raise RevisionDamaged(number) from error
 
     def page(self, job_id: str, before: int | None, limit: int) -> RevisionPage:
         """Return the newest revisions that are older than the number ``before``, newest first, without damaged ones."""
@@ -100,18 +103,16 @@ class Revisions:
             return self.revision(job_id, number)
         return None
 
-    def _read(self, job_id: str, number: int) -> tuple[Revision, Partition]:
+    def _read(self, job_id: str, number: int) -> tuple[bytes, bytes]:
+        """Return the record and the parts of a revision as they were written."""
         data = self._objects.get(revision_key(job_id, number)) if is_revision_number(number) else None
         if data is None:
             raise UnknownRevision(number)
         digest, _, content = data.partition(b"\n")
+        if digest.decode("ascii", "replace") != _digest(content):
+            raise RevisionDamaged(number)
         record, _, parts = content.partition(b"\n")
-        try:
-            if digest.decode("ascii", "replace") != _digest(content):
-                raise InvalidMesh("The hash is another one.")
-            return _REVISION.validate_json(record), decode_partition(parts)
-        except InvalidMesh as error:
-            raise RevisionDamaged(number) from error
+        return record, parts
 
 
 def _digest(content: bytes) -> str:

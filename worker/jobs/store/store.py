@@ -122,7 +122,7 @@ class JobStore:
                 self.computed.add(job)
                 self.records.require(job_id, lambda: self.computed.remove(job))
         with suppress(OSError):  # a check of the marker does this later
-            self._record_end(job_id)
+            self._add_end(job, standing)
             self.pending.remove(job)
         return standing
 
@@ -150,10 +150,13 @@ class JobStore:
         """Add a job to the index of ended jobs, if it has an outcome, unless it was deleted."""
         job, outcome = self.records.job(job_id), self.records.outcome(job_id)
         if job is not None and outcome is not None:
-            key = self.ended.key_of(job, outcome)
-            self.ended.add(key)
-            if not self.records.has_job(job_id):
-                self.ended.remove(key)
+            self._add_end(job, outcome)
+
+    def _add_end(self, job: Job, outcome: Outcome) -> None:
+        key = self.ended.key_of(job, outcome)
+        self.ended.add(key)
+        if not self.records.has_job(job.id):
+            self.ended.remove(key)
 
     def _remove(self, job: Job) -> None:
         self.deletions.remove_record(job)

@@ -5,9 +5,9 @@ from pathlib import Path
 
 import pytest
 
-from helpers.jobs import unfinished
+from helpers.jobs import accepted, unfinished
 from helpers.storage.failures import killed_at_every_write
-from worker.jobs.job import Canceled, Job, new_job_id, now
+from worker.jobs.job import Canceled, Job, now
 from worker.jobs.objects.interface import name_of
 from worker.jobs.store import deletion, index
 from worker.jobs.store.index import complemented
@@ -18,28 +18,12 @@ from worker.jobs.store.spool import Spool
 from worker.jobs.store.store import JobStore
 
 
-def submit(store: JobStore, owner: str | None) -> Job:
-    with store.spool.begin_upload() as upload:
-        upload.write(b"mesh")
-        job = Job(
-            id=new_job_id(),
-            sha256=upload.sha256,
-            size_bytes=4,
-            mesh_format=None,
-            parameters={},
-            created_at=now(),
-            owner=owner,
-        )
-        store.accept(job, upload)
-    return job
-
-
 def fill(store: JobStore) -> tuple[list[Job], Job]:
     """Put jobs of an owner in a store, of which the first two have ended, and one that was deleted."""
-    jobs = [submit(store, "me") for _ in range(5)]
+    jobs = [accepted(store, b"mesh", "me") for _ in range(5)]
     for job in jobs[:2]:
         store.finish(job.id, Canceled(finished_at=now()))
-    deleted = submit(store, None)
+    deleted = accepted(store, b"mesh", None)
     store.delete(deleted.id)
     make_earlier(store)
     return jobs, deleted
@@ -88,7 +72,7 @@ def test_an_earlier_store_is_used_as_before_during_the_migration(any_store: JobS
         assert any_store.deletions.was_deleted(deleted.id, None)
         assert list(unfinished(any_store)) == [job.id for job in jobs if any_store.records.outcome(job.id) is None]
         if len(jobs) < 7:
-            jobs.append(submit(any_store, "me"))
+            jobs.append(accepted(any_store, b"mesh", "me"))
     assert LayoutVersion(any_store.objects).is_current()
     for folder in (index.EARLIER, deletion.EARLIER):
         assert any_store.objects.keys_below(folder) == []
@@ -154,7 +138,7 @@ def test_a_step_that_fails_is_repeated(store: JobStore, monkeypatch: pytest.Monk
 def test_a_data_folder_of_the_first_version_is_renamed_when_it_is_opened(tmp_path: Path) -> None:
     folder = tmp_path / "data"
     store = open_folder(folder)
-    ended, job = submit(store, "me"), submit(store, "me")
+    ended, job = accepted(store, b"mesh", "me"), accepted(store, b"mesh", "me")
     store.finish(ended.id, Canceled(finished_at=now()))
     make_earlier(store)
     for one in (job, ended):

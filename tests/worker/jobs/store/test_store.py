@@ -32,21 +32,6 @@ def succeeded() -> Succeeded:
     return Succeeded(finished_at=now(), faces=4, vertices=4, max_segments=3, automatic_segments=2)
 
 
-def owned(store: JobStore, owner: str | None) -> Job:
-    with store.spool.begin_upload() as upload:
-        job = Job(
-            id=new_job_id(),
-            sha256=upload.sha256,
-            size_bytes=0,
-            mesh_format=None,
-            parameters={},
-            created_at=now(),
-            owner=owner,
-        )
-        store.accept(job, upload)
-    return job
-
-
 def test_an_accepted_job_is_read_back_as_it_was_written(any_store: JobStore) -> None:
     job = accepted(any_store, b"mesh bytes", max_segments=7)
     assert any_store.records.job(job.id) == job
@@ -211,7 +196,7 @@ def test_a_marker_that_was_left_by_a_crash_after_the_manifest_is_removed(any_sto
 
 
 def test_unfinished_jobs_come_oldest_first(any_store: JobStore) -> None:
-    jobs = [owned(any_store, owner) for owner in ("b", None, "a", "b")]
+    jobs = [accepted(any_store, b"", owner) for owner in ("b", None, "a", "b")]
     assert list(unfinished(any_store)) == [job.id for job in jobs]
     assert any_store.pending.oldest_of("b", 10) == [jobs[0].id, jobs[3].id]
     assert any_store.pending.count("b") == (4, 2)
@@ -231,7 +216,7 @@ def test_pages_list_every_job_once_newest_first(any_store: JobStore) -> None:
 
 
 def test_owners_see_their_own_jobs_alone(any_store: JobStore) -> None:
-    mine, theirs, unowned = (owned(any_store, owner) for owner in ("me", "them", None))
+    mine, theirs, unowned = (accepted(any_store, b"", owner) for owner in ("me", "them", None))
     for job in (mine, theirs, unowned):
         assert any_store.page(job.owner, None, 10).jobs == [job]
         assert any_store.pending.oldest_of(job.owner, 10) == [job.id]
@@ -242,7 +227,7 @@ def test_owners_see_their_own_jobs_alone(any_store: JobStore) -> None:
 
 
 def with_result(store: JobStore, owner: str | None, data: bytes) -> Job:
-    job = owned(store, owner)
+    job = accepted(store, b"", owner)
     store.results.write(job.id, lambda target: target.write(data))
     store.finish(job.id, succeeded())
     return job
@@ -250,7 +235,7 @@ def with_result(store: JobStore, owner: str | None, data: bytes) -> Job:
 
 def test_jobs_with_the_same_input_share_a_result_and_each_keeps_it(any_store: JobStore) -> None:
     first = with_result(any_store, "me", b"a result")
-    second, third, fourth = (owned(any_store, "me") for _ in range(3))
+    second, third, fourth = (accepted(any_store, b"", "me") for _ in range(3))
     assert any_store.finish_as_before(second)
     assert unfinished(any_store).keys() == {third.id, fourth.id}
     any_store.delete(first.id)
@@ -266,7 +251,7 @@ def test_jobs_with_the_same_input_share_a_result_and_each_keeps_it(any_store: Jo
 
 def test_a_shared_result_has_its_own_time_of_its_end(any_store: JobStore) -> None:
     first = with_result(any_store, "me", b"a result")
-    second = owned(any_store, "me")
+    second = accepted(any_store, b"", "me")
     assert any_store.finish_as_before(second)
     ends = [any_store.records.outcome(job.id) for job in (first, second)]
     assert ends[0] is not None
@@ -277,9 +262,9 @@ def test_a_shared_result_has_its_own_time_of_its_end(any_store: JobStore) -> Non
 
 def test_results_are_shared_by_jobs_of_one_owner_and_equal_input_alone(any_store: JobStore) -> None:
     with_result(any_store, "me", b"a result")
-    for other in (owned(any_store, "them"), owned(any_store, None)):
+    for other in (accepted(any_store, b"", "them"), accepted(any_store, b"", None)):
         assert not any_store.finish_as_before(other)
-    mine = owned(any_store, "me")
+    mine = accepted(any_store, b"", "me")
     for changed in (
         replace(mine, unit="inch"),
         replace(mine, up="z"),
@@ -293,8 +278,8 @@ def test_results_are_shared_by_jobs_of_one_owner_and_equal_input_alone(any_store
 
 def test_failed_and_canceled_jobs_share_nothing(any_store: JobStore) -> None:
     for outcome in (Failed(finished_at=now(), code="invalid_mesh", message="No."), Canceled(finished_at=now())):
-        any_store.finish(owned(any_store, "me").id, outcome)
-    assert not any_store.finish_as_before(owned(any_store, "me"))
+        any_store.finish(accepted(any_store, b"", "me").id, outcome)
+    assert not any_store.finish_as_before(accepted(any_store, b"", "me"))
 
 
 def test_a_second_job_of_the_same_id_does_not_change_the_first(any_store: JobStore) -> None:
@@ -310,7 +295,7 @@ def test_a_second_job_of_the_same_id_does_not_change_the_first(any_store: JobSto
 
 
 def test_a_deletion_is_remembered_for_its_owner_until_it_is_forgotten(any_store: JobStore) -> None:
-    job = owned(any_store, "me")
+    job = accepted(any_store, b"", "me")
     any_store.delete(job.id)
     assert any_store.deletions.was_deleted(job.id, "me")
     assert not any_store.deletions.was_deleted(job.id, None)
