@@ -83,7 +83,9 @@ def test_the_list_is_walked_with_arrows(visit: Visit, job: str) -> None:
 def test_the_first_parts_are_visible_at_once(new_visit: NewVisit, job: str, options: dict[str, object]) -> None:
     visit = new_visit(**options)
     visit.open_job(job, "&k=40")
-    box = visit.page.locator("#list .row").nth(1).bounding_box()
+    row = visit.page.locator("#list .row").nth(1)
+    row.wait_for()
+    box = row.bounding_box()
     assert box is not None
     assert visit.page.viewport_size is not None
     assert 0 < box["y"] < visit.page.viewport_size["height"] - box["height"]

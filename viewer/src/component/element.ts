@@ -544,7 +544,7 @@ export class CleaveViewer extends HTMLElement implements Declared {
     canvas.setAttribute("role", "application");
     canvas.setAttribute("aria-roledescription", "3D view");
     canvas.addEventListener("pointermove", (event) => this.#hover(event));
-    canvas.addEventListener("pointerleave", () => this.#setHovered(-1));
+    canvas.addEventListener("pointerleave", () => this.#leave());
     canvas.addEventListener("pointerdown", (event) => (this.#pressed = { x: event.clientX, y: event.clientY }));
     canvas.addEventListener("pointerup", (event) => this.#click(event));
     canvas.addEventListener("keydown", (event) => this.#key(event));
@@ -559,6 +559,13 @@ export class CleaveViewer extends HTMLElement implements Declared {
       this.#hoverFrame = 0;
       this.#setHovered(this.partAt(event.clientX, event.clientY));
     });
+  }
+
+  /** Hover no part, and drop the part of a move whose frame is still to come. */
+  #leave(): void {
+    cancelAnimationFrame(this.#hoverFrame);
+    this.#hoverFrame = 0;
+    this.#setHovered(-1);
   }
 
   #setHovered(part: number): void {

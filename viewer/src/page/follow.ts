@@ -53,7 +53,7 @@ function jobIn(event: string): Job | null {
 }
 
 async function poll(id: string, follower: Follower, signal: AbortSignal): Promise<Job> {
-  let pause_ms = POLL_MS;
+  let pauseMs = POLL_MS;
   for (;;) {
     signal.throwIfAborted();
     try {
@@ -61,12 +61,12 @@ async function poll(id: string, follower: Follower, signal: AbortSignal): Promis
       follower.onConnection(true);
       follower.onJob(job);
       if (hasEnded(job)) return job;
-      pause_ms = POLL_MS;
+      pauseMs = POLL_MS;
     } catch (error) {
       if (error instanceof ApiError && error.status < 500) throw error;
       follower.onConnection(false);
-      pause_ms = Math.min(1.5 * pause_ms, LONGEST_PAUSE_MS);
+      pauseMs = Math.min(1.5 * pauseMs, LONGEST_PAUSE_MS);
     }
-    await pause(pause_ms);
+    await pause(pauseMs);
   }
 }
