@@ -1,6 +1,6 @@
 """The coarse graph that is cut in place of the mesh."""
 
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 
 import numpy as np
 
@@ -70,7 +70,7 @@ def _with_means(coarse: SurfaceGraph, of_node: IntArray, mesh_graph: MeshGraph) 
     )
     authored = None if mesh_graph.authored is None else part_of_component(of_node, mesh_graph.authored)
     body = connected_components(coarse.edges, len(total))
-    return Clusters(replace(coarse, volume=total), of_node, centres, thickness, confidence, body, authored)
+    return Clusters(coarse._replace(volume=total), of_node, centres, thickness, confidence, body, authored)
 
 
 def _with_small_components(of_host: IntArray, host_nodes: IntArray, component: IntArray, pairs: IntArray) -> IntArray:

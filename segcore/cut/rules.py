@@ -14,13 +14,15 @@ from segcore.cut.features import FEATURES, cut_features
 from segcore.cut.fields import ClusterFields, Segment, SegmentFields, cluster_fields
 from segcore.cut.order import best_order_of_steps
 from segcore.cut.symmetric_cuts import second_of_pair, symmetric_cuts, symmetric_sweeps
-from segcore.graphs.cheeger import Cut
+from segcore.graphs.cheeger import Cut, cut_of
 from segcore.graphs.connected_sides import with_connected_sides
 from segcore.graphs.surface_graph import SurfaceGraph
 from segcore.graphs.tree import Tree
 from segcore.learned.models import learned_models
 from segcore.parameters import SegmentationParameters
-from segcore.solvers.solvers import SOLVERS, candidate_cuts
+from segcore.solvers.fiedler import start_noise
+from segcore.solvers.flow import VECTORS, connected_sweeps
+from segcore.solvers.solvers import SOLVERS
 
 # Their neighbours are compared in bench/RESULTS.md, "Constants and their neighbours".
 AUTOMATIC_NCUT = 1.44  # normalized cut times sqrt(total area) at which splitting ends, fitted for ``concavity``
@@ -205,19 +207,24 @@ class LearnedRule:
 
     def candidates(self, segment: Segment, inside: SegmentFields) -> list[Cut]:
         """Return different cuts of a segment, each with connected sides."""
-        cuts = candidate_cuts(segment.graph, self._parameters, self._rng)
-        different = {cut.key: cut for cut in cuts}.values()
-        connected = [with_connected_sides(segment.graph, cut) for cut in different]
-        between = cuts_between_pieces(segment.graph, inside.piece)
-        return list({cut.key: cut for cut in connected + between}.values())
+        graph = segment.graph
+        if self._parameters.solver == "flow":
+            sides = connected_sweeps(graph, start_noise(graph.node_count), VECTORS)
+            cuts = [cut_of(graph, side) for side in sides]
+        else:
+            cuts = [with_connected_sides(graph, self._solved(graph)).canonical]
+        between = cuts_between_pieces(graph, inside.piece)
+        return list({cut.key: cut for cut in cuts + between}.values()) if between else cuts
 
     def _symmetric_candidates(self, segment: Segment, inside: SegmentFields, image: IntArray) -> list[Cut]:
         graph = segment.graph
         between = [cut.side for cut in cuts_between_pieces(graph, inside.piece)]
         if self._parameters.solver == "flow":
             return [*symmetric_sweeps(graph, image), *symmetric_cuts(graph, image, between)]
-        cuts = candidate_cuts(graph, self._parameters, self._rng)
-        return symmetric_cuts(graph, image, [*(cut.side for cut in cuts), *between])
+        return symmetric_cuts(graph, image, [self._solved(graph).side, *between])
+
+    def _solved(self, graph: SurfaceGraph) -> Cut:
+        return SOLVERS[self._parameters.solver](graph, self._parameters, self._rng)
 
     def features(self, segment: Segment, inside: SegmentFields, candidates: Sequence[Cut]) -> FloatArray:
         """(N, M) features of the candidates, see ``segcore.cut.features``."""

@@ -4,16 +4,19 @@ Such a cut S is one of three kinds, sigma being the reflection: S is its own ima
 mirror cut); or S and sigma S are disjoint, and both are cut off in one step (a pair).
 """
 
+from collections.abc import Sequence
+from typing import NamedTuple
+
 import numpy as np
+from numba import njit
 
-from segcore.arrays import BoolArray, FloatArray, IntArray, dot, group_sums
-from segcore.graphs.cheeger import Cut, cut_of, sweep, valleys
-from segcore.graphs.max_flow import Network
-from segcore.graphs.surface_graph import SurfaceGraph, connected_components
-from segcore.solvers.fiedler import eigenvectors
-from segcore.solvers.flow import VALLEYS, improve
+from segcore.arrays import BoolArray, FloatArray, IntArray, LongArray
+from segcore.graphs.cheeger import Cut, best_level_set, cut_of, cut_sums, level_sets, ncc_of, valley_sides
+from segcore.graphs.max_flow import network_of
+from segcore.graphs.surface_graph import SurfaceGraph, components_of_edges, components_within
+from segcore.solvers.fiedler import eigenvectors_of, start_noise
+from segcore.solvers.flow import VALLEYS, VECTORS, improved
 
-_VECTORS = 3  # eigenvectors after the constant one, as many as cuts of other segments have
 _LEAST_PART = 0.05  # norm of the even or odd part of an eigenvector of norm 1; a smaller one is a rounding error
 _MOST_PIECES = 8  # of a cut that are compared, the best ones; set by hand
 
@@ -28,26 +31,10 @@ def symmetric_sweeps(graph: SurfaceGraph, image: IntArray) -> list[Cut]:
     graph : connected, at least two nodes.
     image : (N,) the image of every node, an automorphism of the graph without a fixed point.
     """
-    network = Network.of(graph)
-    vectors = eigenvectors(graph, network.factor, _VECTORS).T
-    even: list[FloatArray] = []
-    signs: list[BoolArray] = []
-    for values in vectors:
-        part = 0.5 * (values + values[image])
-        if dot(graph.volume, part**2) >= _LEAST_PART**2:
-            even.append(part)
-        part = 0.5 * (values - values[image])
-        if dot(graph.volume, part**2) >= _LEAST_PART**2:
-            even.append(np.abs(part))
-            signs.append((part > 0.0) | ((part == 0.0) & (np.arange(len(part)) < image)))
-    sweeps = [sweep(graph, part) for part in even]
-    necks = [cut.side for part in even for cut in valleys(graph, part, VALLEYS)]
-    best = min(sweeps, key=lambda cut: cut.ncc)
-    sides = [improve(network, best).side if np.isfinite(best.ncc) else best.side]
-    return symmetric_cuts(graph, image, [*sides, *(cut.side for cut in sweeps), *signs, *necks])
+    return [cut_of(graph, side) for side in _symmetric_sweeps(graph, image, start_noise(graph.node_count))]
 
 
-def symmetric_cuts(graph: SurfaceGraph, image: IntArray, sides: list[BoolArray]) -> list[Cut]:
+def symmetric_cuts(graph: SurfaceGraph, image: IntArray, sides: Sequence[BoolArray]) -> list[Cut]:
     """Different symmetric cuts next to the given ones; every part into which they cut the graph is connected.
 
     Parameters
@@ -56,13 +43,7 @@ def symmetric_cuts(graph: SurfaceGraph, image: IntArray, sides: list[BoolArray])
     image : (N,) the image of every node, an involution without a fixed point.
     sides : (N,) each, with any symmetry.
     """
-    found: dict[bytes, Cut] = {}
-    for side in sides:
-        for symmetric in _symmetric_sides(side, image):
-            cut = _best_star(graph, image, symmetric)
-            if cut is not None:
-                found.setdefault(min(cut.key, Cut(cut.side[image], 0.0, 0.0, 0.0).key), cut)
-    return list(found.values())
+    return [cut_of(graph, side) for side in _symmetric_cuts(graph, image, np.stack(sides))] if sides else []
 
 
 def second_of_pair(side: BoolArray, image: IntArray) -> BoolArray | None:
@@ -71,16 +52,112 @@ def second_of_pair(side: BoolArray, image: IntArray) -> BoolArray | None:
     return None if (side & mirrored).any() or (side | mirrored).all() else mirrored
 
 
-def _symmetric_sides(side: BoolArray, image: IntArray) -> list[BoolArray]:
-    """The set itself if it or its complement is its image; else its union and its overlap with the image."""
-    mirrored = side[image]
-    if (side == mirrored).all() or (side != mirrored).all():
-        return [side]
-    return [both for both in (side | mirrored, side & mirrored) if both.any() and not both.all()]
+@njit(cache=True)
+def _symmetric_sweeps(graph: SurfaceGraph, image: IntArray, noise: FloatArray) -> BoolArray:
+    """(C, N) ``symmetric_sweeps``."""
+    network = network_of(graph)
+    vectors = eigenvectors_of(graph, network.factor, noise, VECTORS)
+    count = len(image)
+    even = np.empty((2 * len(vectors), count))
+    signs = np.empty((len(vectors), count), dtype=np.bool_)
+    evens = odds = 0
+    for values in vectors:
+        mirrored = values[image]
+        if _norm(graph, 0.5 * (values + mirrored)) >= _LEAST_PART:
+            even[evens] = 0.5 * (values + mirrored)
+            evens += 1
+        part = 0.5 * (values - mirrored)
+        if _norm(graph, part) >= _LEAST_PART:
+            even[evens] = np.abs(part)
+            evens += 1
+            for i in range(count):
+                signs[odds, i] = part[i] > 0.0 or (part[i] == 0.0 and i < image[i])
+            odds += 1
+    sides = np.empty((1 + (1 + VALLEYS) * evens + odds, count), dtype=np.bool_)
+    necks = np.empty((VALLEYS * evens, count), dtype=np.bool_)
+    best, least, filled, found = 1, np.inf, 1, 0
+    for part in even[:evens]:
+        levels = level_sets(graph, part)
+        sides[filled] = best_level_set(graph, part, levels, False)
+        ncc = ncc_of(*cut_sums(graph, sides[filled]))
+        if ncc < least:
+            best, least = filled, ncc
+        filled += 1
+        for neck in valley_sides(levels, VALLEYS):
+            necks[found] = neck
+            found += 1
+    for side in signs[:odds]:
+        sides[filled] = side
+        filled += 1
+    for side in necks[:found]:
+        sides[filled] = side
+        filled += 1
+    sides[0] = improved(network, sides[best]) if least < np.inf else sides[best]
+    return _symmetric_cuts(graph, image, sides[:filled])
 
 
-def _best_star(graph: SurfaceGraph, image: IntArray, side: BoolArray) -> Cut | None:
-    """A cut that cuts off a piece so that it and its image leave a connected rest; None if there is none.
+@njit(cache=True)
+def _norm(graph: SurfaceGraph, values: FloatArray) -> float:
+    total = 0.0
+    for i in range(len(values)):
+        total += graph.volume[i] * values[i] ** 2
+    return np.sqrt(total)
+
+
+@njit(cache=True)
+def _symmetric_cuts(graph: SurfaceGraph, image: IntArray, sides: BoolArray) -> BoolArray:
+    """(C, N) ``symmetric_cuts``. Cuts that are images of each other count as one.
+
+    A set of which neither it nor its complement is its image stands for its union and its overlap with the image.
+    """
+    found = np.empty((2 * len(sides), len(image)), dtype=np.bool_)
+    count = 0
+    for side in sides:
+        mirrored = side[image]
+        is_symmetric = (side == mirrored).all() or (side != mirrored).all()
+        for is_union in (True, False):
+            if is_symmetric:
+                symmetric = side
+            elif is_union:
+                symmetric = side | mirrored
+            else:
+                symmetric = side & mirrored
+            if (is_symmetric and not is_union) or not symmetric.any() or symmetric.all():
+                continue
+            cut = _best_star(graph, image, symmetric)
+            if cut.any() and not _is_among(cut, image, found[:count]):
+                found[count] = cut
+                count += 1
+    return found[:count]
+
+
+@njit(cache=True)
+def _is_among(side: BoolArray, image: IntArray, found: BoolArray) -> bool:
+    """Whether a bipartition or its image is among others."""
+    for other in found:
+        is_same, is_image = True, True
+        for i in range(len(side)):
+            on_side = side[i] == side[0]
+            is_same = is_same and on_side == (other[i] == other[0])
+            is_image = is_image and on_side == (other[image[i]] == other[image[0]])
+        if is_same or is_image:
+            return True
+    return False
+
+
+class _Pieces(NamedTuple):
+    """The pieces into which a symmetric set of nodes cuts a graph, and the edges between them."""
+
+    of_node: IntArray  # (N,)
+    opposite: IntArray  # (P,) the image of every piece
+    edges: IntArray  # (Q, 2)
+    weight: FloatArray  # (Q,)
+    volume: FloatArray  # (P,)
+
+
+@njit(cache=True)
+def _best_star(graph: SurfaceGraph, image: IntArray, side: BoolArray) -> BoolArray:
+    """(N,) a set that can be cut off with its image so that the rest is connected; empty if there is none.
 
     The pieces are the connected components of both sides, the one of least NCC first. If the rest of a piece is not
     connected, the components of the rest are tried next.
@@ -89,41 +166,78 @@ def _best_star(graph: SurfaceGraph, image: IntArray, side: BoolArray) -> Cut | N
     ----------
     side : (N,) its own image, or the image of its complement.
     """
-    a, b = graph.edges.T
-    piece = connected_components(graph.edges[side[a] == side[b]], graph.node_count)
-    count = int(piece.max()) + 1
-    if count < 2:
-        return None
+    pieces = _pieces(graph, image, side)
+    count = len(pieces.volume)
+    for p in _by_ncc(pieces, np.arange(count).astype(np.int32), count)[:_MOST_PIECES]:
+        rest = np.ones(count, dtype=np.bool_)
+        rest[p] = rest[pieces.opposite[p]] = False
+        component, components = _components_of(pieces, rest)
+        if components <= 1:
+            return pieces.of_node == p
+        for c in _by_ncc(pieces, component, components)[:_MOST_PIECES]:
+            for q in range(count):
+                rest[q] = component[q] != c and component[pieces.opposite[q]] != c
+            if _components_of(pieces, rest)[1] <= 1:
+                return (component == c)[pieces.of_node]
+    return np.zeros(len(side), dtype=np.bool_)
+
+
+@njit(cache=True)
+def _pieces(graph: SurfaceGraph, image: IntArray, side: BoolArray) -> _Pieces:
+    of_node, count = components_within(graph.edges, side)
     opposite = np.empty(count, dtype=np.int32)
-    opposite[piece] = piece[image]
-    across = side[a] != side[b]
-    pieces = SurfaceGraph(
-        piece[graph.edges[across]], graph.weight[across], group_sums(piece, graph.volume), graph.length[across]
-    )
-    single = np.eye(count, dtype=bool)
-    for p in _by_ncc(pieces, single)[:_MOST_PIECES]:
-        rest = ~(single[p] | single[p][opposite])
-        component = connected_components(pieces.edges[rest[pieces.edges].all(axis=1)], count)
-        remaining = np.unique(component[rest])
-        if len(remaining) <= 1:
-            return cut_of(graph, single[p][piece])
-        components = component == remaining[:, None]
-        for r in _by_ncc(pieces, components)[:_MOST_PIECES]:
-            if _is_connected(pieces, ~(components[r] | components[r][opposite])):
-                return cut_of(graph, components[r][piece])
-    return None
+    volume = np.zeros(count)
+    for i in range(len(of_node)):
+        opposite[of_node[i]] = of_node[image[i]]
+        volume[of_node[i]] += graph.volume[i]
+    edges, weight = np.empty((len(graph.edges), 2), dtype=np.int32), np.empty(len(graph.edges))
+    filled = 0
+    for e in range(len(graph.edges)):
+        a, b = graph.edges[e, 0], graph.edges[e, 1]
+        if side[a] != side[b]:
+            edges[filled, 0], edges[filled, 1], weight[filled] = of_node[a], of_node[b], graph.weight[e]
+            filled += 1
+    return _Pieces(of_node, opposite, edges[:filled], weight[:filled], volume)
 
 
-def _by_ncc(graph: SurfaceGraph, sets: BoolArray) -> list[int]:
-    """The sets of nodes (K, N) by increasing NCC."""
-    crossing = sets[:, graph.edges[:, 0]] != sets[:, graph.edges[:, 1]]
-    volume = sets @ graph.volume
-    ratio = (crossing @ graph.weight) / np.minimum(volume, graph.total_volume - volume)
-    order: list[int] = np.argsort(ratio, kind="stable").tolist()
-    return order
+@njit(cache=True)
+def _by_ncc(pieces: _Pieces, group: IntArray, count: int) -> LongArray:
+    """(K,) groups 0..K - 1 of the pieces (P,) by increasing NCC; pieces of group -1 belong to none."""
+    border, volume = np.zeros(count), np.zeros(count)
+    for e in range(len(pieces.edges)):
+        a, b = group[pieces.edges[e, 0]], group[pieces.edges[e, 1]]
+        if a != b:
+            if a >= 0:
+                border[a] += pieces.weight[e]
+            if b >= 0:
+                border[b] += pieces.weight[e]
+    total = pieces.volume.sum()
+    for p in range(len(group)):
+        if group[p] >= 0:
+            volume[group[p]] += pieces.volume[p]
+    for k in range(count):
+        border[k] = ncc_of(border[k], volume[k], total - volume[k])
+    return np.argsort(border, kind="mergesort")
 
 
-def _is_connected(graph: SurfaceGraph, chosen: BoolArray) -> bool:
-    """True if the chosen nodes (N,) are connected, or if there are none."""
-    component = connected_components(graph.edges[chosen[graph.edges].all(axis=1)], graph.node_count)
-    return len(np.unique(component[chosen])) <= 1
+@njit(cache=True)
+def _components_of(pieces: _Pieces, chosen: BoolArray) -> tuple[IntArray, int]:
+    """(P,) the components of the chosen pieces (P,), -1 for the others, and their number."""
+    kept = np.empty((len(pieces.edges), 2), dtype=np.int32)
+    filled = 0
+    for e in range(len(pieces.edges)):
+        if chosen[pieces.edges[e, 0]] and chosen[pieces.edges[e, 1]]:
+            kept[filled] = pieces.edges[e]
+            filled += 1
+    component = components_of_edges(kept[:filled], len(chosen))
+    number = np.full(len(chosen), -1, dtype=np.int32)
+    count = 0
+    for p in range(len(chosen)):
+        if not chosen[p]:
+            component[p] = -1
+        else:
+            if number[component[p]] < 0:
+                number[component[p]] = count
+                count += 1
+            component[p] = number[component[p]]
+    return component, count

@@ -2,12 +2,12 @@
 
 from dataclasses import dataclass
 from math import inf
-from typing import Literal, TypeAlias
+from typing import Literal, NamedTuple, TypeAlias
 
 import numpy as np
 from numba import njit
 
-from segcore.arrays import BoolArray, FloatArray
+from segcore.arrays import BoolArray, FloatArray, IntArray, ascending
 from segcore.graphs.surface_graph import SurfaceGraph
 
 _VALLEY = 0.03  # of the volume, to either side: half the least distance of two valleys; set by hand
@@ -59,9 +59,55 @@ def cut_of(graph: SurfaceGraph, side: BoolArray) -> Cut:
     ----------
     side : (N,) True for the nodes of S.
     """
-    crossing = side[graph.edges[:, 0]] != side[graph.edges[:, 1]]
-    weight = graph.weight[crossing].sum()
-    return Cut(side, float(weight), float(graph.volume[side].sum()), float(graph.volume[~side].sum()))
+    return Cut(side, *cut_sums(graph, side))
+
+
+@njit(cache=True)
+def cut_sums(graph: SurfaceGraph, side: BoolArray) -> tuple[float, float, float]:
+    """Weight of the cut between a set of nodes (N,) and the rest, volume of the set, and volume of the rest."""
+    weight = 0.0
+    for e in range(len(graph.edges)):
+        if side[graph.edges[e, 0]] != side[graph.edges[e, 1]]:
+            weight += graph.weight[e]
+    inside = outside = 0.0
+    for i in range(len(side)):
+        if side[i]:
+            inside += graph.volume[i]
+        else:
+            outside += graph.volume[i]
+    return weight, inside, outside
+
+
+@njit(cache=True)
+def ncc_of(weight: float, inside: float, outside: float) -> float:
+    """Normalized Cheeger cut of a cut with these sums; infinity if a side is empty."""
+    smaller = min(inside, outside)
+    return weight / smaller if smaller > 0.0 else np.inf
+
+
+@njit(cache=True)
+def distinct_cuts(sides: BoolArray) -> BoolArray:
+    """(K, N) the different bipartitions among some sides (C, N), in their order, node 0 on each side."""
+    kept = np.empty_like(sides)
+    count = 0
+    for side in sides:
+        is_new = True
+        for k in range(count):
+            is_new = is_new and not _are_equal(side, kept[k])
+        if is_new:
+            for i in range(len(side)):
+                kept[count, i] = side[i] == side[0]
+            count += 1
+    return kept[:count]
+
+
+@njit(cache=True)
+def _are_equal(side: BoolArray, canonical: BoolArray) -> bool:
+    """Whether two sets are the same bipartition; node 0 is in the second."""
+    for i in range(len(side)):
+        if (side[i] == side[0]) != canonical[i]:
+            return False
+    return True
 
 
 def cut_weight(graph: SurfaceGraph, side: BoolArray) -> float:
@@ -105,7 +151,7 @@ def balance_subgradient(graph: SurfaceGraph, cut: Cut) -> FloatArray:
 
 
 def sweep(graph: SurfaceGraph, values: FloatArray, criterion: Criterion = "ncc") -> Cut:
-    """Return the best cut among the upper level sets {i : values[i] > t} of a function. O(E + N log N).
+    """Return the best cut among the upper level sets {i : values[i] > t} of a function. O(E + N).
 
     Nodes of equal value always stay together; of equally good thresholds the lowest one is taken.
 
@@ -119,9 +165,7 @@ def sweep(graph: SurfaceGraph, values: FloatArray, criterion: Criterion = "ncc")
     The cut, whose ``side`` is the upper level set; it is empty (and both ratios are infinite) if all values are equal.
     """
     values = np.ascontiguousarray(values)
-    order = np.argsort(values)
-    threshold = _best_threshold(graph.edges, graph.weight, graph.volume, values, order, criterion == "ncut")
-    return cut_of(graph, values > threshold)
+    return cut_of(graph, best_level_set(graph, values, level_sets(graph, values), criterion == "ncut"))
 
 
 def valleys(graph: SurfaceGraph, values: FloatArray, most: int) -> list[Cut]:
@@ -134,87 +178,105 @@ def valleys(graph: SurfaceGraph, values: FloatArray, most: int) -> list[Cut]:
     values : (N,) finite.
     most : number of valleys, at most.
     """
-    order = np.argsort(values, kind="stable")
-    found = _valleys(graph.edges, graph.weight, graph.volume, order, _VALLEY * graph.total_volume, most)
-    above = np.arange(graph.node_count)[None, :] > found[:, None]
-    sides = np.zeros((len(found), graph.node_count), dtype=bool)
-    sides[:, order] = above
+    sides = valley_sides(level_sets(graph, np.ascontiguousarray(values)), most)
     return [cut_of(graph, side) for side in sides]
 
 
-@njit(cache=True)
-def _changes(edges, weight, order):  # type: ignore[no-untyped-def]
-    """(N,) changes from rank to rank of the weight of the cut after it, which is their running sum.
+class LevelSets(NamedTuple):
+    """The nodes by increasing values of a function, and the cuts between the first r + 1 of them and the rest."""
 
-    An edge between ranks a < b is cut by the thresholds after rank a, a + 1, ..., b - 1: its weight is added at a and
-    subtracted at b.
+    order: IntArray  # (N,)
+    weight: FloatArray  # (N,)
+    volume: FloatArray  # (N,) of the first r + 1 nodes
+
+
+@njit(cache=True)
+def level_sets(graph: SurfaceGraph, values: FloatArray) -> LevelSets:
+    """The level sets of a function (N,) on the nodes.
+
+    An edge between ranks a < b is cut after rank a, a + 1, ..., b - 1: its weight is added at a and subtracted at b.
     """
+    order = ascending(values)
     node_count = len(order)
     rank = np.empty(node_count, dtype=np.int32)
     for r in range(node_count):
         rank[order[r]] = r
-    change = np.zeros(node_count)
-    for e in range(len(edges)):
-        a = rank[edges[e, 0]]
-        b = rank[edges[e, 1]]
-        change[min(a, b)] += weight[e]
-        change[max(a, b)] -= weight[e]
-    return change
+    weight = np.zeros(node_count)
+    for e in range(len(graph.edges)):
+        a, b = rank[graph.edges[e, 0]], rank[graph.edges[e, 1]]
+        weight[min(a, b)] += graph.weight[e]
+        weight[max(a, b)] -= graph.weight[e]
+    volume = np.empty(node_count)
+    cut, below = 0.0, 0.0
+    for r in range(node_count):
+        cut += weight[r]
+        below += graph.volume[order[r]]
+        weight[r], volume[r] = cut, below
+    return LevelSets(order, weight, volume)
 
 
 @njit(cache=True)
-def _valleys(edges, weight, volume, order, width, most):  # type: ignore[no-untyped-def]
-    """The ranks after which the weight of the cut is the least within a width of volume to both sides."""
-    node_count = len(volume)
-    below = np.cumsum(volume[order])
-    cut = np.cumsum(_changes(edges, weight, order))
-    found = np.empty(most, dtype=np.int64)
-    count = 0
-    first = last = 0
+def best_level_set(graph: SurfaceGraph, values: FloatArray, levels: LevelSets, both_sides: bool) -> BoolArray:
+    """(N,) the upper level set of the least normalized cut, or of the least normalized Cheeger cut."""
+    node_count = len(values)
+    total = levels.volume[node_count - 1]
+    best_ratio = np.inf
+    best_rank = node_count - 1
     for r in range(node_count - 1):
-        while below[r] - below[first] > width:
-            first += 1
-        while last < node_count - 1 and below[last] - below[r] < width:
-            last += 1
-        if first == 0 or last == node_count - 1:
+        if values[levels.order[r]] == values[levels.order[r + 1]]:
             continue
-        lowest = True
-        for q in range(first, last + 1):
-            if cut[q] < cut[r] or (cut[q] == cut[r] and q < r):
-                lowest = False
-        if not lowest:
+        cut, below, above = levels.weight[r], levels.volume[r], total - levels.volume[r]
+        ratio = cut / below + cut / above if both_sides else cut / min(below, above)
+        if ratio < best_ratio:
+            best_ratio, best_rank = ratio, r
+    return _after(levels, best_rank)
+
+
+@njit(cache=True)
+def valley_sides(levels: LevelSets, most: int) -> BoolArray:
+    """(K, N) the upper level sets whose weight is the least within a width of volume to both sides, K <= most.
+
+    The least one comes first. A window over the ranks is moved along; ``queue`` has the ranks in it that are lower than
+    all later ones, so that the first is the lowest (Lemire, Streaming maximum-minimum filter using no more than three
+    comparisons per element, Nordic Journal of Computing 13, 2006).
+    """
+    weight, volume = levels.weight, levels.volume
+    node_count = len(weight)
+    width = _VALLEY * volume[node_count - 1]
+    found = np.empty(most, dtype=np.int64)
+    queue = np.empty(node_count, dtype=np.int32)
+    count = first = head = tail = 0
+    last = -1
+    for r in range(node_count - 1):
+        while volume[r] - volume[first] > width:
+            first += 1
+        while last < node_count - 1 and (last < r or volume[last] - volume[r] < width):
+            last += 1
+            while tail > head and weight[queue[tail - 1]] > weight[last]:
+                tail -= 1
+            queue[tail] = last
+            tail += 1
+        while queue[head] < first:
+            head += 1
+        if first == 0 or last == node_count - 1 or queue[head] != r:
             continue
         k = count
-        while k > 0 and cut[found[k - 1]] > cut[r]:
+        while k > 0 and weight[found[k - 1]] > weight[r]:
             if k < most:
                 found[k] = found[k - 1]
             k -= 1
         if k < most:
             found[k] = r
             count = min(count + 1, most)
-    return found[:count]
+    sides = np.empty((count, node_count), dtype=np.bool_)
+    for k in range(count):
+        sides[k] = _after(levels, found[k])
+    return sides
 
 
 @njit(cache=True)
-def _best_threshold(edges, weight, volume, values, order, both_sides):  # type: ignore[no-untyped-def]
-    """The value whose upper level set has the least ratio."""
-    node_count = len(volume)
-    change = _changes(edges, weight, order)
-    total = 0.0
-    for i in range(node_count):
-        total += volume[i]
-    best_ratio = np.inf
-    best_threshold = values[order[node_count - 1]]
-    cut = 0.0
-    below = 0.0
-    for r in range(node_count - 1):
-        cut += change[r]
-        below += volume[order[r]]
-        if values[order[r]] == values[order[r + 1]]:
-            continue
-        above = total - below
-        ratio = cut / below + cut / above if both_sides else cut / min(below, above)
-        if ratio < best_ratio:
-            best_ratio = ratio
-            best_threshold = values[order[r]]
-    return best_threshold
+def _after(levels: LevelSets, rank: int) -> BoolArray:
+    side = np.zeros(len(levels.order), dtype=np.bool_)
+    for r in range(rank + 1, len(levels.order)):
+        side[levels.order[r]] = True
+    return side

@@ -1,10 +1,11 @@
 """Cuts whose two sides are connected."""
 
 import numpy as np
+from numba import njit
 
-from segcore.arrays import BoolArray, IntArray, group_sums
-from segcore.graphs.cheeger import Cut, cut_of
-from segcore.graphs.surface_graph import SurfaceGraph, connected_components
+from segcore.arrays import BoolArray, IntArray
+from segcore.graphs.cheeger import Cut, cut_of, ncc_of
+from segcore.graphs.surface_graph import SurfaceGraph, components_within
 
 
 def with_connected_sides(graph: SurfaceGraph, cut: Cut) -> Cut:
@@ -14,32 +15,40 @@ def with_connected_sides(graph: SurfaceGraph, cut: Cut) -> Cut:
     its components touch that piece. The complement of each of them is therefore connected, and the best of them is cut
     off instead.
     """
-    pieces = _pieces(graph, cut.side)
-    if pieces.max() <= 1:
-        return cut
-    best = _best_piece(graph, pieces)
-    pieces = _pieces(graph, best.side)
-    if pieces.max() <= 1:
+    side = connected_side(graph, cut.side)
+    return cut if side is cut.side or (side == cut.side).all() else cut_of(graph, side)
+
+
+@njit(cache=True)
+def connected_side(graph: SurfaceGraph, side: BoolArray) -> BoolArray:
+    """(N,) ``with_connected_sides`` of the side (N,) of a cut."""
+    pieces, count = components_within(graph.edges, side)
+    if count <= 2:
+        return side
+    best = pieces == _best_piece(graph, pieces, count, -1)
+    pieces, count = components_within(graph.edges, best)
+    if count <= 2:
         return best
-    inside = pieces[np.argmax(best.side)]
-    return _best_piece(graph, pieces, excluded=int(inside))
+    inside = pieces[np.argmax(best)]
+    return pieces == _best_piece(graph, pieces, count, inside)
 
 
-def _pieces(graph: SurfaceGraph, side: BoolArray) -> IntArray:
-    """(N,) connected component of every node in the graph without the edges across the cut."""
-    kept = side[graph.edges[:, 0]] == side[graph.edges[:, 1]]
-    return connected_components(graph.edges[kept], graph.node_count)
-
-
-def _best_piece(graph: SurfaceGraph, pieces: IntArray, excluded: int | None = None) -> Cut:
-    """Cut off the piece with the least NCC against all other nodes."""
-    count = int(pieces.max()) + 1
-    ends = pieces[graph.edges]
-    crossing = ends[:, 0] != ends[:, 1]
-    border = group_sums(ends[crossing].ravel(), np.repeat(graph.weight[crossing], 2), count)
-    volume = group_sums(pieces, graph.volume, count)
-    smaller = np.minimum(volume, graph.total_volume - volume)
-    ncc = np.divide(border, smaller, out=np.full(count, np.inf), where=smaller > 0)
-    if excluded is not None:
-        ncc[excluded] = np.inf
-    return cut_of(graph, pieces == int(np.argmin(ncc)))
+@njit(cache=True)
+def _best_piece(graph: SurfaceGraph, pieces: IntArray, count: int, excluded: int) -> int:
+    """The piece with the least NCC against all other nodes."""
+    border, volume = np.zeros(count), np.zeros(count)
+    for e in range(len(graph.edges)):
+        a, b = pieces[graph.edges[e, 0]], pieces[graph.edges[e, 1]]
+        if a != b:
+            border[a] += graph.weight[e]
+            border[b] += graph.weight[e]
+    total = 0.0
+    for i in range(len(pieces)):
+        volume[pieces[i]] += graph.volume[i]
+        total += graph.volume[i]
+    best, least = 0, np.inf
+    for p in range(count):
+        ncc = ncc_of(border[p], volume[p], total - volume[p])
+        if p != excluded and ncc < least:
+            best, least = p, ncc
+    return best

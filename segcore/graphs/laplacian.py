@@ -6,7 +6,7 @@ import numpy as np
 from numba import njit
 
 from segcore.arrays import FloatArray, IntArray, LongArray
-from segcore.graphs.ordering import minimum_degree
+from segcore.graphs.ordering import minimum_degree, minimum_degree_of
 from segcore.graphs.surface_graph import IndexArray, Rows, SurfaceGraph, rows_of
 
 
@@ -83,6 +83,15 @@ def factorise_edges(edges: IntArray, weight: FloatArray, node_count: int) -> Lap
     Research 33, 1985; George and Liu, Computer solution of large sparse positive definite systems, 1981, ch. 5.
     """
     return Elimination.of(edges, node_count).factorise(weight)
+
+
+@njit(cache=True)
+def factor_of(rows: Rows, weight: FloatArray) -> LaplacianFactor:
+    """``factorise_edges`` of the rows of an edge list, for use in other kernels."""
+    order = minimum_degree_of(rows)
+    start, row = _structure(rows, order)
+    share, pivot = _eliminate(rows, weight[rows.edge], order, start, row)
+    return LaplacianFactor(order, start, row, share, pivot)
 
 
 @njit(cache=True)

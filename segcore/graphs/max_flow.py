@@ -1,14 +1,13 @@
 """Maximum flows between sources and sinks that are spread over all nodes of a graph."""
 
-from dataclasses import dataclass
 from typing import NamedTuple
 
 import numpy as np
 from numba import njit
 
 from segcore.arrays import BoolArray, FloatArray
-from segcore.graphs.laplacian import LaplacianFactor, factorise
-from segcore.graphs.surface_graph import IndexArray, SurfaceGraph
+from segcore.graphs.laplacian import LaplacianFactor, factor_of, substitute
+from segcore.graphs.surface_graph import IndexArray, SurfaceGraph, rows_of_edges
 
 
 class Arcs(NamedTuple):
@@ -19,8 +18,7 @@ class Arcs(NamedTuple):
     reverse: IndexArray  # (2 E,) the arc of the same edge in the other direction
 
 
-@dataclass(frozen=True, slots=True, eq=False)
-class Network:
+class Network(NamedTuple):
     """A graph prepared for many maximum flows."""
 
     graph: SurfaceGraph
@@ -30,27 +28,41 @@ class Network:
 
     @classmethod
     def of(cls, graph: SurfaceGraph) -> "Network":
-        rows = graph.rows()
-        reverse = _reverse_arcs(rows.edge, len(graph.edges))
-        arcs = Arcs(rows.start.view(np.uint32), rows.neighbour.view(np.uint32), reverse)
-        return cls(graph, arcs, graph.weight[rows.edge], factorise(graph))
+        """The network whose capacities are the weights of a graph."""
+        return network_of(graph)
 
     def minimum_cut(self, supply: FloatArray) -> BoolArray:
-        """(N,) True for the nodes of the largest set A of least cut(A) - supply(A), up to rounding.
+        """(N,) ``minimum_cut`` of the network."""
+        return minimum_cut(self, supply)
 
-        By the theorem of Ford and Fulkerson, A has the nodes at which supply is left over by a maximum flow from the
-        positive supplies to the negative ones. The flow starts as the electrical flow, which satisfies all supplies but
-        exceeds capacities. It is clipped to the capacities, which leaves an excess and a deficit at the ends of the
-        edge, in most cases close to each other.
 
-        Parameters
-        ----------
-        supply : (N,) with sum 0 over every component.
-        """
-        potential = self.factor.solve(supply)
-        residual, excess = _electrical_flow(self.arcs, self.capacity, potential)
-        distance = push(self.arcs, residual, excess)
-        return distance == len(distance)
+@njit(cache=True)
+def network_of(graph: SurfaceGraph) -> Network:
+    """``Network.of`` for use in other kernels."""
+    rows = rows_of_edges(graph.edges, len(graph.volume))
+    reverse = _reverse_arcs(rows.edge, len(graph.edges))
+    arcs = Arcs(rows.start.astype(np.uint32), rows.neighbour.astype(np.uint32), reverse)
+    return Network(graph, arcs, graph.weight[rows.edge], factor_of(rows, graph.weight))
+
+
+@njit(cache=True)
+def minimum_cut(network: Network, supply: FloatArray) -> BoolArray:
+    """(N,) True for the nodes of the largest set A of least cut(A) - supply(A), up to rounding.
+
+    By the theorem of Ford and Fulkerson, A has the nodes at which supply is left over by a maximum flow from the
+    positive supplies to the negative ones. The flow starts as the electrical flow, which satisfies all supplies but
+    exceeds capacities. It is clipped to the capacities, which leaves an excess and a deficit at the ends of the
+    edge, in most cases close to each other.
+
+    Parameters
+    ----------
+    supply : (N,) with sum 0 over every component.
+    """
+    order, start, row, share, pivot = network.factor
+    potential = substitute(order, start, row, share, pivot, supply)
+    residual, excess = _electrical_flow(network.arcs, network.capacity, potential)
+    distance = push(network.arcs, residual, excess)
+    return distance == len(distance)
 
 
 @njit(cache=True)

@@ -66,12 +66,13 @@ def minimum_degree(rows: Rows) -> IntArray:
     ----------
     Amestoy, Davis and Duff, An approximate minimum degree ordering algorithm, SIAM J. Matrix Anal. Appl. 17, 1996.
     """
-    dense = max(LEAST_DENSE_ROW, int(DENSE_ROW * (len(rows.start) - 1) ** 0.5))
-    return _minimum_degree(rows, dense)
+    return minimum_degree_of(rows)
 
 
 @njit(cache=True)
-def _minimum_degree(rows, dense):  # type: ignore[no-untyped-def]
+def minimum_degree_of(rows: Rows) -> IntArray:
+    """``minimum_degree`` for use in other kernels."""
+    dense = max(LEAST_DENSE_ROW, int(DENSE_ROW * (len(rows.start) - 1) ** 0.5))
     node_count = len(rows.start) - 1
     memory = rows.neighbour.copy()
     free = len(memory)

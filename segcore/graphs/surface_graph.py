@@ -8,7 +8,7 @@ from numba import njit
 from numpy.typing import NDArray
 from scipy.sparse import csr_matrix
 
-from segcore.arrays import FloatArray, IntArray, LongArray, distinct_pairs, group_sums, pair_keys
+from segcore.arrays import BoolArray, FloatArray, IntArray, LongArray, distinct_pairs, group_sums, pair_keys
 
 IndexArray: TypeAlias = NDArray[np.uint32]  # unsigned: compiled loops then need no test for negative indices
 
@@ -21,9 +21,8 @@ class Rows(NamedTuple):
     edge: IntArray  # (2 E,) the edge of the graph between the node and this neighbour
 
 
-@dataclass(frozen=True, slots=True, eq=False)
-class SurfaceGraph:
-    """An undirected graph without loops, each edge listed once.
+class SurfaceGraph(NamedTuple):
+    """An undirected graph without loops, each edge listed once. Kernels take it whole.
 
     The nodes are vertices of a mesh, its faces, or clusters of faces; the solvers do not depend on which.
     """
@@ -77,8 +76,7 @@ class SurfaceGraph:
         ----------
         nodes : (M,) distinct indices; node i of the result is node nodes[i] of this graph.
         """
-        edges, kept = _induced_edges(self.edges, nodes, self.node_count)
-        return SurfaceGraph(edges, self.weight[kept], self.volume[nodes], self.length[kept])
+        return induced(self, nodes)[0]
 
     def with_edges(self, pairs: IntArray, weight: FloatArray, length: FloatArray) -> "SurfaceGraph":
         """Return the graph with more edges between nodes that have none yet; parallel new edges are summed.
@@ -121,7 +119,7 @@ class EdgeIndex:
 
 def rows_of(edges: IntArray, node_count: int) -> Rows:
     """Return the adjacency lists of an edge list (E, 2); parallel edges are allowed. O(N + E)."""
-    return _rows(edges, node_count)
+    return rows_of_edges(edges, node_count)
 
 
 def weighted_degrees(edges: IntArray, weight: FloatArray, node_count: int) -> FloatArray:
@@ -136,11 +134,12 @@ def connected_components(edges: IntArray, node_count: int) -> IntArray:
     ----------
     edges : (E, 2) node pairs, in any order; loops and parallel edges are allowed.
     """
-    return _components(edges, node_count)
+    return components_of_edges(edges, node_count)
 
 
 @njit(cache=True)
-def _rows(edges, node_count):  # type: ignore[no-untyped-def]
+def rows_of_edges(edges: IntArray, node_count: int) -> Rows:
+    """``rows_of`` for use in other kernels."""
     start = np.zeros(node_count + 1, dtype=np.int32)
     for e in range(len(edges)):
         start[edges[e, 0] + 1] += 1
@@ -157,6 +156,12 @@ def _rows(edges, node_count):  # type: ignore[no-untyped-def]
             edge[filled[here]] = e
             filled[here] += 1
     return Rows(start, neighbour, edge)
+
+
+def induced(graph: SurfaceGraph, nodes: IntArray) -> tuple[SurfaceGraph, IntArray]:
+    """Return ``graph.subgraph(nodes)``, and the indices of its edges in the graph."""
+    edges, kept = _induced_edges(graph.edges, nodes, graph.node_count)
+    return SurfaceGraph(edges, graph.weight[kept], graph.volume[nodes], graph.length[kept]), kept
 
 
 @njit(cache=True)
@@ -181,28 +186,48 @@ def _induced_edges(edges, nodes, node_count):  # type: ignore[no-untyped-def]
 
 
 @njit(cache=True)
-def _components(edges, node_count):  # type: ignore[no-untyped-def]
-    """Union-find with path halving; the root of a component is its smallest node."""
+def components_within(edges: IntArray, side: BoolArray) -> tuple[IntArray, int]:
+    """(N,) the components of a graph without the edges between a set of nodes (N,) and the rest; their number."""
+    parent = np.arange(len(side)).astype(np.int32)
+    for e in range(len(edges)):
+        if side[edges[e, 0]] == side[edges[e, 1]]:
+            _join(parent, edges[e, 0], edges[e, 1])
+    return _numbered(parent)
+
+
+@njit(cache=True)
+def components_of_edges(edges: IntArray, node_count: int) -> IntArray:
+    """``connected_components`` for use in other kernels."""
     parent = np.arange(node_count).astype(np.int32)
     for e in range(len(edges)):
-        a = edges[e, 0]
-        b = edges[e, 1]
-        while parent[a] != a:
-            parent[a] = parent[parent[a]]
-            a = parent[a]
-        while parent[b] != b:
-            parent[b] = parent[parent[b]]
-            b = parent[b]
-        if a < b:
-            parent[b] = a
-        else:
-            parent[a] = b
+        _join(parent, edges[e, 0], edges[e, 1])
+    return _numbered(parent)[0]
+
+
+@njit(cache=True)
+def _join(parent, a, b):  # type: ignore[no-untyped-def]
+    """Union-find with path halving; the root of a component is its smallest node."""
+    while parent[a] != a:
+        parent[a] = parent[parent[a]]
+        a = parent[a]
+    while parent[b] != b:
+        parent[b] = parent[parent[b]]
+        b = parent[b]
+    if a < b:
+        parent[b] = a
+    else:
+        parent[a] = b
+
+
+@njit(cache=True)
+def _numbered(parent):  # type: ignore[no-untyped-def]
+    """(N,) the components 0, 1, ... by their smallest nodes, and their number."""
     count = 0
-    component = np.empty(node_count, dtype=np.int32)
-    for i in range(node_count):
+    component = np.empty(len(parent), dtype=np.int32)
+    for i in range(len(parent)):
         if parent[i] == i:
             component[i] = count
             count += 1
         else:
             component[i] = component[parent[i]]
-    return component
+    return component, count

@@ -1,14 +1,15 @@
 """Eigenvectors of the graph Laplacian: the relaxation of the normalized cut, p = 2."""
 
+from functools import cache
 from math import frexp, sqrt
 
 import numpy as np
 from numba import njit
-from scipy.linalg import eigh_tridiagonal
 
 from segcore.arrays import FloatArray, dot
 from segcore.graphs.laplacian import LaplacianFactor, factorise, substitute
 from segcore.graphs.surface_graph import SurfaceGraph
+from segcore.solvers.tridiagonal import diagonalise
 
 # Set by hand. TOLERANCE and CHECK_EVERY are compared with their neighbours in bench/RESULTS.md, "Constants and their
 # neighbours".
@@ -18,6 +19,8 @@ CHECK_EVERY = 3  # steps between tests of convergence, each of which solves a tr
 EXHAUSTED = 1e-12  # relative norm of the next basis vector below which the Krylov space is invariant
 LEAST_EXPONENT = -500  # of a pivot, to base 2: the squares of solutions stay below 2^1024, the end of the range
 START_SEED = 20130717  # any seed: a random start has a component along every eigenvector
+_NOISE = 4096  # random numbers, at least
+_SHIFT = 389  # between the parts of them from which the iteration starts and goes on
 
 
 def fiedler_vectors(graph: SurfaceGraph, count: int = 1) -> FloatArray:
@@ -52,61 +55,111 @@ def eigenvectors(graph: SurfaceGraph, factor: LaplacianFactor, count: int) -> Fl
     """``fiedler_vectors`` of a graph whose Laplacian has been factorised."""
     if factor.component_count != 1:
         raise ValueError("The graph is not connected: cut its components apart first.")
-    count = min(count, graph.node_count - 1)
+    return np.ascontiguousarray(eigenvectors_of(graph, factor, start_noise(graph.node_count), count).T)
+
+
+def start_noise(node_count: int) -> FloatArray:
+    """(M,) the random numbers from which Lanczos starts, M >= node_count."""
+    length = _NOISE
+    while length < node_count:
+        length *= 2
+    return _noise(length)
+
+
+@cache
+def _noise(length: int) -> FloatArray:
+    return np.random.default_rng(START_SEED).standard_normal(length)
+
+
+@njit(cache=True)
+def eigenvectors_of(graph: SurfaceGraph, factor: LaplacianFactor, noise: FloatArray, count: int) -> FloatArray:
+    """(min(count, N - 1), N) ``fiedler_vectors`` of a connected graph, as rows, from random numbers."""
     root_volume = np.sqrt(graph.volume)
-    vectors = _lanczos(factor, root_volume, count) / root_volume
-    largest = vectors[np.arange(count), np.abs(vectors).argmax(axis=1)]
-    return np.ascontiguousarray((vectors * np.sign(largest)[:, None]).T)
+    vectors = _lanczos(factor, root_volume, noise, min(count, len(root_volume) - 1))
+    for vector in vectors:
+        largest = 0
+        for i in range(len(vector)):
+            vector[i] /= root_volume[i]
+            if abs(vector[i]) > abs(vector[largest]):
+                largest = i
+        if vector[largest] < 0.0:
+            for i in range(len(vector)):
+                vector[i] = -vector[i]
+    return vectors
 
 
-def _lanczos(factor: LaplacianFactor, root_volume: FloatArray, count: int) -> FloatArray:
+@njit(cache=True)
+def _lanczos(factor, root_volume, noise, count):  # type: ignore[no-untyped-def]
     """(count, N) eigenvectors of D^1/2 L^+ D^1/2 orthogonal to the constant functions, largest eigenvalue first.
 
     Lanczos with full orthogonalisation, against the constant function too. If the Krylov space is invariant, the
     iteration goes on from a new random vector.
-
-    No sum depends on the number of threads of BLAS: the products are kernels of Cleave, and LAPACK solves the
-    tridiagonal problem by a method (MRRR) that only scales, copies and exchanges at most ``MOST_STEPS`` numbers by
-    BLAS. The default method of SciPy, divide and conquer, multiplies matrices by BLAS.
     """
     node_count = len(root_volume)
     steps = min(MOST_STEPS, node_count - 1)
-    rng = np.random.default_rng(START_SEED)
     factor = _in_range(factor)
     basis = np.empty((steps + 1, node_count))  # orthonormal rows
-    basis[0] = root_volume / sqrt(dot(root_volume, root_volume))
+    length = sqrt(dot(root_volume, root_volume))
+    for i in range(node_count):
+        basis[0, i] = root_volume[i] / length
     diagonal = np.empty(steps)
     beside = np.empty(steps)
-    mixture: FloatArray = np.empty((0, 0))
-    image = rng.standard_normal(node_count)
+    image = noise[:node_count].copy()
     _orthogonalise(image, basis[:1])
     for step in range(1, steps + 1):
         image, diagonal[step - 1], beside[step - 1], exhausted = _advance(factor, root_volume, basis, step, image)
         if exhausted:
-            image = rng.standard_normal(node_count)
+            for i in range(node_count):
+                image[i] = noise[(i + _SHIFT * step) % len(noise)]
             _orthogonalise(image, basis[: step + 1])
         elif step < steps and (step <= count or step % CHECK_EVERY != 0):
             continue
-        values, mixture = _largest_eigenpairs(diagonal[:step], beside[: step - 1], count)
-        residual = beside[step - 1] * np.abs(mixture[-1])
-        if not exhausted and (residual <= TOLERANCE * values).all():
+        if step == steps or (not exhausted and _has_converged(diagonal[:step], beside[:step], count)):
             break
-    eigenvectors: FloatArray = np.einsum("ji,jk->ik", mixture[:, ::-1], basis[1 : len(mixture) + 1])
-    return eigenvectors
+    return _combined(diagonal[:step], beside[:step], basis, count)
 
 
-def _in_range(factor: LaplacianFactor) -> LaplacianFactor:
+@njit(cache=True)
+def _in_range(factor):  # type: ignore[no-untyped-def]
     """The factor times a power of two, which changes no digit, if squares of solutions would leave the range."""
-    exponent = frexp(factor.pivot.min(where=factor.pivot > 0, initial=1.0))[1]
-    return factor._replace(pivot=factor.pivot * 2.0 ** max(0, LEAST_EXPONENT - exponent))
+    order, start, row, share, pivot = factor
+    least = 1.0
+    for value in pivot:
+        if value > 0.0:
+            least = min(least, value)
+    exponent = frexp(least)[1]
+    if exponent < LEAST_EXPONENT:
+        pivot = pivot * 2.0 ** (LEAST_EXPONENT - exponent)
+    return LaplacianFactor(order, start, row, share, pivot)
 
 
-def _largest_eigenpairs(diagonal: FloatArray, beside: FloatArray, count: int) -> tuple[FloatArray, FloatArray]:
-    """(K,) the K = min(N, count) largest eigenvalues of a tridiagonal matrix, ascending, and (N, K) eigenvectors."""
-    last = len(diagonal) - 1
-    chosen = (max(0, last + 1 - count), last)
-    values, vectors = eigh_tridiagonal(diagonal, beside, select="i", select_range=chosen, lapack_driver="stemr")
-    return np.asarray(values, dtype=np.float64), np.asarray(vectors, dtype=np.float64)
+@njit(cache=True)
+def _has_converged(diagonal, beside, count):  # type: ignore[no-untyped-def]
+    """Whether the residuals of the eigenvectors of the largest eigenvalues are below the tolerance."""
+    steps = len(diagonal)
+    values, last = diagonal.copy(), np.zeros((1, steps))
+    last[0, steps - 1] = 1.0
+    diagonalise(values, beside.copy(), last)
+    for k in np.argsort(-values)[:count]:
+        if beside[steps - 1] * abs(last[0, k]) > TOLERANCE * values[k]:
+            return False
+    return True
+
+
+@njit(cache=True)
+def _combined(diagonal, beside, basis, count):  # type: ignore[no-untyped-def]
+    """(count, N) the eigenvectors of the largest eigenvalues in the space of the rows of the basis after the first."""
+    steps = len(diagonal)
+    values, mixture = diagonal.copy(), np.eye(steps)
+    diagonalise(values, beside.copy(), mixture)
+    vectors = np.zeros((count, basis.shape[1]))
+    chosen = np.argsort(-values)[:count]
+    for row in range(count):
+        for j in range(steps):
+            share, direction = mixture[j, chosen[row]], basis[j + 1]
+            for i in range(len(direction)):
+                vectors[row, i] += share * direction[i]
+    return vectors
 
 
 @njit(cache=True)

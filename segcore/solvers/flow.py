@@ -2,16 +2,31 @@
 
 from itertools import islice
 
-from segcore.graphs.cheeger import Cut, balance_subgradient, cut_of, sweep, valleys
-from segcore.graphs.max_flow import Network
+import numpy as np
+from numba import njit
+
+from segcore.arrays import BoolArray, FloatArray
+from segcore.graphs.cheeger import (
+    Cut,
+    best_level_set,
+    cut_of,
+    cut_sums,
+    distinct_cuts,
+    level_sets,
+    ncc_of,
+    valley_sides,
+)
+from segcore.graphs.connected_sides import connected_side
+from segcore.graphs.max_flow import Network, minimum_cut, network_of
 from segcore.graphs.surface_graph import SurfaceGraph
-from segcore.solvers.fiedler import eigenvectors
+from segcore.solvers.fiedler import eigenvectors, eigenvectors_of
 from segcore.solvers.total_variation import TotalVariationFlow
 
 # Set by hand. The first three are compared with their neighbours in bench/RESULTS.md, "Constants and their neighbours".
 STEPS = 4  # of total variation flow from every eigenvector
 ITERATIONS = 5  # of split Bregman in a step
 WORST_IMPROVED = 1.35  # times the best value so far: cuts with a larger one are not improved
+VECTORS = 3  # eigenvectors after the constant one, for the candidates
 VALLEYS = 1  # of every eigenvector, among the candidates; set by hand
 LEAST_GAIN = 1e-12  # relative decrease of the value; a smaller one is rounding error
 
@@ -53,24 +68,37 @@ def flow_cut(graph: SurfaceGraph, *, count: int = 2) -> Cut:
     return min([best, *(improve(network, cut) for cut in promising)], key=_ncc).canonical
 
 
-def sweep_cuts(graph: SurfaceGraph, count: int = 3) -> list[Cut]:
-    """Return the best of the sweeps of several eigenvectors, improved by maximum flows, the sweeps, and their valleys.
+@njit(cache=True)
+def connected_sweeps(graph: SurfaceGraph, noise: FloatArray, count: int) -> BoolArray:
+    """(C, N) different cuts of a connected graph with connected sides; node 0 is on the side of each.
+
+    They are made of the best of the sweeps of several eigenvectors, improved by maximum flows, of the sweeps, and of
+    their valleys.
 
     Parameters
     ----------
     graph : connected, at least two nodes.
+    noise : see ``segcore.solvers.fiedler.start_noise``.
     count : how many eigenvectors after the constant one, at least 1.
-
-    Raises
-    ------
-    ValueError
-        If the graph is not connected.
     """
-    network = Network.of(graph)
-    vectors = eigenvectors(graph, network.factor, count).T
-    sweeps = [sweep(graph, values) for values in vectors]
-    necks = [cut for values in vectors for cut in valleys(graph, values, VALLEYS)]
-    return [cut.canonical for cut in (improve(network, min(sweeps, key=_ncc)), *sweeps, *necks)]
+    network = network_of(graph)
+    vectors = eigenvectors_of(graph, network.factor, noise, count)
+    sides = np.empty((1 + (1 + VALLEYS) * len(vectors), len(graph.volume)), dtype=np.bool_)
+    best, least, filled = 1, np.inf, 1 + len(vectors)
+    for v in range(len(vectors)):
+        levels = level_sets(graph, vectors[v])
+        sides[1 + v] = best_level_set(graph, vectors[v], levels, False)
+        ncc = ncc_of(*cut_sums(graph, sides[1 + v]))
+        if ncc < least:
+            best, least = 1 + v, ncc
+        for valley in valley_sides(levels, VALLEYS):
+            sides[filled] = valley
+            filled += 1
+    sides[0] = improved(network, sides[best])
+    different = distinct_cuts(sides[:filled])
+    for k in range(len(different)):
+        different[k] = connected_side(graph, different[k])
+    return distinct_cuts(different)
 
 
 def improve(network: Network, cut: Cut) -> Cut:
@@ -93,12 +121,27 @@ def improve(network: Network, cut: Cut) -> Cut:
     Andersen and Lang, An algorithm for improving graph partitions, SODA 2008; Hein and Setzer, Beyond spectral
     clustering: tight relaxations of balanced graph cuts, NIPS 2011.
     """
+    side = improved(network, cut.side)
+    return cut if side is cut.side else cut_of(network.graph, side)
+
+
+@njit(cache=True)
+def improved(network: Network, side: BoolArray) -> BoolArray:
+    """(N,) ``improve`` of the side (N,) of a cut."""
+    graph = network.graph
+    weight, inside, outside = cut_sums(graph, side)
+    ncc = ncc_of(weight, inside, outside)
+    supply = np.empty(len(side))
     while True:
-        supply = cut.ncc * balance_subgradient(network.graph, cut)
-        better = cut_of(network.graph, network.minimum_cut(supply))
-        if not better.ncc < cut.ncc * (1 - LEAST_GAIN):
-            return cut
-        cut = better
+        on_side, beside = (1.0, -inside / outside) if inside <= outside else (-outside / inside, 1.0)
+        for i in range(len(side)):
+            supply[i] = ncc * (on_side if side[i] else beside) * graph.volume[i]
+        better = minimum_cut(network, supply)
+        weight, inside, outside = cut_sums(graph, better)
+        least = ncc_of(weight, inside, outside)
+        if not least < ncc * (1 - LEAST_GAIN):
+            return side
+        side, ncc = better, least
 
 
 def _ncc(cut: Cut) -> float:

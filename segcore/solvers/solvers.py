@@ -8,7 +8,7 @@ from segcore.graphs.cheeger import Cut, sweep
 from segcore.graphs.surface_graph import SurfaceGraph
 from segcore.parameters import SegmentationParameters
 from segcore.solvers.fiedler import fiedler_vectors
-from segcore.solvers.flow import flow_cut, sweep_cuts
+from segcore.solvers.flow import flow_cut
 from segcore.solvers.inverse_power import inverse_power_cut
 from segcore.solvers.p_laplacian import p_laplacian_cut
 from segcore.solvers.split_bregman import split_bregman_cut
@@ -52,8 +52,3 @@ SOLVERS: dict[str, Solver] = {
     "split_bregman": split_bregman,
     "p_laplacian": p_laplacian,
 }
-
-
-def candidate_cuts(graph: SurfaceGraph, parameters: SegmentationParameters, rng: np.random.Generator) -> list[Cut]:
-    """Return cuts to choose from: the sweeps of several eigenvectors for ``flow``, the cut of any other solver."""
-    return sweep_cuts(graph) if parameters.solver == "flow" else [SOLVERS[parameters.solver](graph, parameters, rng)]

@@ -75,7 +75,7 @@ def test_a_boundary_falls_into_the_groove_beside_it():
     middle = surface.vertices[surface.edge_vertices].mean(axis=1)[:, 2]
     groove = np.abs(middle) < 0.008
     weight = nodes.graph.weight * np.where(groove, 0.03, 1.0)
-    grooved = replace(nodes, graph=replace(nodes.graph, weight=weight))
+    grooved = replace(nodes, graph=nodes.graph._replace(weight=weight))
     size = np.sqrt(surface.areas.sum())
     for offset, falls in ((0.7, True), (1.6, False)):
         tree = two_sides(nodes.points[:, 2] > offset * BAND * size)

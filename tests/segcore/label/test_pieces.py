@@ -30,7 +30,7 @@ def test_an_edge_whose_pieces_have_none_has_the_mean_affinity_of_all():
     kept = (np.sort(refinement.parent[pieces.graph.edges], axis=1) != lost).any(axis=1)
     assert not kept.all()
     full = pieces.graph
-    graph = replace(full, edges=full.edges[kept], weight=full.weight[kept], length=full.length[kept])
+    graph = full._replace(edges=full.edges[kept], weight=full.weight[kept], length=full.length[kept])
     whole = whole_faces(replace(pieces, graph=graph), refinement, SURFACE).graph
     assert np.isclose(whole.weight[0] / whole.length[0], graph.weight.sum() / graph.length.sum())
     np.testing.assert_allclose(whole.weight[1:], whole_faces(pieces, refinement, SURFACE).graph.weight[1:])
