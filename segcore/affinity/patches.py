@@ -6,8 +6,9 @@ The number of patches does not grow with the mesh, and with it the cost of rays,
 from dataclasses import dataclass
 
 import numpy as np
+from numba import njit
 
-from segcore.arrays import FloatArray, IntArray, LongArray, at_least, group_sums
+from segcore.arrays import FloatArray, IntArray, at_least, group_sums
 from segcore.clean.surface import Surface
 from segcore.coarsen.matching import coarsen
 from segcore.graphs.laplacian import Elimination
@@ -21,6 +22,7 @@ _MOST_NEIGHBOURS, _FEW = 32, 250
 _LARGEST_SHARE = 1.5  # largest patch in mean areas: patches of similar size; set by hand
 _SMALLEST_FACE = 1e-4  # least area of a face in mean areas, as in affinity/mesh_graphs.py
 _SHORTEST_STEP = 0.1  # least distance of two centres, in the square root of the mean area of a patch; set by hand
+_ROW, _COLUMN = (0, 0, 0, 1, 1, 2), (0, 1, 2, 1, 2, 2)  # of the six entries of a symmetric matrix
 _FLAT = 1e-3  # of a squared mean distance: keeps gradients of patches with few neighbours finite; set by hand
 
 
@@ -59,36 +61,55 @@ class Patches:
 
     def gradients(self, values: FloatArray) -> FloatArray:
         """(P, 3) the gradient of values (P,) in the tangent plane of every patch, by least squares over neighbours."""
-        gradient = np.zeros((len(self.area), 3))
-        joined, place = np.unique(self.pairs, return_inverse=True)  # the others have no neighbours
-        gradient[joined] = _gradients(
-            place.reshape(-1, 2), self.border / self.distance, self.centre[joined], self.normal[joined], values[joined]
-        )
-        return gradient
+        return _gradients(self.pairs, self.border / self.distance, self.centre, self.normal, values)
 
 
+@njit(cache=True)
 def _gradients(
-    pairs: LongArray, weight: FloatArray, centre: FloatArray, normal: FloatArray, values: FloatArray
+    pairs: IntArray, weight: FloatArray, centre: FloatArray, normal: FloatArray, values: FloatArray
 ) -> FloatArray:
+    """``Patches.gradients``; 0 for patches without neighbours."""
     count = len(centre)
-    here, there = np.concatenate([pairs, pairs[:, ::-1]]).T
-    weight = np.tile(weight, 2)
-    step = centre[there] - centre[here]
-    step -= np.einsum("ij,ij->i", step, normal[here])[:, None] * normal[here]
-    rise = weight * (values[there] - values[here])
-    moment = np.empty((count, 3, 3))
-    right = np.empty((count, 3))
-    for i in range(3):
-        right[:, i] = group_sums(here, rise * step[:, i], count)
-        for j in range(i, 3):
-            moment[:, i, j] = moment[:, j, i] = group_sums(here, weight * step[:, i] * step[:, j], count)
-    size = np.trace(moment, axis1=1, axis2=2)
-    safe = _FLAT * size + np.finfo(float).tiny
-    moment += safe[:, None, None] * np.eye(3)
-    # Along the normal there is nothing to fit; any positive number there keeps the system regular.
-    moment += size[:, None, None] * np.einsum("ki,kj->kij", normal, normal)
-    gradient: FloatArray = np.linalg.solve(moment, right[:, :, None])[:, :, 0].astype(np.float64, copy=False)
+    moment, right = np.zeros((count, 6)), np.zeros((count, 3))
+    step = np.empty(3)
+    for q in range(len(pairs)):
+        rise = values[pairs[q, 1]] - values[pairs[q, 0]]
+        for end in range(2):
+            here = pairs[q, end]
+            out = 0.0
+            for k in range(3):
+                step[k] = centre[pairs[q, 1], k] - centre[pairs[q, 0], k]
+                out += step[k] * normal[here, k]
+            for k in range(3):
+                step[k] -= out * normal[here, k]
+                right[here, k] += weight[q] * rise * step[k]
+            for k in range(6):
+                moment[here, k] += weight[q] * step[_ROW[k]] * step[_COLUMN[k]]
+    gradient = np.zeros((count, 3))
+    for i in range(count):
+        size = moment[i, 0] + moment[i, 3] + moment[i, 5]
+        if size > 0.0:
+            # Along the normal there is nothing to fit; any positive number there keeps the system regular.
+            for k in range(6):
+                moment[i, k] = moment[i, k] / size + normal[i, _ROW[k]] * normal[i, _COLUMN[k]]
+            for k in (0, 3, 5):
+                moment[i, k] += _FLAT
+            for k in range(3):
+                right[i, k] /= size
+            _solve(moment[i], right[i], gradient[i])
     return gradient
+
+
+@njit(cache=True)
+def _solve(matrix: FloatArray, right: FloatArray, solution: FloatArray) -> None:
+    """Solve a symmetric positive definite 3 x 3 system by its adjugate: xx, xy, xz, yy, yz, zz."""
+    a, b, c, d, e, f = matrix
+    adjugate = (d * f - e * e, c * e - b * f, b * e - c * d, a * f - c * c, b * c - a * e, a * d - b * b)
+    determinant = a * adjugate[0] + b * adjugate[1] + c * adjugate[2]
+    x, y, z = right
+    solution[0] = (adjugate[0] * x + adjugate[1] * y + adjugate[2] * z) / determinant
+    solution[1] = (adjugate[1] * x + adjugate[3] * y + adjugate[4] * z) / determinant
+    solution[2] = (adjugate[2] * x + adjugate[4] * y + adjugate[5] * z) / determinant
 
 
 def patches_of(surface: Surface, affinity: FloatArray, length: FloatArray, rng: np.random.Generator) -> Patches:

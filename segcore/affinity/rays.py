@@ -12,7 +12,7 @@ import numpy as np
 from numba import njit
 from numpy.typing import NDArray
 
-from segcore.arrays import FloatArray, IntArray
+from segcore.arrays import FloatArray, IntArray, LongArray
 from segcore.mesh import face_centroids
 
 _LEAF = 4  # faces in a leaf, at most; set by hand
@@ -74,6 +74,13 @@ class _Stack(NamedTuple):
 
     node: IntArray  # (64,)
     entry: NDArray[np.float32]  # (64,)
+
+
+class Budget(NamedTuple):
+    """What is left of the nodes that rays may visit, and memory for the search."""
+
+    left: LongArray  # (1,)
+    stack: _Stack
 
 
 @njit(cache=True)
@@ -155,14 +162,28 @@ def _boxes(corners, leaves):  # type: ignore[no-untyped-def]
 
 
 @njit(cache=True)
+def budget_of_visits() -> Budget:
+    """A budget for the rays that are cast one after the other."""
+    return Budget(
+        np.array([_VISITS_AT_FIRST]), _Stack(np.empty(_DEPTH, dtype=np.int32), np.empty(_DEPTH, dtype=np.float32))
+    )
+
+
+@njit(cache=True)
+def inner_distance(caster: RayCaster, origin: FloatArray, direction: FloatArray, budget: Budget) -> float:
+    """``RayCaster.inner_distances`` of one ray, for use in other kernels."""
+    left = budget.left[0] + _VISITS
+    distance, visits = _inner_distance(caster, _ray(origin, direction), budget.stack, left)
+    budget.left[0] = left - visits
+    return distance
+
+
+@njit(cache=True)
 def _inner_distances(caster: RayCaster, origins: FloatArray, directions: FloatArray) -> FloatArray:
     distances = np.empty(len(origins))
-    stack = _Stack(np.empty(_DEPTH, dtype=np.int32), np.empty(_DEPTH, dtype=np.float32))
-    left = _VISITS_AT_FIRST
+    budget = budget_of_visits()
     for i in range(len(origins)):
-        left += _VISITS
-        distances[i], visits = _inner_distance(caster, _ray(origins[i], directions[i]), stack, left)
-        left -= visits
+        distances[i] = inner_distance(caster, origins[i], directions[i], budget)
     return distances
 
 

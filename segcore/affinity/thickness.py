@@ -6,13 +6,15 @@ start at places spread over its faces, around the normals of these faces, so tha
 """
 
 from dataclasses import dataclass
+from functools import cache
+from typing import NamedTuple
 
 import numpy as np
 from numba import njit
 
-from segcore.affinity.frames import tangent_frames
+from segcore.affinity.frames import tangent_frame
 from segcore.affinity.patches import Patches
-from segcore.affinity.rays import RayCaster
+from segcore.affinity.rays import RayCaster, budget_of_visits, inner_distance
 from segcore.arrays import FloatArray, IntArray, LongArray, at_least
 from segcore.clean.surface import Surface
 
@@ -52,10 +54,8 @@ def patch_thickness(surface: Surface, patches: Patches) -> Thickness:
     chosen = _measurable(patches)
     if len(chosen) == 0:
         return Thickness(*np.zeros((2, len(patches.area))))
-    rays = _rays(surface, patches, chosen, size)
-    distance = RayCaster.of(surface.vertices, surface.faces).inner_distances(rays.origins, rays.directions)
     value, confidence = np.zeros((2, len(patches.area)))
-    value[chosen], confidence[chosen] = _typical(distance.reshape(-1, RAYS), rays.cosines.reshape(-1, RAYS))
+    value[chosen], confidence[chosen] = _typical(_distances(surface, patches, chosen, size), _disc()[:, 2])
     known = value > 0
     logarithm = np.zeros(len(value))
     logarithm[known] = np.log(value[known] / size)
@@ -79,52 +79,88 @@ def _measurable(patches: Patches) -> LongArray:
     return np.flatnonzero(np.bincount(patches.of_face, minlength=len(patches.area)) >= 4)
 
 
-@dataclass(frozen=True, slots=True, eq=False)
-class _Rays:
-    """The rays of some patches: ``RAYS`` of the first, then of the second, ..."""
+class _Samples(NamedTuple):
+    """The faces of some patches, and where their rays start."""
 
-    origins: FloatArray  # (N, 3)
-    directions: FloatArray  # (N, 3) unit vectors
-    cosines: FloatArray  # (N,) of the angle to the inward normal
+    face: IntArray  # (F,) the faces, by patch
+    first: LongArray  # (P + 1,) patch p has the faces face[first[p]:first[p + 1]]
+    chosen: LongArray  # (K,) the patches that rays are cast from
+    normal: FloatArray  # (P, 3) normals that slivers take
+    start: float  # distance below the surface at which rays start
 
 
-def _rays(surface: Surface, patches: Patches, chosen: LongArray, size: float) -> _Rays:
-    face, place = _sample_faces(patches.of_face, surface.areas, len(patches.area), chosen)
-    corners = surface.vertices[surface.faces[face]]
-    inward = -surface.normals[face]
-    is_sliver = ~inward.any(axis=1)
-    inward[is_sliver] = -np.repeat(patches.normal[chosen], RAYS, axis=0)[is_sliver]
-    # The place inside the triangle is a low-discrepancy pair: the fraction that is left from the choice of the face,
-    # and the golden ratio sequence.
-    number = np.tile(np.arange(RAYS), len(chosen))
-    root = np.sqrt(place)
-    other = np.modf(0.5 + number * _GOLDEN_RATIO)[0]
-    weights = np.stack([1.0 - root, root * (1.0 - other), root * other], axis=1)
-    origins = np.einsum("ij,ijk->ik", weights, corners) + _START * size * inward
+class _Faces(NamedTuple):
+    """The faces of a surface."""
+
+    corner: IntArray  # (F, 3)
+    vertices: FloatArray  # (V, 3)
+    normal: FloatArray  # (F, 3), 0 for slivers
+    area: FloatArray  # (F,) > 0
+
+
+@cache
+def _disc() -> FloatArray:
+    """(RAYS, 4) for every ray: its components along the frame (u, v, normal), and its place in a triangle, 0 to 1."""
+    number = np.arange(RAYS)
     # The spokes of the disc follow another order than the places; otherwise all rays from one side of the patch would
     # have similar directions.
     spoke = (number * _STRIDE) % RAYS
     sine = np.sin(_HALF_ANGLE) * np.sqrt((spoke + 0.5) / RAYS)
-    cosine = np.sqrt(1.0 - sine**2)
     turn = _GOLDEN_ANGLE * spoke
-    u, v = tangent_frames(inward)
-    directions = (sine * np.cos(turn))[:, None] * u + (sine * np.sin(turn))[:, None] * v + cosine[:, None] * inward
-    return _Rays(origins, directions, cosine)
+    place = np.modf(0.5 + number * _GOLDEN_RATIO)[0]
+    return np.stack([sine * np.cos(turn), sine * np.sin(turn), np.sqrt(1.0 - sine**2), place], axis=1)
 
 
-def _sample_faces(of_face: IntArray, areas: FloatArray, count: int, chosen: LongArray) -> tuple[IntArray, FloatArray]:
-    """Faces at ``RAYS`` equal steps of area through some patches, and the position of the step in the face, 0 to 1."""
-    order = np.argsort(of_face, kind="stable").astype(np.int32)
-    sizes = at_least(areas, _SMALLEST_FACE)[order]
-    end = np.cumsum(sizes)
-    last = np.cumsum(np.bincount(of_face, minlength=count)) - 1
-    high = end[last]
-    low = np.concatenate([[0.0], high[:-1]])
-    steps = (np.arange(RAYS) + 0.5) / RAYS
-    wanted = (low[chosen, None] + (high - low)[chosen, None] * steps).ravel()
-    found = np.minimum(np.searchsorted(end, wanted), len(order) - 1)
-    place = np.clip((wanted - (end[found] - sizes[found])) / sizes[found], 0.0, 1.0)
-    return order[found], place
+def _distances(surface: Surface, patches: Patches, chosen: LongArray, size: float) -> FloatArray:
+    """(K, RAYS) the distances at which the rays of some patches leave the body; infinity if they do not."""
+    count = len(patches.area)
+    order = np.argsort(patches.of_face, kind="stable").astype(np.int32)
+    first = np.concatenate([[0], np.cumsum(np.bincount(patches.of_face, minlength=count))])
+    faces = _Faces(surface.faces, surface.vertices, surface.normals, at_least(surface.areas, _SMALLEST_FACE))
+    samples = _Samples(order, first, chosen, patches.normal, _START * size)
+    return _cast(RayCaster.of(surface.vertices, surface.faces), faces, samples, _disc())
+
+
+@njit(cache=True)
+def _cast(caster: RayCaster, faces: _Faces, samples: _Samples, disc: FloatArray) -> FloatArray:
+    """``_distances``: the rays of a patch start at equal steps of area through its faces.
+
+    The place inside the triangle is a low-discrepancy pair: the fraction that is left from the choice of the face, and
+    the golden ratio sequence.
+    """
+    rays = len(disc)
+    distance = np.empty((len(samples.chosen), rays))
+    budget = budget_of_visits()
+    origin, inward, u, v = np.empty(3), np.empty(3), np.empty(3), np.empty(3)
+    for row in range(len(distance)):
+        patch = samples.chosen[row]
+        place, last = samples.first[patch], samples.first[patch + 1] - 1
+        total = 0.0
+        for k in range(place, last + 1):
+            total += faces.area[samples.face[k]]
+        passed = 0.0  # area of the faces before the one at ``place``
+        for j in range(rays):
+            wanted = (j + 0.5) / rays * total
+            while place < last and passed + faces.area[samples.face[place]] < wanted:
+                passed += faces.area[samples.face[place]]
+                place += 1
+            f = samples.face[place]
+            root = np.sqrt(min(max((wanted - passed) / faces.area[f], 0.0), 1.0))
+            is_sliver = faces.normal[f, 0] == 0.0 and faces.normal[f, 1] == 0.0 and faces.normal[f, 2] == 0.0
+            a, b, c = faces.corner[f, 0], faces.corner[f, 1], faces.corner[f, 2]
+            for i in range(3):
+                inward[i] = -samples.normal[patch, i] if is_sliver else -faces.normal[f, i]
+                origin[i] = (
+                    (1.0 - root) * faces.vertices[a, i]
+                    + root * (1.0 - disc[j, 3]) * faces.vertices[b, i]
+                    + root * disc[j, 3] * faces.vertices[c, i]
+                    + samples.start * inward[i]
+                )
+            tangent_frame(inward, u, v)
+            for i in range(3):
+                u[i] = disc[j, 0] * u[i] + disc[j, 1] * v[i] + disc[j, 2] * inward[i]
+            distance[row, j] = inner_distance(caster, origin, u, budget)
+    return distance
 
 
 @njit(cache=True)
@@ -133,7 +169,8 @@ def _typical(distances: FloatArray, cosines: FloatArray) -> tuple[FloatArray, Fl
 
     Parameters
     ----------
-    distances, cosines : (P, RAYS); the distance of a ray without a hit is infinity.
+    distances : (P, RAYS), infinity for a ray without a hit.
+    cosines : (RAYS,)
     """
     count, rays = distances.shape
     value = np.zeros(count)
@@ -153,7 +190,7 @@ def _typical(distances: FloatArray, cosines: FloatArray) -> tuple[FloatArray, Fl
         total, weight = 0.0, 0.0
         for j in range(rays):
             if abs(distances[i, j] - middle) <= spread:
-                total += cosines[i, j] * distances[i, j]
-                weight += cosines[i, j]
+                total += cosines[j] * distances[i, j]
+                weight += cosines[j]
         value[i] = total / weight if weight > 0.0 else middle
     return value, confidence

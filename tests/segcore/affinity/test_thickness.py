@@ -61,15 +61,15 @@ def test_a_body_turned_inside_out_is_as_thick():
 @given(st.integers(0, 2**32 - 1), st.floats(0, 1))
 def test_the_typical_distance_is_the_weighted_mean_within_a_deviation_of_the_median(seed, share_of_misses):
     rng = np.random.default_rng(seed)
-    distances, cosines = rng.lognormal(size=(6, 24)), rng.uniform(0.5, 1, (6, 24))
+    distances, cosines = rng.lognormal(size=(6, 24)), rng.uniform(0.5, 1, 24)
     distances[rng.random(distances.shape) < share_of_misses] = np.inf
     value, confidence = _typical(distances, cosines)
     hits = np.isfinite(distances)
     np.testing.assert_allclose(confidence, hits.mean(axis=1))
-    for found, row, hit, weights in zip(value, distances, hits, cosines, strict=True):
+    for found, row, hit in zip(value, distances, hits, strict=True):
         if not hit.any():
             assert found == 0
             continue
         near = hit & (np.abs(row - np.median(row[hit])) <= row[hit].std() * (1 + 1e-9) + 1e-9)
-        expected = np.average(row[near], weights=weights[near]) if near.any() else np.median(row[hit])
+        expected = np.average(row[near], weights=cosines[near]) if near.any() else np.median(row[hit])
         assert found == pytest.approx(expected)
