@@ -32,6 +32,7 @@ class CutSums(NamedTuple):
     """Sums over the borders of N cuts, and over both sides."""
 
     border: FloatArray  # (N,) length
+    weight: FloatArray  # (N,)
     contact: FloatArray  # (N,) length of the contacts between bodies in it
     flat: FloatArray  # (N,) length of what runs between coplanar faces
     thickness: FloatArray  # (N,) mean along the border
@@ -42,32 +43,45 @@ class CutSums(NamedTuple):
 
 
 @njit(cache=True)
-def sums_of_cuts(part: SegmentFields, small: BoolArray, body_area: FloatArray) -> tuple[SideSums, CutSums]:
+def sums_of_cuts(part: SegmentFields, chosen: BoolArray, body_area: FloatArray) -> tuple[SideSums, CutSums]:
     """The sums of cuts of a segment.
 
     Parameters
     ----------
-    small : (N, M) the side of less area of every cut.
+    chosen : (N, M) one side of every cut.
     body_area : (B,) the areas of all bodies.
     """
-    count = len(small)
+    count = len(chosen)
     sides = SideSums(
         np.zeros((count, 2)), np.zeros((count, 2)), np.zeros((count, 2)), np.zeros((count, 2)), np.zeros((count, 2)),
         np.zeros((count, 2)), np.zeros((count, 2)), np.zeros((count, 2)), np.zeros((count, 2)), np.zeros((count, 2)),
         np.zeros((count, 2, 3)), np.zeros((count, 2, 3)),
     )  # fmt: skip
     cuts = CutSums(
-        np.zeros(count), np.zeros(count), np.zeros(count), np.zeros(count), np.zeros(count), np.zeros(count),
+        np.zeros(count), np.zeros(count), np.zeros(count), np.zeros(count), np.zeros(count), np.zeros(count), np.zeros(count),
         np.full(count, -1, dtype=np.int32), np.zeros(count),
     )  # fmt: skip
     for n in range(count):
-        _add_edges(part, small[n], n, sides, cuts)
-        _add_nodes(part, small[n], n, sides)
-        axes = _principal_axes(part, small[n], n, sides)
-        cuts.boxed[n] = _area_in_box(part, small[n], axes)
-        _add_pieces(part, small[n], n, sides, cuts)
-        _add_bodies(part, small[n], n, body_area, sides, cuts)
+        small = _smaller(part, chosen[n])
+        _add_edges(part, small, n, sides, cuts)
+        _add_nodes(part, small, n, sides)
+        axes = _principal_axes(part, small, n, sides)
+        cuts.boxed[n] = _area_in_box(part, small, axes)
+        _add_pieces(part, small, n, sides, cuts)
+        _add_bodies(part, small, n, body_area, sides, cuts)
     return sides, cuts
+
+
+@njit(cache=True)
+def _smaller(part: SegmentFields, side: BoolArray) -> BoolArray:
+    """(M,) the side of less area; the given one of two equals."""
+    inside = outside = 0.0
+    for i in range(len(side)):
+        if side[i]:
+            inside += part.volume[i]
+        else:
+            outside += part.volume[i]
+    return side if inside <= outside else ~side
 
 
 @njit(cache=True)
@@ -81,6 +95,7 @@ def _add_edges(part: SegmentFields, small: BoolArray, n: int, sides: SideSums, c
             sides.length[n, row] += length
         else:
             cuts.border[n] += length
+            cuts.weight[n] += part.weight[e]
             cuts.flat[n] += length * part.flat[e]
             cuts.thickness[n] += length * 0.5 * (part.thickness[a] + part.thickness[b])
             if part.body[a] != part.body[b]:

@@ -10,7 +10,7 @@ from segcore.clean.edge_geometry import dihedral_angles, edge_lengths
 from segcore.clean.surface import Surface
 from segcore.coarsen.clusters import Clusters
 from segcore.cut.bodies import Bodies, pieces_of
-from segcore.graphs.surface_graph import EdgeIndex, SurfaceGraph
+from segcore.graphs.surface_graph import EdgeIndex, SurfaceGraph, induced_edges
 
 _COPLANAR = np.deg2rad(1.0)  # largest dihedral angle of two faces of a plane; set by hand
 
@@ -26,9 +26,8 @@ class ClusterFields:
     open_border: FloatArray  # (N,) length of the edges that have one face
     flat: FloatArray  # (E,) share of each edge of the graph that runs between coplanar faces
     degree: FloatArray  # (N,) total length of the edges of every cluster
-    index: EdgeIndex  # of the edges of the graph
     bodies: Bodies
-    mean_affinity: float  # of the edges inside the bodies, weighted by length
+    whole: "Whole"
 
     @classmethod
     def of(
@@ -47,6 +46,8 @@ class ClusterFields:
         of_cluster = np.zeros(count, dtype=np.int32) if body is None else body
         inside = of_cluster[graph.edges[:, 0]] == of_cluster[graph.edges[:, 1]]
         length = float(graph.length[inside].sum())
+        affinity = float(graph.weight[inside].sum()) / length if length > 0.0 else 1.0
+        bodies = Bodies.of(of_cluster, graph.volume, points)
         return cls(
             graph=graph,
             points=points,
@@ -55,9 +56,10 @@ class ClusterFields:
             open_border=np.zeros(count) if open_border is None else open_border,
             flat=np.zeros(len(graph.edges)) if flat is None else flat,
             degree=group_sums(graph.edges.ravel(), np.repeat(graph.length, 2), count),
-            index=EdgeIndex.of(graph),
-            bodies=Bodies.of(of_cluster, graph.volume, points),
-            mean_affinity=float(graph.weight[inside].sum()) / length if length > 0.0 else 1.0,
+            bodies=bodies,
+            whole=Whole(
+                graph.total_volume, bodies.area, bodies.repeats, float(np.log(bodies.count)), float(np.log(affinity))
+            ),
         )
 
     def inside(self, segment: "Segment") -> "SegmentFields":
@@ -68,7 +70,7 @@ class ClusterFields:
             edges=graph.edges,
             weight=graph.weight,
             length=graph.length,
-            flat=self.flat[self.index.find(nodes[graph.edges])],
+            flat=self.flat[induced_edges(self.graph.edges, nodes, self.graph.node_count)[1]],
             volume=graph.volume,
             degree=self.degree[nodes],
             thickness=self.thickness[nodes],
@@ -88,6 +90,16 @@ class Segment:
     graph: SurfaceGraph  # the edges inside
     depth: int  # number of cuts above it, without the splits between components
     parent_ncut: float  # normalized cut of the last of them; 0 if there is none
+
+
+class Whole(NamedTuple):
+    """What the features of all cuts share, for compiled kernels."""
+
+    total: float  # area
+    body_area: FloatArray  # (B,)
+    repeats: IntArray  # (B,) see ``Bodies``
+    log_bodies: float  # logarithm of the number of bodies
+    log_affinity: float  # logarithm of the mean affinity of the edges inside the bodies, weighted by length
 
 
 class SegmentFields(NamedTuple):

@@ -228,7 +228,7 @@ class LearnedRule:
 
     def features(self, segment: Segment, inside: SegmentFields, candidates: Sequence[Cut]) -> FloatArray:
         """(N, M) features of the candidates, see ``segcore.cut.features``."""
-        return cut_features(self._fields, segment, inside, candidates)
+        return cut_features(self._fields, segment, inside, np.stack([cut.side for cut in candidates]))
 
     def _kept(self, features: FloatArray) -> FloatArray:
         """(N,) the share of the pairs across each candidate that people keep together."""

@@ -78,7 +78,7 @@ def _symmetric_sweeps(graph: SurfaceGraph, image: IntArray, noise: FloatArray) -
     best, least, filled, found = 1, np.inf, 1, 0
     for part in even[:evens]:
         levels = level_sets(graph, part)
-        sides[filled] = best_level_set(graph, part, levels, False)
+        sides[filled] = best_level_set(part, levels, False)
         ncc = ncc_of(*cut_sums(graph, sides[filled]))
         if ncc < least:
             best, least = filled, ncc

@@ -165,7 +165,7 @@ def sweep(graph: SurfaceGraph, values: FloatArray, criterion: Criterion = "ncc")
     The cut, whose ``side`` is the upper level set; it is empty (and both ratios are infinite) if all values are equal.
     """
     values = np.ascontiguousarray(values)
-    return cut_of(graph, best_level_set(graph, values, level_sets(graph, values), criterion == "ncut"))
+    return cut_of(graph, best_level_set(values, level_sets(graph, values), criterion == "ncut"))
 
 
 def valleys(graph: SurfaceGraph, values: FloatArray, most: int) -> list[Cut]:
@@ -216,7 +216,7 @@ def level_sets(graph: SurfaceGraph, values: FloatArray) -> LevelSets:
 
 
 @njit(cache=True)
-def best_level_set(graph: SurfaceGraph, values: FloatArray, levels: LevelSets, both_sides: bool) -> BoolArray:
+def best_level_set(values: FloatArray, levels: LevelSets, both_sides: bool) -> BoolArray:
     """(N,) the upper level set of the least normalized cut, or of the least normalized Cheeger cut."""
     node_count = len(values)
     total = levels.volume[node_count - 1]

@@ -76,7 +76,8 @@ class SurfaceGraph(NamedTuple):
         ----------
         nodes : (M,) distinct indices; node i of the result is node nodes[i] of this graph.
         """
-        return induced(self, nodes)[0]
+        edges, kept = induced_edges(self.edges, nodes, self.node_count)
+        return SurfaceGraph(edges, self.weight[kept], self.volume[nodes], self.length[kept])
 
     def with_edges(self, pairs: IntArray, weight: FloatArray, length: FloatArray) -> "SurfaceGraph":
         """Return the graph with more edges between nodes that have none yet; parallel new edges are summed.
@@ -158,14 +159,8 @@ def rows_of_edges(edges: IntArray, node_count: int) -> Rows:
     return Rows(start, neighbour, edge)
 
 
-def induced(graph: SurfaceGraph, nodes: IntArray) -> tuple[SurfaceGraph, IntArray]:
-    """Return ``graph.subgraph(nodes)``, and the indices of its edges in the graph."""
-    edges, kept = _induced_edges(graph.edges, nodes, graph.node_count)
-    return SurfaceGraph(edges, graph.weight[kept], graph.volume[nodes], graph.length[kept]), kept
-
-
 @njit(cache=True)
-def _induced_edges(edges, nodes, node_count):  # type: ignore[no-untyped-def]
+def induced_edges(edges: IntArray, nodes: IntArray, node_count: int) -> tuple[IntArray, IntArray]:
     """(M, 2) edges inside a set of nodes, numbered as in ``nodes``, and (M,) their indices in ``edges``."""
     local = np.full(node_count, -1, dtype=np.int32)
     for i in range(len(nodes)):

@@ -87,7 +87,7 @@ def connected_sweeps(graph: SurfaceGraph, noise: FloatArray, count: int) -> Bool
     best, least, filled = 1, np.inf, 1 + len(vectors)
     for v in range(len(vectors)):
         levels = level_sets(graph, vectors[v])
-        sides[1 + v] = best_level_set(graph, vectors[v], levels, False)
+        sides[1 + v] = best_level_set(vectors[v], levels, False)
         ncc = ncc_of(*cut_sums(graph, sides[1 + v]))
         if ncc < least:
             best, least = 1 + v, ncc

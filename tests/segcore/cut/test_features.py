@@ -172,7 +172,7 @@ def test_the_features_are_those_of_the_formulas(case: tuple[ClusterFields, Segme
 
 
 def features_of(fields: ClusterFields, segment: Segment, cut: Cut) -> FloatArray:
-    return cut_features(fields, segment, fields.inside(segment), [cut])[0]
+    return cut_features(fields, segment, fields.inside(segment), cut.side[None])[0]
 
 
 def test_the_small_side_is_inside_the_box_of_the_other_side_or_not() -> None:
