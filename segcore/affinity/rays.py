@@ -2,8 +2,10 @@
 
 The tree is complete and split at medians: every node halves its faces by their centres along the axis of their largest
 spread, so that it needs no pointers (on such trees: Wald, Boulos and Shirley, Ray tracing deformable scenes using
-dynamic bounding volume hierarchies, ACM Transactions on Graphics 26, 2007). The intersection test is that of Moeller
-and Trumbore, Fast, minimum storage ray/triangle intersection, 1997.
+dynamic bounding volume hierarchies, ACM Transactions on Graphics 26, 2007). A ray goes down three levels at a time and
+meets the eight boxes there together (Wald, Benthin and Boulos, Getting rid of packets, IEEE Symposium on Interactive
+Ray Tracing 2008). The intersection test is that of Moeller and Trumbore, Fast, minimum storage ray/triangle
+intersection, 1997.
 """
 
 from typing import NamedTuple
@@ -12,21 +14,26 @@ import numpy as np
 from numba import njit
 from numpy.typing import NDArray
 
+from segcore.affinity.eight_boxes import WIDTH, enter_boxes
 from segcore.arrays import FloatArray, IntArray, LongArray
 from segcore.mesh import face_centroids
 
 _LEAF = 4  # faces in a leaf, at most; set by hand
-_DEPTH = 64  # of the stack of nodes; more than the tree can have levels
-# Nodes that the rays may visit together: for each ray, and beyond that. On the meshes of the benchmark and the assets a
-# ray visits 30 to 53 on average, and never more than 300.
+_DEPTH = 256  # of the stack of nodes: seven for each of 32 levels at most
+# Nodes that the rays may visit together: for each ray, and beyond that. On meshes of the benchmark a ray visits 13 to 18
+# on average.
 _VISITS, _VISITS_AT_FIRST = 128, 2**20
 _HUGE = 1e30  # inverse of a zero component of a direction
 
 
 class RayCaster(NamedTuple):
-    """Faces arranged for ray casting. Node i of the tree has the children 2 i and 2 i + 1; the leaves start at L."""
+    """Faces arranged for ray casting.
 
-    boxes: NDArray[np.float32]  # (2 L, 6) bounding boxes of the nodes: least, then largest coordinates
+    Node i of the tree has the children 2 i and 2 i + 1, and three levels below it the nodes of group i, 8 i..8 i + 7.
+    """
+
+    leaves: int  # L, a power of two: the last nodes of the tree are L..2 L - 1
+    groups: NDArray[np.float32]  # (G, 6, 8) bounding boxes of the nodes of each group: least, then largest coordinates
     corner: NDArray[np.float32]  # (F, 3) first corner of the faces in the order of the leaves
     sides: NDArray[np.float32]  # (F, 6) the vectors from there to the two other corners
 
@@ -37,7 +44,7 @@ class RayCaster(NamedTuple):
         order = _arranged(face_centroids(vertices, faces).astype(np.float32), leaves)
         corners = vertices.astype(np.float32)[faces[order]]
         sides = np.concatenate([corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0]], axis=1)
-        return cls(_boxes(corners, leaves), np.ascontiguousarray(corners[:, 0]), sides)
+        return cls(leaves, _in_groups(_boxes(corners, leaves)), np.ascontiguousarray(corners[:, 0]), sides)
 
     def inner_distances(self, origins: FloatArray, directions: FloatArray) -> FloatArray:
         """Distances at which rays leave a body.
@@ -72,8 +79,9 @@ class _Ray(NamedTuple):
 class _Stack(NamedTuple):
     """Nodes that are still to be visited, and the distances at which the ray enters their boxes."""
 
-    node: IntArray  # (64,)
-    entry: NDArray[np.float32]  # (64,)
+    node: IntArray  # (256,)
+    entry: NDArray[np.float32]  # (256,)
+    entries: NDArray[np.float32]  # (8,) of the nodes of a group
 
 
 class Budget(NamedTuple):
@@ -161,11 +169,24 @@ def _boxes(corners, leaves):  # type: ignore[no-untyped-def]
     return boxes
 
 
+def _in_groups(boxes: NDArray[np.float32]) -> NDArray[np.float32]:
+    """(G, 6, 8) the boxes (2 L, 6) of nodes by groups; what is missing in the last group is met by no ray."""
+    groups = np.empty((-(-len(boxes) // WIDTH) * WIDTH, 6), dtype=np.float32)
+    groups[: len(boxes)] = boxes
+    groups[len(boxes) :, :3], groups[len(boxes) :, 3:] = np.inf, -np.inf
+    return np.ascontiguousarray(groups.reshape(-1, WIDTH, 6).transpose(0, 2, 1))
+
+
 @njit(cache=True)
 def budget_of_visits() -> Budget:
     """A budget for the rays that are cast one after the other."""
     return Budget(
-        np.array([_VISITS_AT_FIRST]), _Stack(np.empty(_DEPTH, dtype=np.int32), np.empty(_DEPTH, dtype=np.float32))
+        np.array([_VISITS_AT_FIRST]),
+        _Stack(
+            np.empty(_DEPTH, dtype=np.int32),
+            np.empty(_DEPTH, dtype=np.float32),
+            np.empty(WIDTH, dtype=np.float32),
+        ),
     )
 
 
@@ -197,13 +218,11 @@ def _ray(origin, direction):  # type: ignore[no-untyped-def]
 @njit(cache=True)
 def _inner_distance(caster, ray, stack, most_visits):  # type: ignore[no-untyped-def]
     """The distance, infinity after ``most_visits`` nodes; and the number of nodes that were visited."""
-    leaves = len(caster.boxes) // 2
-    count = len(caster.corner)
+    leaves, count = caster.leaves, len(caster.corner)
+    numbers = (ray.ox, ray.oy, ray.oz, ray.ix, ray.iy, ray.iz)
     nearest = np.float32(np.inf)
     from_inside = False
-    size = 1
-    stack.node[0] = 1
-    stack.entry[0] = 0.0
+    size = _first_nodes(leaves, stack)
     visits = 0
     while size > 0:
         if visits == most_visits:
@@ -212,7 +231,7 @@ def _inner_distance(caster, ray, stack, most_visits):  # type: ignore[no-untyped
         size -= 1
         if stack.entry[size] > nearest:
             continue
-        node = stack.node[size]
+        node = np.int64(stack.node[size])
         if node >= leaves:
             leaf = node - leaves
             for f in range(count * leaf // leaves, count * (leaf + 1) // leaves):
@@ -221,37 +240,45 @@ def _inner_distance(caster, ray, stack, most_visits):  # type: ignore[no-untyped
                     nearest = distance
                     from_inside = determinant < 0.0
             continue
-        near = _enters(caster.boxes[2 * node], ray, nearest)
-        far = _enters(caster.boxes[2 * node + 1], ray, nearest)
-        first, second = 2 * node, 2 * node + 1
-        if far < near:
-            first, second, near, far = second, first, far, near
-        if far < np.inf:
-            stack.node[size] = second
-            stack.entry[size] = far
-            size += 1
-        if near < np.inf:
-            stack.node[size] = first
-            stack.entry[size] = near
-            size += 1
+        met = enter_boxes(caster.groups, node, numbers, nearest, stack.entries)
+        size = _stacked(node, met, stack, size)
     return (np.float64(nearest) if from_inside else np.inf), visits
+
+
+@njit(cache=True)
+def _first_nodes(leaves, stack):  # type: ignore[no-untyped-def]
+    """Put the nodes of the level on the stack from which groups of three levels lead to the leaves."""
+    first = leaves
+    while first >= WIDTH:
+        first //= WIDTH
+    for k in range(first):
+        stack.node[k] = first + k
+        stack.entry[k] = 0.0
+    return first
+
+
+@njit(cache=True)
+def _stacked(node, met, stack, size):  # type: ignore[no-untyped-def]
+    """Put the nodes of a group whose boxes were met on the stack, the farthest first."""
+    bottom = size
+    k = 0
+    while met != 0:
+        if met & 1:
+            entry = stack.entries[k]
+            place = size
+            while place > bottom and stack.entry[place - 1] < entry:
+                stack.entry[place], stack.node[place] = stack.entry[place - 1], stack.node[place - 1]
+                place -= 1
+            stack.entry[place], stack.node[place] = entry, WIDTH * node + k
+            size += 1
+        met >>= 1
+        k += 1
+    return size
 
 
 @njit(cache=True)
 def _inverse(x):  # type: ignore[no-untyped-def]
     return np.float32(1.0) / x if x != 0.0 else np.float32(_HUGE)
-
-
-@njit(cache=True)
-def _enters(box, ray, nearest):  # type: ignore[no-untyped-def]
-    """The distance at which a ray enters a box; infinity if it misses the box or enters beyond ``nearest``."""
-    a, b = (box[0] - ray.ox) * ray.ix, (box[3] - ray.ox) * ray.ix
-    low, high = min(a, b), max(a, b)
-    a, b = (box[1] - ray.oy) * ray.iy, (box[4] - ray.oy) * ray.iy
-    low, high = max(low, min(a, b)), min(high, max(a, b))
-    a, b = (box[2] - ray.oz) * ray.iz, (box[5] - ray.oz) * ray.iz
-    low, high = max(low, min(a, b), np.float32(0.0)), min(high, max(a, b), nearest)
-    return low if low <= high else np.float32(np.inf)
 
 
 @njit(cache=True)
