@@ -9,6 +9,7 @@ import numpy as np
 
 from segcore.arrays import FloatArray, IntArray, LongArray, at_least, group_sums
 from segcore.clean.surface import Surface
+from segcore.coarsen.grains import grains_of
 from segcore.coarsen.matching import coarsen
 from segcore.graphs.laplacian import Elimination
 from segcore.graphs.surface_graph import SurfaceGraph
@@ -29,6 +30,7 @@ class Patches:
     """Connected patches of faces, a finite volume discretisation of the surface."""
 
     of_face: IntArray  # (F,) the patch of every face
+    grain: IntArray | None  # (F,) the groups of faces that the patches were made from, if the mesh is fine
     area: FloatArray  # (P,)
     centre: FloatArray  # (P, 3) centroids
     normal: FloatArray  # (P, 3) mean normals, of length 1 or 0
@@ -101,9 +103,10 @@ def patches_of(surface: Surface, affinity: FloatArray, length: FloatArray, rng: 
     """
     areas = at_least(surface.areas, _SMALLEST_FACE)
     graph = SurfaceGraph(surface.edge_faces, length * affinity, areas, length)
-    coarse, of_face = coarsen(graph, COUNT, rng, largest_share=_LARGEST_SHARE)
+    grain = grains_of(graph)
+    coarse, of_face = coarsen(graph, COUNT, rng, largest_share=_LARGEST_SHARE, grain=grain)
     if 2 * len(coarse.edges) > _MOST_NEIGHBOURS * coarse.node_count:
-        coarse, of_face = coarsen(graph, _FEW, rng, largest_share=_LARGEST_SHARE)
+        coarse, of_face = coarsen(graph, _FEW, rng, largest_share=_LARGEST_SHARE, grain=grain)
     count = coarse.node_count
     centroids = face_centroids(surface.vertices, surface.faces)
     centre = _sums(of_face, areas, centroids, count) / coarse.volume[:, None]
@@ -114,7 +117,7 @@ def patches_of(surface: Surface, affinity: FloatArray, length: FloatArray, rng: 
     least = _SHORTEST_STEP * np.sqrt(coarse.total_volume / count)
     distance = np.maximum(distance, least)
     smoothing = _smoothing(coarse.edges, count)
-    return Patches(of_face, coarse.volume, centre, normal, coarse.edges, coarse.length, distance, smoothing)
+    return Patches(of_face, grain, coarse.volume, centre, normal, coarse.edges, coarse.length, distance, smoothing)
 
 
 def _smoothing(pairs: IntArray, count: int) -> Elimination:

@@ -139,6 +139,11 @@ def connected_components(edges: IntArray, node_count: int) -> IntArray:
     return _components(edges, node_count)
 
 
+def components_inside(edges: IntArray, group: IntArray) -> IntArray:
+    """(N,) int32 connected component of every node in the graph of the edges that lie inside a group (N,)."""
+    return _components_inside(edges, group)
+
+
 @njit(cache=True)
 def _rows(edges, node_count):  # type: ignore[no-untyped-def]
     start = np.zeros(node_count + 1, dtype=np.int32)
@@ -180,26 +185,43 @@ def _induced_edges(edges, nodes, node_count):  # type: ignore[no-untyped-def]
     return induced, kept[:count]
 
 
-@njit(cache=True)
+@njit(cache=True, nogil=True)
 def _components(edges, node_count):  # type: ignore[no-untyped-def]
     """Union-find with path halving; the root of a component is its smallest node."""
     parent = np.arange(node_count).astype(np.int32)
     for e in range(len(edges)):
-        a = edges[e, 0]
-        b = edges[e, 1]
-        while parent[a] != a:
-            parent[a] = parent[parent[a]]
-            a = parent[a]
-        while parent[b] != b:
-            parent[b] = parent[parent[b]]
-            b = parent[b]
-        if a < b:
-            parent[b] = a
-        else:
-            parent[a] = b
+        _join(parent, edges[e, 0], edges[e, 1])
+    return _numbered(parent)
+
+
+@njit(cache=True, nogil=True)
+def _components_inside(edges, group):  # type: ignore[no-untyped-def]
+    parent = np.arange(len(group)).astype(np.int32)
+    for e in range(len(edges)):
+        if group[edges[e, 0]] == group[edges[e, 1]]:
+            _join(parent, edges[e, 0], edges[e, 1])
+    return _numbered(parent)
+
+
+@njit(cache=True, nogil=True)
+def _join(parent, a, b):  # type: ignore[no-untyped-def]
+    while parent[a] != a:
+        parent[a] = parent[parent[a]]
+        a = parent[a]
+    while parent[b] != b:
+        parent[b] = parent[parent[b]]
+        b = parent[b]
+    if a < b:
+        parent[b] = a
+    else:
+        parent[a] = b
+
+
+@njit(cache=True, nogil=True)
+def _numbered(parent):  # type: ignore[no-untyped-def]
     count = 0
-    component = np.empty(node_count, dtype=np.int32)
-    for i in range(node_count):
+    component = np.empty(len(parent), dtype=np.int32)
+    for i in range(len(parent)):
         if parent[i] == i:
             component[i] = count
             count += 1
