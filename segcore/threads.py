@@ -71,16 +71,24 @@ def in_blocks(kernel: Callable[..., object], count: int, *arguments: object) -> 
         done.result()
 
 
-def sums_of_blocks(kernel: Callable[..., FloatArray], count: int, *arguments: object) -> FloatArray:
-    """The sum of the arrays ``kernel(start, end, *arguments)`` of all blocks, in their order; ``count`` >= 1."""
-    blocks = [(start, min(start + BLOCK, count)) for start in range(0, count, BLOCK)]
+def sums_of_blocks(kernel: Callable[..., FloatArray], count: int, *arguments: object, groups: int = 0) -> FloatArray:
+    """The sum of the arrays ``kernel(start, end, *arguments)`` of all blocks, in their order.
+
+    Parameters
+    ----------
+    count : number of items, at least 1.
+    groups : rows of the arrays; blocks are at least 16 times as large.
+    """
+    size = max(BLOCK, 16 * groups)
+    blocks = [(start, min(start + size, count)) for start in range(0, count, size)]
     pool = _pool.get()
     if pool is None or len(blocks) == 1:
-        parts = [kernel(start, end, *arguments) for start, end in blocks]
+        parts: Iterator[FloatArray] = (kernel(start, end, *arguments) for start, end in blocks)
     else:
-        parts = [done.result() for done in [pool.submit(kernel, start, end, *arguments) for start, end in blocks]]
-    total = parts[0]
-    for part in parts[1:]:
+        begun = [pool.submit(kernel, start, end, *arguments) for start, end in blocks]
+        parts = (done.result() for done in begun)
+    total = next(parts)
+    for part in parts:
         total = total + part
     return total
 

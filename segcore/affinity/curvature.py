@@ -70,7 +70,7 @@ class _Form(NamedTuple):
     g: float
 
 
-@njit(cache=True)
+@njit(cache=True, nogil=True)
 def _curvature_tensors(vertices: FloatArray, faces: IntArray) -> FloatArray:
     """(V, 3) the entries (e, f, g) of the second fundamental form in a tangent frame of every vertex."""
     count = len(vertices)
@@ -87,7 +87,7 @@ def _curvature_tensors(vertices: FloatArray, faces: IntArray) -> FloatArray:
     return tensor
 
 
-@njit(cache=True)
+@njit(cache=True, nogil=True)
 def _add_normals_and_cells(vertices: FloatArray, face: IntArray, frames: _VertexFrames, cells: FloatArray) -> None:
     """Add a face to the normals of its vertices (weights of Max 1999) and to their areas (mixed Voronoi cells).
 
@@ -128,7 +128,7 @@ def _add_normals_and_cells(vertices: FloatArray, face: IntArray, frames: _Vertex
         frames.area[face[k]] += shares[k]
 
 
-@njit(cache=True)
+@njit(cache=True, nogil=True)
 def _normalize(normal: FloatArray) -> None:
     """Scale a normal (3,) to length 1, in place; a zero vector becomes the z-axis."""
     length = np.sqrt(normal[0] ** 2 + normal[1] ** 2 + normal[2] ** 2)
@@ -138,7 +138,7 @@ def _normalize(normal: FloatArray) -> None:
         normal[2] = 1.0
 
 
-@njit(cache=True)
+@njit(cache=True, nogil=True)
 def _add_face_tensor(
     vertices: FloatArray, face: IntArray, frames: _VertexFrames, cells: FloatArray, tensor: FloatArray
 ) -> None:
@@ -177,14 +177,14 @@ def _add_face_tensor(
         _add_rotated(form, plane, frames, v, cells[k] / frames.area[v], tensor[v])
 
 
-@njit(cache=True)
+@njit(cache=True, nogil=True)
 def _edge(vertices: FloatArray, face: IntArray, k: int) -> Vector:
     """The edge opposite corner k, counter-clockwise."""
     a, b = vertices[face[(k + 1) % 3]], vertices[face[(k + 2) % 3]]
     return b[0] - a[0], b[1] - a[1], b[2] - a[2]
 
 
-@njit(cache=True)
+@njit(cache=True, nogil=True)
 def _add_rotated(
     form: _Form, plane: _Plane, frames: _VertexFrames, vertex: int, weight: float, tensor: FloatArray
 ) -> None:

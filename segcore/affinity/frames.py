@@ -16,7 +16,7 @@ def tangent_frames(normals: FloatArray) -> tuple[FloatArray, FloatArray]:
     return u, v
 
 
-@njit(cache=True)
+@njit(cache=True, nogil=True)
 def tangent_frame(normal: FloatArray, u: FloatArray, v: FloatArray) -> None:
     """Write the frame of a unit normal (3,) into ``u`` and ``v``."""
     sign = 1.0 if normal[2] >= 0.0 else -1.0
@@ -26,7 +26,7 @@ def tangent_frame(normal: FloatArray, u: FloatArray, v: FloatArray) -> None:
     v[0], v[1], v[2] = b, sign + normal[1] ** 2 * a, -normal[1]
 
 
-@njit(cache=True)
+@njit(cache=True, nogil=True)
 def _tangent_frames(normals: FloatArray, u: FloatArray, v: FloatArray) -> None:
     for i in range(len(normals)):
         tangent_frame(normals[i], u[i], v[i])

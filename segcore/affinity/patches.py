@@ -6,6 +6,7 @@ The number of patches does not grow with the mesh, and with it the cost of rays,
 from dataclasses import dataclass
 
 import numpy as np
+from numba import njit
 
 from segcore.arrays import FloatArray, IntArray, LongArray, at_least, group_sums
 from segcore.clean.surface import Surface
@@ -13,7 +14,7 @@ from segcore.coarsen.grains import grains_of
 from segcore.coarsen.matching import coarsen
 from segcore.graphs.laplacian import Elimination
 from segcore.graphs.surface_graph import SurfaceGraph
-from segcore.mesh import face_centroids
+from segcore.threads import sums_of_blocks
 
 COUNT = 2000  # of patches; set by hand
 # Patches of a surface have about six neighbours. If they have more than _MOST_NEIGHBOURS on average, because edges have
@@ -108,9 +109,9 @@ def patches_of(surface: Surface, affinity: FloatArray, length: FloatArray, rng: 
     if 2 * len(coarse.edges) > _MOST_NEIGHBOURS * coarse.node_count:
         coarse, of_face = coarsen(graph, _FEW, rng, largest_share=_LARGEST_SHARE, grain=grain)
     count = coarse.node_count
-    centroids = face_centroids(surface.vertices, surface.faces)
-    centre = _sums(of_face, areas, centroids, count) / coarse.volume[:, None]
-    normal = _sums(of_face, areas, surface.normals, count)
+    arrays = of_face, areas, surface.vertices, surface.faces, surface.normals, count
+    sums = sums_of_blocks(_centres_and_normals, len(areas), *arrays, groups=count)
+    centre, normal = sums[:, :3] / coarse.volume[:, None], sums[:, 3:]
     size = np.linalg.norm(normal, axis=1, keepdims=True)
     normal = np.divide(normal, size, out=np.zeros_like(normal), where=size > 0)
     distance = np.linalg.norm(centre[coarse.edges[:, 1]] - centre[coarse.edges[:, 0]], axis=1)
@@ -126,6 +127,14 @@ def _smoothing(pairs: IntArray, count: int) -> Elimination:
     return Elimination.of(np.concatenate([pairs, spokes]), count + 1)
 
 
-def _sums(group: IntArray, weight: FloatArray, values: FloatArray, count: int) -> FloatArray:
-    """(count, 3) the weighted sums of values (N, 3) over groups."""
-    return np.stack([group_sums(group, weight * values[:, axis], count) for axis in range(3)], axis=1)
+@njit(cache=True, nogil=True)
+def _centres_and_normals(start, end, group, weight, vertices, faces, normals, count):  # type: ignore[no-untyped-def]
+    """(count, 6) the weighted sums of the centroids and the normals of some faces over groups."""
+    sums = np.zeros((count, 6))
+    for f in range(start, end):
+        a, b, c = vertices[faces[f, 0]], vertices[faces[f, 1]], vertices[faces[f, 2]]
+        row = sums[group[f]]
+        for axis in range(3):
+            row[axis] += weight[f] * ((a[axis] + b[axis] + c[axis]) / 3.0)
+            row[3 + axis] += weight[f] * normals[f, axis]
+    return sums

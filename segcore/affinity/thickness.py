@@ -53,7 +53,7 @@ def patch_thickness(surface: Surface, patches: Patches) -> Thickness:
     if len(chosen) == 0:
         return Thickness(*np.zeros((2, len(patches.area))))
     rays = _rays(surface, patches, chosen, size)
-    distance = RayCaster.of(surface.vertices, surface.faces).inner_distances(rays.origins, rays.directions)
+    distance = RayCaster.of(surface.vertices, surface.faces, patches.grain).inner_distances(rays.origins, rays.directions)
     value, confidence = np.zeros((2, len(patches.area)))
     value[chosen], confidence[chosen] = _typical(distance.reshape(-1, RAYS), rays.cosines.reshape(-1, RAYS))
     known = value > 0
@@ -127,7 +127,7 @@ def _sample_faces(of_face: IntArray, areas: FloatArray, count: int, chosen: Long
     return order[found], place
 
 
-@njit(cache=True)
+@njit(cache=True, nogil=True)
 def _typical(distances: FloatArray, cosines: FloatArray) -> tuple[FloatArray, FloatArray]:
     """(P,) the weighted mean of the distances near their median, 0 if there are none, and (P,) the share of hits.
 

@@ -82,7 +82,7 @@ def coarsen(
     return SurfaceGraph(edges, adjacency.weight[once], volume, adjacency.border[once]), cluster
 
 
-@njit(cache=True)
+@njit(cache=True, nogil=True)
 def _match(
     order: LongArray, graph: _Adjacency, volume: FloatArray, guard: float, largest: float, most_merges: int
 ) -> tuple[IntArray, int]:
@@ -128,7 +128,7 @@ def _match(
     return merged, count
 
 
-@njit(cache=True)
+@njit(cache=True, nogil=True)
 def _contract(merged: IntArray, count: int, graph: _Adjacency) -> _Adjacency:
     """The graph of the merged nodes, at most two in each; parallel edges are summed.
 

@@ -144,7 +144,7 @@ def components_inside(edges: IntArray, group: IntArray) -> IntArray:
     return _components_inside(edges, group)
 
 
-@njit(cache=True)
+@njit(cache=True, nogil=True)
 def _rows(edges, node_count):  # type: ignore[no-untyped-def]
     start = np.zeros(node_count + 1, dtype=np.int32)
     for e in range(len(edges)):
@@ -164,7 +164,7 @@ def _rows(edges, node_count):  # type: ignore[no-untyped-def]
     return Rows(start, neighbour, edge)
 
 
-@njit(cache=True)
+@njit(cache=True, nogil=True)
 def _induced_edges(edges, nodes, node_count):  # type: ignore[no-untyped-def]
     """(M, 2) edges inside a set of nodes, numbered as in ``nodes``, and (M,) their indices in ``edges``."""
     local = np.full(node_count, -1, dtype=np.int32)
