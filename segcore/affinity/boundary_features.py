@@ -58,8 +58,17 @@ _EXCESS_NEAR = FEATURES.index("thickness_excess_near")
 _EXCESS_FAR = FEATURES.index("thickness_excess_far")
 _CONFIDENCE = FEATURES.index("confidence")
 
+# The first entries of the fields in a row of all of them, see ``_packed``.
+_SCALES = len(TENSOR_RADII)
+_MEANS = 6 * _SCALES
+_GRADIENTS = _MEANS + _SCALES
+_LOGARITHMS = _GRADIENTS + 3 * (_SCALES - 1)
+_SLOPES = _LOGARITHMS + len(THICKNESS_RADII)
+_SHARE = _SLOPES + 3 * len(THICKNESS_RADII)
+
 _PREDICTED = 0.92  # fraction of the processor time of the stage "affinity", as in measurements.py
 _AT_ONCE = 512  # edges whose features are in memory at a time: 114 kB, which stay in the cache of a core
+_WIDTH = _AT_ONCE + 8  # of their rows: columns whose distance is a power of two would share few lines of the cache
 
 
 class PatchFields(NamedTuple):
@@ -95,7 +104,7 @@ def boundary_probability(surface: Surface, measured: Measurements, on_part: OnPa
     on_part : called with the fraction of the stage "affinity" that is done.
     """
     model = learned_models().boundary.arrays()
-    inputs, fields = _inputs(surface, measured), patch_fields(surface, measured)
+    inputs, fields = _inputs(surface, measured), _packed(patch_fields(surface, measured))
     probability = np.empty(len(surface.edge_faces))
     in_blocks(_write_boundary_probabilities, len(probability), inputs, fields, model, probability)
     on_part(_PREDICTED)
@@ -175,91 +184,94 @@ def edge_features(
     """
     edges = np.arange(len(surface.edge_faces))[chosen]
     columns = np.empty((len(FEATURES), len(edges)))
-    _write_features(edges, _inputs(surface, measured), fields, columns, np.empty((2, len(edges))))
+    _write_features(edges, _inputs(surface, measured), _packed(fields), columns, np.empty((2, len(edges))))
     return np.ascontiguousarray(columns.T)
 
 
 @njit(cache=True, nogil=True)
 def _write_boundary_probabilities(start, end, inputs, fields, model, probability):  # type: ignore[no-untyped-def]
-    columns, work = np.empty((len(model.mean), _AT_ONCE)), np.empty((2, _AT_ONCE))
+    columns, work = np.empty((len(model.mean), _WIDTH)), np.empty((2, _WIDTH))
     for first in range(start, end, _AT_ONCE):
         edges = np.arange(first, min(first + _AT_ONCE, end))
         _write_features(edges, inputs, fields, columns, work)
         write_probabilities(columns, model, probability[first : first + len(edges)])
 
 
-@njit(cache=True, nogil=True)
+def _packed(fields: PatchFields) -> FloatArray:
+    """(P, 50) all fields of every patch in a row: tensors, their means and gradients, thickness, gradients, confidence."""
+    return np.concatenate([field.reshape(len(fields.confidence), -1) for field in fields], axis=1)
+
+
+@njit(cache=True, nogil=True, error_model="numpy")
 def _write_features(edges, inputs, fields, columns, work):  # type: ignore[no-untyped-def]
     """Write the features of N edges into the first N entries of columns (M, at least N)."""
+    mean = np.empty(fields.shape[1])
+    f, g = -1, -1
     for i in range(len(edges)):
-        _write_numbers(i, edges[i], inputs, fields, columns)
+        one = inputs.patch[inputs.arrays.sides[edges[i], 0]]
+        other = inputs.patch[inputs.arrays.sides[edges[i], 1]]
+        if one != f or other != g:
+            f, g = one, other
+            for k in range(len(mean)):
+                mean[k] = 0.5 * (fields[f, k] + fields[g, k])
+        _write_numbers(i, edges[i], inputs, mean, columns)
     for j in range(len(columns)):
         if not (j == _THICKNESS or j == _EXCESS_NEAR or j == _EXCESS_FAR or j == _CONFIDENCE):
             squeeze(columns[j, : len(edges)], work)
 
 
-@njit(cache=True, nogil=True)
-def _write_numbers(i, e, inputs, fields, columns):  # type: ignore[no-untyped-def]
-    """Write the features of an edge, before their logarithms are taken, into column entries i."""
+@njit(cache=True, nogil=True, error_model="numpy")
+def _write_numbers(i, e, inputs, mean, columns):  # type: ignore[no-untyped-def]
+    """Write the features of an edge, before their logarithms are taken, into column entries i.
+
+    Parameters
+    ----------
+    mean : (50,) the mean of the fields of the patches at its sides, see ``_packed``.
+    """
     arrays = inputs.arrays
     a, b = arrays.ends[e, 0], arrays.ends[e, 1]
-    f, g = inputs.patch[arrays.sides[e, 0]], inputs.patch[arrays.sides[e, 1]]
     columns[_DIHEDRAL, i] = inputs.dihedral[e] / inputs.typical_dihedral
     columns[_K1, i] = inputs.half_size * (inputs.k1[a] + inputs.k1[b])
     columns[_K2, i] = inputs.half_size * (inputs.k2[a] + inputs.k2[b])
     columns[_BENDING, i] = inputs.bending[e]
     columns[_CHANGE, i] = inputs.change[e]
     t = across_edge(arrays, e)
-    p, q = arrays.vertices[a], arrays.vertices[b]
-    ux, uy, uz = q[0] - p[0], q[1] - p[1], q[2] - p[2]
+    ux = arrays.vertices[b, 0] - arrays.vertices[a, 0]
+    uy = arrays.vertices[b, 1] - arrays.vertices[a, 1]
+    uz = arrays.vertices[b, 2] - arrays.vertices[a, 2]
     length = np.sqrt(ux * ux + uy * uy + uz * uz)
     u = (ux / length, uy / length, uz / length) if length > 0.0 else (0.0, 0.0, 0.0)
-    tensor, mean, thickness = fields.tensor, fields.mean, fields.thickness
-    step, slope = fields.mean_gradient, fields.thickness_gradient
-    scales = tensor.shape[1]
-    for s in range(scales):
-        one, other = tensor[f, s], tensor[g, s]
-        form = (
-            0.5 * (one[0] + other[0]),
-            0.5 * (one[1] + other[1]),
-            0.5 * (one[2] + other[2]),
-            0.5 * (one[3] + other[3]),
-            0.5 * (one[4] + other[4]),
-            0.5 * (one[5] + other[5]),
-        )
-        columns[_TENSORS + 3 * s, i] = _value(form, t, t)
-        columns[_TENSORS + 3 * s + 1, i] = _value(form, u, u)
-        columns[_TENSORS + 3 * s + 2, i] = abs(_value(form, t, u))
-    for s in range(scales - 1):
-        columns[_MEAN_STEPS + s, i] = _slope(step[f, s], step[g, s], t)
-        finer, coarser = 0.5 * (mean[f, s] + mean[g, s]), 0.5 * (mean[f, s + 1] + mean[g, s + 1])
-        columns[_MEAN_EXCESSES + s, i] = finer - coarser
-    near = 0.5 * (thickness[f, 0] + thickness[g, 0])
-    middle = 0.5 * (thickness[f, 1] + thickness[g, 1])
-    far = 0.5 * (thickness[f, 2] + thickness[g, 2])
+    for s in range(_SCALES):
+        columns[_TENSORS + 3 * s, i] = _value(mean, 6 * s, t, t)
+        columns[_TENSORS + 3 * s + 1, i] = _value(mean, 6 * s, u, u)
+        columns[_TENSORS + 3 * s + 2, i] = abs(_value(mean, 6 * s, t, u))
+    for s in range(_SCALES - 1):
+        columns[_MEAN_STEPS + s, i] = abs(_along(mean, _GRADIENTS + 3 * s, t))
+        columns[_MEAN_EXCESSES + s, i] = mean[_MEANS + s] - mean[_MEANS + s + 1]
+    near, middle, far = mean[_LOGARITHMS], mean[_LOGARITHMS + 1], mean[_LOGARITHMS + 2]
     columns[_THICKNESS, i] = middle
     for s in range(3):
-        columns[_THICKNESS_STEPS + s, i] = _slope(slope[f, s], slope[g, s], t)
-    columns[_THICKNESS_SLOPE, i] = _slope(slope[f, 1], slope[g, 1], u)
+        columns[_THICKNESS_STEPS + s, i] = abs(_along(mean, _SLOPES + 3 * s, t))
+    columns[_THICKNESS_SLOPE, i] = abs(_along(mean, _SLOPES + 3, u))
     columns[_EXCESS_NEAR, i] = near - middle
     columns[_EXCESS_FAR, i] = middle - far
-    columns[_CONFIDENCE, i] = 0.5 * (fields.confidence[f] + fields.confidence[g])
+    columns[_CONFIDENCE, i] = mean[_SHARE]
 
 
 @njit(cache=True, nogil=True)
-def _value(form, a, b):  # type: ignore[no-untyped-def]
-    """The value of a symmetric bilinear form (xx, yy, zz, xy, xz, yz) at two vectors."""
+def _value(numbers, k, a, b):  # type: ignore[no-untyped-def]
+    """The value at two vectors of a symmetric bilinear form (xx, yy, zz, xy, xz, yz), numbers k to k + 5."""
     return (
-        form[0] * a[0] * b[0]
-        + form[1] * a[1] * b[1]
-        + form[2] * a[2] * b[2]
-        + form[3] * (a[0] * b[1] + a[1] * b[0])
-        + form[4] * (a[0] * b[2] + a[2] * b[0])
-        + form[5] * (a[1] * b[2] + a[2] * b[1])
+        numbers[k] * a[0] * b[0]
+        + numbers[k + 1] * a[1] * b[1]
+        + numbers[k + 2] * a[2] * b[2]
+        + numbers[k + 3] * (a[0] * b[1] + a[1] * b[0])
+        + numbers[k + 4] * (a[0] * b[2] + a[2] * b[0])
+        + numbers[k + 5] * (a[1] * b[2] + a[2] * b[1])
     )
 
 
 @njit(cache=True, nogil=True)
-def _slope(one, other, along):  # type: ignore[no-untyped-def]
-    """The absolute derivative along a vector of the mean of two gradients."""
-    return 0.5 * abs((one[0] + other[0]) * along[0] + (one[1] + other[1]) * along[1] + (one[2] + other[2]) * along[2])
+def _along(numbers, k, direction):  # type: ignore[no-untyped-def]
+    """The derivative along a vector of a field with the gradient that numbers k to k + 2 are."""
+    return numbers[k] * direction[0] + numbers[k + 1] * direction[1] + numbers[k + 2] * direction[2]

@@ -6,7 +6,7 @@ from typing import NamedTuple
 import numpy as np
 from numba import njit
 
-from segcore.arrays import FloatArray, IntArray, at_least, dot
+from segcore.arrays import FloatArray, IntArray, LongArray, at_least, dot
 from segcore.clean.surface import Surface
 from segcore.threads import in_blocks
 
@@ -42,14 +42,18 @@ def edge_lengths(surface: Surface) -> FloatArray:
     return length
 
 
-def dihedral_angles(surface: Surface) -> FloatArray:
-    """(E,) angle between the normals of the two faces in radians, 0 where flat, negative where concave.
+def dihedral_angles(surface: Surface, chosen: LongArray | None = None) -> FloatArray:
+    """(N,) angle between the normals of the two faces in radians, 0 where flat, negative where concave.
 
     The angle is 0 if one of the faces is a sliver without a reliable normal.
+
+    Parameters
+    ----------
+    chosen : N of the dual edges; None for all.
     """
-    theta = np.zeros(len(surface.edge_faces))
-    arrays = surface.vertices, surface.faces, surface.normals, surface.edge_faces
-    in_blocks(_write_dihedral_angles, len(theta), *arrays, theta)
+    sides = surface.edge_faces if chosen is None else surface.edge_faces[chosen]
+    theta = np.zeros(len(sides))
+    in_blocks(_write_dihedral_angles, len(theta), surface.vertices, surface.faces, surface.normals, sides, theta)
     return theta
 
 
@@ -78,7 +82,7 @@ class EdgeArrays(NamedTuple):
         return cls(surface.vertices, surface.normals, surface.edge_vertices, surface.edge_faces)
 
 
-@njit(cache=True, nogil=True)
+@njit(cache=True, nogil=True, error_model="numpy")
 def across_edge(arrays, e):  # type: ignore[no-untyped-def]
     """The three components of the unit vector in the surface that is perpendicular to an edge, see ``across_edges``."""
     p, q = arrays.vertices[arrays.ends[e, 0]], arrays.vertices[arrays.ends[e, 1]]

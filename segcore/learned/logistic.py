@@ -66,7 +66,7 @@ def basis(standardised: FloatArray) -> FloatArray:
     return np.concatenate([z, z * z, np.maximum(z - _HINGE, 0.0), np.maximum(-z - _HINGE, 0.0)], axis=1)
 
 
-@njit(cache=True, nogil=True)
+@njit(cache=True, nogil=True, error_model="numpy")
 def write_probabilities(columns, model, probability):  # type: ignore[no-untyped-def]
     """The logistic function of bias + weight . basis, without an array of the basis, for columns (M, N) of features.
 

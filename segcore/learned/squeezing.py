@@ -10,7 +10,7 @@ _TWO_52 = 2.0**52
 _LN_2 = 0.6931471805599453
 
 
-@njit(cache=True, nogil=True)
+@njit(cache=True, nogil=True, error_model="numpy")
 def squeeze(row, work):  # type: ignore[no-untyped-def]
     """Replace numbers (N,) by sign(x) log(1 + |x|), within 1e-15.
 

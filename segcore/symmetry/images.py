@@ -10,7 +10,6 @@ from segcore.clean.surface import Surface
 from segcore.coarsen.assembly import NEGLIGIBLE
 from segcore.graphs.surface_graph import connected_components
 from segcore.mesh import face_centroids
-from segcore.progress import OnPart, report_nothing
 from segcore.symmetry.close_images import Halves, close_images, coinciding_area
 from segcore.symmetry.reflection import Reflection, find_reflection
 from segcore.threads import sums_of_blocks
@@ -19,8 +18,6 @@ from segcore.threads import sums_of_blocks
 _NORMAL = 0.1  # distance, in sqrt(total area), that counts as much as a difference of normals of 1
 _IN_PLANE = 1e-9  # distance from the plane, in extents of the surface, that is rounding error
 _VANISHING = 1e-12  # share of the area of a component in which halves cannot be told apart
-# Fractions of the processor time of the stage "coarsen", measured on a dumbbell of 1,000,000 faces.
-_REFLECTED, _IMAGED = 0.3, 0.6
 _MESHED_ALIKE = 0.9  # share of the area with exact images from which the mesh is symmetric and not only the shape
 
 
@@ -34,18 +31,10 @@ class MirrorImage:
     meshed_alike: bool  # the faces of the halves are images of each other, apart from a few
 
 
-def mirror_image(surface: Surface, on_part: OnPart = report_nothing) -> MirrorImage | None:
-    """The mirror image of a surface, or None if the surface is not symmetric.
-
-    Parameters
-    ----------
-    on_part : called with the fraction of the stage "coarsen" that is done.
-    """
+def mirror_image(surface: Surface) -> MirrorImage | None:
+    """The mirror image of a surface, or None if the surface is not symmetric."""
     reflection = find_reflection(surface)
-    on_part(_REFLECTED)
-    image = None if reflection is None else image_under(surface, reflection)
-    on_part(_IMAGED)
-    return image
+    return None if reflection is None else image_under(surface, reflection)
 
 
 def image_under(surface: Surface, reflection: Reflection) -> MirrorImage | None:
