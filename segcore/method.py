@@ -18,6 +18,7 @@ from segcore.coarsen.contacts import Links
 from segcore.cut.bisection import bisect
 from segcore.cut.rules import SplitRule, split_rule
 from segcore.cut.siblings import sibling_steps
+from segcore.errors import InvalidParameters
 from segcore.graphs.mesh_graph import MeshGraph
 from segcore.graphs.tree import Tree
 from segcore.hierarchy import Hierarchy
@@ -61,15 +62,15 @@ def segment(
     Raises
     ------
     InvalidParameters
-        If ``structure`` is one that the mesh does not have.
+        If ``structure`` is one that the mesh does not have, or ``threads`` is not at least 1.
     """
+    if threads is not None and threads < 1:
+        raise InvalidParameters(f"The number of threads must be at least 1, not {threads}.")
     with use_threads(threads or default_threads(len(mesh.faces))):
         return _segment(mesh, parameters or SegmentationParameters(), Progress(on_progress, len(mesh.faces)), surface)
 
 
-def _segment(
-    mesh: Mesh, chosen: SegmentationParameters, progress: Progress, surface: Surface | None
-) -> Hierarchy:
+def _segment(mesh: Mesh, chosen: SegmentationParameters, progress: Progress, surface: Surface | None) -> Hierarchy:
     rng = np.random.default_rng(chosen.seed)
     progress("clean")
     surface = with_structure(surface or build_surface(mesh), mesh, chosen.structure)

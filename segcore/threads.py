@@ -11,14 +11,13 @@ from concurrent.futures import ThreadPoolExecutor
 from contextlib import contextmanager
 from contextvars import ContextVar, copy_context
 from functools import partial
-from typing import ParamSpec, TypeVar
+from typing import Any, TypeVar
 
 from segcore.arrays import FloatArray
 
 BLOCK = 1 << 16  # items in a block: some milliseconds of work; set by hand
 MANY_FACES = 200_000  # from which on a segmentation gets all free cores by default; set by hand
 
-_Arguments = ParamSpec("_Arguments")
 _Result = TypeVar("_Result")
 
 _pool: ContextVar[ThreadPoolExecutor | None] = ContextVar("_pool", default=None)
@@ -46,7 +45,8 @@ def default_threads(face_count: int) -> int:
     """The number of threads for a mesh if none is given: 1 for a small one, for others the cores that are free now."""
     if face_count < MANY_FACES:
         return 1
-    return max(1, usable_cores() - round(os.getloadavg()[0]))
+    busy = round(os.getloadavg()[0]) if hasattr(os, "getloadavg") else 0
+    return max(1, usable_cores() - busy)
 
 
 def usable_cores() -> int:
@@ -93,7 +93,7 @@ def sums_of_blocks(kernel: Callable[..., FloatArray], count: int, *arguments: ob
     return total
 
 
-def meanwhile(function: Callable[_Arguments, _Result], *arguments: _Arguments.args) -> Callable[[], _Result]:
+def meanwhile(function: Callable[..., _Result], *arguments: Any) -> Callable[[], _Result]:
     """Begin a call in another thread if there are several; return a function that waits for its result.
 
     The call uses one thread.

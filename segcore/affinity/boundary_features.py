@@ -58,6 +58,8 @@ _EXCESS_NEAR = FEATURES.index("thickness_excess_near")
 _EXCESS_FAR = FEATURES.index("thickness_excess_far")
 _CONFIDENCE = FEATURES.index("confidence")
 
+_PLAIN = (_THICKNESS, _EXCESS_NEAR, _EXCESS_FAR, _CONFIDENCE)  # that are no logarithms of numbers of any size
+
 # The first entries of the fields in a row of all of them, see ``_packed``.
 _SCALES = len(TENSOR_RADII)
 _MEANS = 6 * _SCALES
@@ -198,7 +200,7 @@ def _write_boundary_probabilities(start, end, inputs, fields, model, probability
 
 
 def _packed(fields: PatchFields) -> FloatArray:
-    """(P, 50) all fields of every patch in a row: tensors, their means and gradients, thickness, gradients, confidence."""
+    """(P, 50) all fields of every patch in a row, in the order of ``PatchFields``."""
     return np.concatenate([field.reshape(len(fields.confidence), -1) for field in fields], axis=1)
 
 
@@ -216,7 +218,7 @@ def _write_features(edges, inputs, fields, columns, work):  # type: ignore[no-un
                 mean[k] = 0.5 * (fields[f, k] + fields[g, k])
         _write_numbers(i, edges[i], inputs, mean, columns)
     for j in range(len(columns)):
-        if not (j == _THICKNESS or j == _EXCESS_NEAR or j == _EXCESS_FAR or j == _CONFIDENCE):
+        if j not in _PLAIN:
             squeeze(columns[j, : len(edges)], work)
 
 

@@ -182,9 +182,7 @@ def _edge(vertices: FloatArray, face: IntArray, k: int) -> Vector:
 
 
 @njit(cache=True, nogil=True, error_model="numpy")
-def _add_rotated(
-    form: _Form, plane: _Plane, stars: _Stars, vertex: int, weight: float, tensor: FloatArray
-) -> None:
+def _add_rotated(form: _Form, plane: _Plane, stars: _Stars, vertex: int, weight: float, tensor: FloatArray) -> None:
     """Rotate the frame of a vertex into the plane of a face, and add the form in that frame to the tensor (3,)."""
     (tx, ty, tz), (bx, by, bz) = plane
     e, f, g = form

@@ -7,10 +7,10 @@ both are those of faces that lie beside each other on a smooth surface, and they
 import numpy as np
 from numba import njit
 
-from segcore.arrays import IntArray
+from segcore.arrays import IntArray, group_sums
 from segcore.graphs.surface_graph import SurfaceGraph, components_inside
 
-# Set by hand. A grain of this size is a thirtieth of a cluster or less: the outlines of clusters are drawn again anyway.
+# Set by hand. A grain of this size is a tenth of a cluster or less, and the outlines of clusters are drawn again.
 MANY = 1 << 17  # nodes from which on there are grains
 _SIZE = 8  # nodes of a grain, at most
 _LARGEST = 12.0  # volume of a grain of several nodes, at most, in mean volumes of a node
@@ -38,7 +38,7 @@ def merged_grains(graph: SurfaceGraph, grain: IntArray) -> tuple[SurfaceGraph, I
     """
     grain = components_inside(graph.edges, grain)
     edge = _edges_across(graph.edges, grain)
-    volume = np.bincount(grain, graph.volume)
+    volume = group_sums(grain, graph.volume)
     pairs = grain[graph.edges[edge]]
     return SurfaceGraph.with_sums(pairs, graph.weight[edge], volume, graph.length[edge]), grain
 
