@@ -41,8 +41,10 @@ class RayCaster(NamedTuple):
             made in less time, and about as good.
         """
         leaves = 1 << max(0, int(np.ceil(np.log2(len(faces) / _LEAF))))
-        centres = face_centroids(vertices, faces).astype(np.float32)
-        order = _arranged(centres, leaves) if grain is None else _arranged_grains(centres, grain)
+        if grain is None:
+            order = _arranged(face_centroids(vertices, faces).astype(np.float32), leaves)
+        else:
+            order = _arranged_grains(vertices, faces, grain)
         caster = cls(*(np.empty(shape, np.float32) for shape in ((2 * leaves, 6), (len(faces), 3), (len(faces), 6))))
         in_blocks(_pack, leaves, vertices, faces, order, caster)
         _enclose(caster.boxes)
@@ -142,11 +144,11 @@ def _halve(centres, order, low, high, middle, axis):  # type: ignore[no-untyped-
             return
 
 
-def _arranged_grains(centres: NDArray[np.float32], grain: IntArray) -> IntArray:
+def _arranged_grains(vertices: FloatArray, faces: IntArray, grain: IntArray) -> IntArray:
     """(F,) the faces in the order of their grains, whose first faces are arranged as the faces of small meshes are."""
     by_grain, first = _members(grain, int(grain.max()) + 1)
-    middles = centres[by_grain[first[:-1]]]
-    order = _arranged(middles, 1 << max(0, int(np.ceil(np.log2(len(middles))))))
+    middles = face_centroids(vertices, faces[by_grain[first[:-1]]])
+    order = _arranged(middles.astype(np.float32), 1 << max(0, int(np.ceil(np.log2(len(middles))))))
     return _listed(order, by_grain, first)
 
 

@@ -9,7 +9,7 @@ from segcore.arrays import BoolArray, FloatArray, IntArray
 from segcore.threads import in_blocks
 
 CLOSE = 0.1  # distance of an image from its face, in sqrt(area of the face), up to which the two coincide; set by hand
-_REACHES = (1.0, 0.25, 4.0)  # distances of images, in the square root of the mean area of a face; set by hand
+_REACHES = (0.75, 0.25, 4.0)  # distances of images, in the square root of the mean area of a face; set by hand
 _MOST_TRIED = 256  # faces that are compared with one image; set by hand
 _STEP_I, _STEP_J = 73_856_093, 83_492_791  # odd numbers between the slots of cells that follow each other
 
