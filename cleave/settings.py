@@ -119,6 +119,13 @@ class Settings(BaseSettings):
     max_attempts: int = Field(default=3, ge=1, description="Runs of a job whose worker dies every time.")
     job_timeout_s: float = Field(default=3600.0, gt=0, description="Longest run of a job.")
     job_cpu_s: int = Field(default=3600, gt=0, description="Longest processor time of a job.")
+    job_threads: int | None = Field(
+        default=None,
+        ge=1,
+        le=256,
+        description="Threads of a job, which do not change its result; if none is set, one for a mesh of fewer than "
+        "200,000 faces and the cores that are idle for others.",
+    )
     job_memory_bytes: int = Field(default=8 * 2**30, gt=0, description="Address space of the process that runs a job.")
     job_file_bytes: int = Field(default=4 * 2**30, gt=0, description="Largest file that a job may write.")
     lease_s: float = Field(

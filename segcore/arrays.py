@@ -13,6 +13,8 @@ BoolArray: TypeAlias = NDArray[np.bool_]
 
 
 _VANISHES = 1e-100  # squares of smaller numbers leave the range of float64
+_DENSE = 4  # indices for each pair, up to which pairs are counted by their smaller index; set by hand
+_FEW = 32  # pairs of one smaller index up to which they are sorted by insertion; set by hand
 
 
 def at_least(values: FloatArray, share: float) -> FloatArray:
@@ -39,8 +41,50 @@ def distinct_pairs(pairs: NDArray[np.integer]) -> tuple[IntArray, LongArray]:
     The smaller index of a pair comes first; the pairs are sorted.
     """
     count = int(pairs.max(initial=0)) + 1
+    if count <= _DENSE * len(pairs):
+        return _distinct_pairs(pairs, count)
     keys, which = np.unique(pair_keys(pairs, count), return_inverse=True)
     return np.stack([keys // count, keys % count], axis=1).astype(np.int32), which
+
+
+@njit(cache=True, nogil=True)
+def _distinct_pairs(pairs, count):  # type: ignore[no-untyped-def]
+    """Pairs sorted by counting their smaller indices, and by insertion or merging where these are equal."""
+    start = np.zeros(count + 1, np.int64)
+    for p in range(len(pairs)):
+        start[min(pairs[p, 0], pairs[p, 1]) + 1] += 1
+    for low in range(count):
+        start[low + 1] += start[low]
+    fill = start[:-1].copy()
+    high = np.empty(len(pairs), np.int32)
+    which = np.empty(len(pairs), np.int64)  # the pairs in their order, until their numbers are known
+    for p in range(len(pairs)):
+        low = min(pairs[p, 0], pairs[p, 1])
+        place = fill[low]
+        fill[low] += 1
+        high[place], which[place] = max(pairs[p, 0], pairs[p, 1]), p
+    distinct = np.empty((len(pairs), 2), np.int32)
+    number = np.empty(len(pairs), np.int64)
+    used = 0
+    for low in range(count):
+        begin, end = start[low], start[low + 1]
+        if end - begin > _FEW:
+            order = np.argsort(high[begin:end], kind="mergesort")
+            high[begin:end] = high[begin:end][order]
+            which[begin:end] = which[begin:end][order]
+        else:
+            for p in range(begin + 1, end):
+                far, pair, q = high[p], which[p], p
+                while q > begin and high[q - 1] > far:
+                    high[q], which[q] = high[q - 1], which[q - 1]
+                    q -= 1
+                high[q], which[q] = far, pair
+        for p in range(begin, end):
+            if p == begin or high[p] != high[p - 1]:
+                distinct[used, 0], distinct[used, 1] = low, high[p]
+                used += 1
+            number[which[p]] = used - 1
+    return distinct[:used].copy(), number
 
 
 @njit(cache=True)

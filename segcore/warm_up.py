@@ -2,6 +2,9 @@
 
 import numpy as np
 
+from segcore.affinity.rays import RayCaster
+from segcore.clean.surface import build_surface
+from segcore.coarsen.grains import grown_grains, merged_grains
 from segcore.io.limits import ReadLimits
 from segcore.io.obj.reader import read_obj
 from segcore.io.off.reader import read_off
@@ -20,8 +23,18 @@ def warm_up() -> None:
     arms = burr(subdivisions=3).mesh
     draw(arms, segment(arms, SegmentationParameters(clusters=300)).labels(), size=16)  # fewer clusters than faces
     segment(_bodies())
+    _begin_fine(arms)
     read_obj(b"v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n", ReadLimits())
     read_off(b"OFF 3 1 0\n0 0 0\n1 0 0\n0 1 0\n3 0 1 2\n", ReadLimits())
+
+
+def _begin_fine(mesh: Mesh) -> None:
+    """Carry out the steps that only fine meshes need."""
+    surface = build_surface(mesh)
+    graph = surface.face_graph()
+    grain = grown_grains(graph)
+    merged_grains(graph, grain)
+    RayCaster.of(surface.vertices, surface.faces, grain)
 
 
 def _bodies() -> Mesh:

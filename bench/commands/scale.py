@@ -5,7 +5,8 @@ during the segmentation, without the mesh itself. The silence is the longest tim
 shapes are a dumbbell and, with --data, a model of the benchmark whose faces are split in four repeatedly. At the end a
 thousand small boxes, apart and in contact, are compared with one body of as many faces. With --hard, legal meshes that
 are hard for their size (surfaces that cross themselves, edges and vertices with very many faces, very many components)
-are compared with smooth ones of as many faces instead.
+are compared with smooth ones of as many faces instead. With --from, this version is compared with another one, by CPU
+and wall time and memory of a dumbbell of the largest of --sizes, in one thread and in two.
 """
 
 from __future__ import annotations
@@ -14,8 +15,10 @@ import argparse
 from collections.abc import Sequence
 from pathlib import Path
 
+from bench.checkout import checked_out
 from bench.errors import BenchmarkError
 from bench.pool import one_thread_by_default
+from bench.scale import versions
 from bench.scale.cost import Cost, cost_of
 from bench.scale.shapes import crowds, dumbbells, hard_and_smooth, subdivisions
 from bench.text import format_table, number
@@ -32,11 +35,16 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     )
     parser.add_argument("--runs", type=int, default=3, metavar="N", help="the fastest of N runs counts (default 3)")
     parser.add_argument("--hard", action="store_true", help="measure hard meshes beside smooth ones of their size")
+    parser.add_argument("--from", dest="base", metavar="COMMIT", help="compare with this version in place of these")
 
 
 def run(arguments: argparse.Namespace) -> None:
     if arguments.runs < 1 or min(arguments.sizes) < 100:
         raise BenchmarkError("--runs must be at least 1, and each of --sizes at least 100 faces.")
+    if arguments.base is not None:
+        with one_thread_by_default(), checked_out(arguments.base) as base:
+            print(versions.render(versions.compare(base, max(arguments.sizes), arguments.runs)))
+        return
     if arguments.hard:
         with one_thread_by_default():
             pairs = [

@@ -62,5 +62,5 @@ def _measure(name: str, make: Callable[[], Mesh]) -> Cost:
         stage_s[current] += now - then
         current = stage
 
-    segment(mesh, on_progress=on_progress)
+    segment(mesh, on_progress=on_progress, threads=1)
     return Cost(name, len(mesh.faces), stage_s, peak_memory() - before, silence_s)

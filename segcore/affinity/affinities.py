@@ -33,6 +33,7 @@ class Affinity:
     value: FloatArray  # (E,) g in (0, 1]
     thickness: FloatArray | None = None  # (F,) logarithm of the shape diameter over sqrt(total area), smoothed
     confidence: FloatArray | None = None  # (F,) share of the rays that met the other side from inside
+    grain: IntArray | None = None  # (F,) groups of faces to begin a coarsening with, if the mesh is fine
 
 
 def concavity(surface: Surface, parameters: SegmentationParameters, on_part: OnPart = report_nothing) -> Affinity:
@@ -80,4 +81,4 @@ def _affinity(measured: Measurements, distance: FloatArray) -> Affinity:
     """g = 0.03 + 0.97 exp(-distance) with distances (E,), and the thickness of the patch of every face."""
     patch = measured.patches.of_face
     value = _FLOOR + (1.0 - _FLOOR) * np.exp(-distance)
-    return Affinity(value, measured.log_thickness[patch], measured.thickness.confidence[patch])
+    return Affinity(value, measured.log_thickness[patch], measured.thickness.confidence[patch], measured.patches.grain)

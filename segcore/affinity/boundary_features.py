@@ -9,13 +9,16 @@ from typing import NamedTuple
 import numpy as np
 from numba import njit
 
-from segcore.affinity.measurements import MEASURED, THICKNESS_RADIUS, Measurements
+from segcore.affinity.measurements import THICKNESS_RADIUS, Measurements
 from segcore.affinity.thickness import smooth_logarithm
-from segcore.arrays import FloatArray, IntArray, LongArray, group_sums
+from segcore.arrays import FloatArray, IntArray, LongArray
+from segcore.clean.edge_geometry import EdgeArrays, across_edge
 from segcore.clean.surface import Surface
-from segcore.learned.logistic import signed_log
+from segcore.learned.logistic import write_probabilities
 from segcore.learned.models import learned_models
+from segcore.learned.squeezing import squeeze
 from segcore.progress import OnPart, report_nothing
+from segcore.threads import in_blocks, sums_of_blocks
 
 # Radii of smoothing in sqrt(total area), set by hand. The model is trained with them; its card is
 # docs/explanation/learned-models.md.
@@ -55,8 +58,19 @@ _EXCESS_NEAR = FEATURES.index("thickness_excess_near")
 _EXCESS_FAR = FEATURES.index("thickness_excess_far")
 _CONFIDENCE = FEATURES.index("confidence")
 
+_PLAIN = (_THICKNESS, _EXCESS_NEAR, _EXCESS_FAR, _CONFIDENCE)  # that are no logarithms of numbers of any size
+
+# The first entries of the fields in a row of all of them, see ``_packed``.
+_SCALES = len(TENSOR_RADII)
+_MEANS = 6 * _SCALES
+_GRADIENTS = _MEANS + _SCALES
+_LOGARITHMS = _GRADIENTS + 3 * (_SCALES - 1)
+_SLOPES = _LOGARITHMS + len(THICKNESS_RADII)
+_SHARE = _SLOPES + 3 * len(THICKNESS_RADII)
+
 _PREDICTED = 0.92  # fraction of the processor time of the stage "affinity", as in measurements.py
-_BLOCK = 1 << 16  # edges whose features are in memory at a time: 16 MB
+_AT_ONCE = 512  # edges whose features are in memory at a time: 114 kB, which stay in the cache of a core
+_WIDTH = _AT_ONCE + 8  # of their rows: columns whose distance is a power of two would share few lines of the cache
 
 
 class PatchFields(NamedTuple):
@@ -70,12 +84,18 @@ class PatchFields(NamedTuple):
     confidence: FloatArray  # (P,)
 
 
-class _Edges(NamedTuple):
-    """Some mesh edges and the patches at their sides."""
+class _Inputs(NamedTuple):
+    """What the features of an edge are made from, beside the fields of the patches."""
 
-    patches: IntArray  # (N, 2)
-    across: FloatArray  # (N, 3) unit vectors in the surface, perpendicular to the edge
-    along: FloatArray  # (N, 3) from end to end
+    arrays: EdgeArrays
+    dihedral: FloatArray  # (E,)
+    typical_dihedral: float
+    half_size: float  # half the square root of the total area
+    k1: FloatArray  # (V,)
+    k2: FloatArray  # (V,)
+    bending: FloatArray  # (E,)
+    change: FloatArray  # (E,)
+    patch: IntArray  # (F,) of every face
 
 
 def boundary_probability(surface: Surface, measured: Measurements, on_part: OnPart = report_nothing) -> FloatArray:
@@ -85,14 +105,28 @@ def boundary_probability(surface: Surface, measured: Measurements, on_part: OnPa
     ----------
     on_part : called with the fraction of the stage "affinity" that is done.
     """
-    model = learned_models().boundary
-    fields = patch_fields(surface, measured)
+    model = learned_models().boundary.arrays()
+    inputs, fields = _inputs(surface, measured), _packed(patch_fields(surface, measured))
     probability = np.empty(len(surface.edge_faces))
-    for start in range(0, len(probability), _BLOCK):
-        block = slice(start, start + _BLOCK)
-        probability[block] = model.probability(edge_features(surface, measured, fields, block))
-        on_part(MEASURED + (_PREDICTED - MEASURED) * min(1.0, (start + _BLOCK) / len(probability)))
+    in_blocks(_write_boundary_probabilities, len(probability), inputs, fields, model, probability)
+    on_part(_PREDICTED)
     return probability
+
+
+def _inputs(surface: Surface, measured: Measurements) -> _Inputs:
+    edges, curvatures = measured.edges, measured.curvatures
+    half = 0.5 * measured.size
+    return _Inputs(
+        EdgeArrays.of(surface),
+        edges.dihedral,
+        edges.typical_dihedral,
+        half,
+        curvatures.k1,
+        curvatures.k2,
+        measured.bending,
+        measured.change,
+        measured.patches.of_face,
+    )
 
 
 def patch_fields(surface: Surface, measured: Measurements) -> PatchFields:
@@ -114,12 +148,28 @@ def patch_fields(surface: Surface, measured: Measurements) -> PatchFields:
 
 def _tensors(surface: Surface, measured: Measurements) -> FloatArray:
     """(P, 6) the normal cycle of every patch: sums of theta l / 2 over the edges of its faces, bent across the edge."""
-    half = 0.5 * measured.edges.dihedral * measured.edges.length
-    a, b = measured.patches.of_face[surface.edge_faces].T
-    count = len(measured.patches.area)
-    x, y, z = measured.edges.across.T
-    products = (x * x, y * y, z * z, x * y, x * z, y * z)
-    return np.stack([group_sums(a, half * p, count) + group_sums(b, half * p, count) for p in products], axis=1)
+    edges, count = measured.edges, len(measured.patches.area)
+    arrays = EdgeArrays.of(surface), edges.dihedral, edges.length, measured.patches.of_face, count
+    if len(edges.length) == 0:
+        return np.zeros((count, 6))
+    return sums_of_blocks(_patch_tensors, len(edges.length), *arrays, groups=count)
+
+
+@njit(cache=True, nogil=True)
+def _patch_tensors(start, end, arrays, dihedral, length, of_face, count):  # type: ignore[no-untyped-def]
+    tensors = np.zeros((count, 6))
+    for e in range(start, end):
+        half = 0.5 * dihedral[e] * length[e]
+        x, y, z = across_edge(arrays, e)
+        for side in range(2):
+            tensor = tensors[of_face[arrays.sides[e, side]]]
+            tensor[0] += half * (x * x)
+            tensor[1] += half * (y * y)
+            tensor[2] += half * (z * z)
+            tensor[3] += half * (x * y)
+            tensor[4] += half * (x * z)
+            tensor[5] += half * (y * z)
+    return tensors
 
 
 def edge_features(
@@ -127,77 +177,103 @@ def edge_features(
 ) -> FloatArray:
     """(N, M) the features of some dual edges, in the order of ``FEATURES``.
 
-    All but the thickness, its excess and the confidence are logarithms, signed_log(x) or log(1 + x). Quantities of
-    patches are means over the patches at both sides of the edge.
+    All but the thickness, its excess and the confidence are logarithms, sign(x) log(1 + |x|). Quantities of patches are
+    means over the patches at both sides of the edge.
 
     Parameters
     ----------
     chosen : N of the dual edges.
     """
-    ends = surface.vertices[surface.edge_vertices[chosen]]
-    features = np.empty((len(ends), len(FEATURES)))
-    features[:, _DIHEDRAL] = signed_log(measured.edges.dihedral[chosen] / measured.edges.typical_dihedral)
-    features[:, _K1] = signed_log(measured.k1[chosen])
-    features[:, _K2] = signed_log(measured.k2[chosen])
-    features[:, _BENDING] = np.log1p(measured.bending[chosen])
-    features[:, _CHANGE] = np.log1p(measured.change[chosen])
-    sides = measured.patches.of_face[surface.edge_faces[chosen]]
-    _fill_from_patches(features, _Edges(sides, measured.edges.across[chosen], ends[:, 1] - ends[:, 0]), fields)
-    return features
+    edges = np.arange(len(surface.edge_faces))[chosen]
+    columns = np.empty((len(FEATURES), len(edges)))
+    _write_features(edges, _inputs(surface, measured), _packed(fields), columns, np.empty((2, len(edges))))
+    return np.ascontiguousarray(columns.T)
 
 
-@njit(cache=True)
-def _fill_from_patches(features: FloatArray, edges: _Edges, fields: PatchFields) -> None:
-    """Write the columns that are made from patches into the features (N, M); the edge vectors become unit vectors."""
-    tensor, mean, thickness = fields.tensor, fields.mean, fields.thickness
-    step, slope = fields.mean_gradient, fields.thickness_gradient
-    scales = tensor.shape[1]
-    form = np.empty(6)
-    for i in range(len(edges.patches)):
-        f, g = edges.patches[i, 0], edges.patches[i, 1]
-        row, t, u = features[i], edges.across[i], edges.along[i]
-        length = np.sqrt(u[0] ** 2 + u[1] ** 2 + u[2] ** 2)
-        if length > 0.0:
-            u /= length
-        for s in range(scales):
-            for k in range(6):
-                form[k] = 0.5 * (tensor[f, s, k] + tensor[g, s, k])
-            row[_TENSORS + 3 * s] = _signed_log(_value(form, t, t))
-            row[_TENSORS + 3 * s + 1] = _signed_log(_value(form, u, u))
-            row[_TENSORS + 3 * s + 2] = np.log1p(abs(_value(form, t, u)))
-        for s in range(scales - 1):
-            row[_MEAN_STEPS + s] = np.log1p(_slope(step[f, s], step[g, s], t))
-            finer, coarser = 0.5 * (mean[f, s] + mean[g, s]), 0.5 * (mean[f, s + 1] + mean[g, s + 1])
-            row[_MEAN_EXCESSES + s] = _signed_log(finer - coarser)
-        near, middle, far = 0.5 * (thickness[f] + thickness[g])
-        row[_THICKNESS] = middle
-        for s in range(3):
-            row[_THICKNESS_STEPS + s] = np.log1p(_slope(slope[f, s], slope[g, s], t))
-        row[_THICKNESS_SLOPE] = np.log1p(_slope(slope[f, 1], slope[g, 1], u))
-        row[_EXCESS_NEAR] = near - middle
-        row[_EXCESS_FAR] = middle - far
-        row[_CONFIDENCE] = 0.5 * (fields.confidence[f] + fields.confidence[g])
+@njit(cache=True, nogil=True)
+def _write_boundary_probabilities(start, end, inputs, fields, model, probability):  # type: ignore[no-untyped-def]
+    columns, work = np.empty((len(model.mean), _WIDTH)), np.empty((2, _WIDTH))
+    for first in range(start, end, _AT_ONCE):
+        edges = np.arange(first, min(first + _AT_ONCE, end))
+        _write_features(edges, inputs, fields, columns, work)
+        write_probabilities(columns, model, probability[first : first + len(edges)])
 
 
-@njit(cache=True)
-def _value(form, a, b):  # type: ignore[no-untyped-def]
-    """The value of a symmetric bilinear form (xx, yy, zz, xy, xz, yz) at two vectors."""
+def _packed(fields: PatchFields) -> FloatArray:
+    """(P, 50) all fields of every patch in a row, in the order of ``PatchFields``."""
+    return np.concatenate([field.reshape(len(fields.confidence), -1) for field in fields], axis=1)
+
+
+@njit(cache=True, nogil=True, error_model="numpy")
+def _write_features(edges, inputs, fields, columns, work):  # type: ignore[no-untyped-def]
+    """Write the features of N edges into the first N entries of columns (M, at least N)."""
+    mean = np.empty(fields.shape[1])
+    f, g = -1, -1
+    for i in range(len(edges)):
+        one = inputs.patch[inputs.arrays.sides[edges[i], 0]]
+        other = inputs.patch[inputs.arrays.sides[edges[i], 1]]
+        if one != f or other != g:
+            f, g = one, other
+            for k in range(len(mean)):
+                mean[k] = 0.5 * (fields[f, k] + fields[g, k])
+        _write_numbers(i, edges[i], inputs, mean, columns)
+    for j in range(len(columns)):
+        if j not in _PLAIN:
+            squeeze(columns[j, : len(edges)], work)
+
+
+@njit(cache=True, nogil=True, error_model="numpy")
+def _write_numbers(i, e, inputs, mean, columns):  # type: ignore[no-untyped-def]
+    """Write the features of an edge, before their logarithms are taken, into column entries i.
+
+    Parameters
+    ----------
+    mean : (50,) the mean of the fields of the patches at its sides, see ``_packed``.
+    """
+    arrays = inputs.arrays
+    a, b = arrays.ends[e, 0], arrays.ends[e, 1]
+    columns[_DIHEDRAL, i] = inputs.dihedral[e] / inputs.typical_dihedral
+    columns[_K1, i] = inputs.half_size * (inputs.k1[a] + inputs.k1[b])
+    columns[_K2, i] = inputs.half_size * (inputs.k2[a] + inputs.k2[b])
+    columns[_BENDING, i] = inputs.bending[e]
+    columns[_CHANGE, i] = inputs.change[e]
+    t = across_edge(arrays, e)
+    ux = arrays.vertices[b, 0] - arrays.vertices[a, 0]
+    uy = arrays.vertices[b, 1] - arrays.vertices[a, 1]
+    uz = arrays.vertices[b, 2] - arrays.vertices[a, 2]
+    length = np.sqrt(ux * ux + uy * uy + uz * uz)
+    u = (ux / length, uy / length, uz / length) if length > 0.0 else (0.0, 0.0, 0.0)
+    for s in range(_SCALES):
+        columns[_TENSORS + 3 * s, i] = _value(mean, 6 * s, t, t)
+        columns[_TENSORS + 3 * s + 1, i] = _value(mean, 6 * s, u, u)
+        columns[_TENSORS + 3 * s + 2, i] = abs(_value(mean, 6 * s, t, u))
+    for s in range(_SCALES - 1):
+        columns[_MEAN_STEPS + s, i] = abs(_along(mean, _GRADIENTS + 3 * s, t))
+        columns[_MEAN_EXCESSES + s, i] = mean[_MEANS + s] - mean[_MEANS + s + 1]
+    near, middle, far = mean[_LOGARITHMS], mean[_LOGARITHMS + 1], mean[_LOGARITHMS + 2]
+    columns[_THICKNESS, i] = middle
+    for s in range(3):
+        columns[_THICKNESS_STEPS + s, i] = abs(_along(mean, _SLOPES + 3 * s, t))
+    columns[_THICKNESS_SLOPE, i] = abs(_along(mean, _SLOPES + 3, u))
+    columns[_EXCESS_NEAR, i] = near - middle
+    columns[_EXCESS_FAR, i] = middle - far
+    columns[_CONFIDENCE, i] = mean[_SHARE]
+
+
+@njit(cache=True, nogil=True)
+def _value(numbers, k, a, b):  # type: ignore[no-untyped-def]
+    """The value at two vectors of a symmetric bilinear form (xx, yy, zz, xy, xz, yz), numbers k to k + 5."""
     return (
-        form[0] * a[0] * b[0]
-        + form[1] * a[1] * b[1]
-        + form[2] * a[2] * b[2]
-        + form[3] * (a[0] * b[1] + a[1] * b[0])
-        + form[4] * (a[0] * b[2] + a[2] * b[0])
-        + form[5] * (a[1] * b[2] + a[2] * b[1])
+        numbers[k] * a[0] * b[0]
+        + numbers[k + 1] * a[1] * b[1]
+        + numbers[k + 2] * a[2] * b[2]
+        + numbers[k + 3] * (a[0] * b[1] + a[1] * b[0])
+        + numbers[k + 4] * (a[0] * b[2] + a[2] * b[0])
+        + numbers[k + 5] * (a[1] * b[2] + a[2] * b[1])
     )
 
 
-@njit(cache=True)
-def _slope(one, other, along):  # type: ignore[no-untyped-def]
-    """The absolute derivative along a vector of the mean of two gradients."""
-    return 0.5 * abs((one[0] + other[0]) * along[0] + (one[1] + other[1]) * along[1] + (one[2] + other[2]) * along[2])
-
-
-@njit(cache=True)
-def _signed_log(x):  # type: ignore[no-untyped-def]
-    return np.log1p(x) if x >= 0.0 else -np.log1p(-x)
+@njit(cache=True, nogil=True)
+def _along(numbers, k, direction):  # type: ignore[no-untyped-def]
+    """The derivative along a vector of a field with the gradient that numbers k to k + 2 are."""
+    return numbers[k] * direction[0] + numbers[k + 1] * direction[1] + numbers[k + 2] * direction[2]

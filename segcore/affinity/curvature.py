@@ -11,7 +11,7 @@ from typing import NamedTuple, TypeAlias
 import numpy as np
 from numba import njit
 
-from segcore.affinity.frames import tangent_frame
+from segcore.affinity.frames import tangent_vectors
 from segcore.arrays import FloatArray, IntArray
 
 _SLIVER = 1e-6  # twice the area over the squared longest edge below which a normal is rounding noise; set by hand
@@ -46,12 +46,10 @@ def principal_curvatures(vertices: FloatArray, faces: IntArray) -> PrincipalCurv
     return PrincipalCurvatures(k1=mean + spread, k2=mean - spread)
 
 
-class _VertexFrames(NamedTuple):
-    """A tangent frame at every vertex, and the area that the vertex stands for."""
+class _Stars(NamedTuple):
+    """The normal of every vertex, and the area that the vertex stands for."""
 
     normal: FloatArray  # (V, 3) unit normals
-    u: FloatArray  # (V, 3) unit tangents
-    v: FloatArray  # (V, 3) unit tangents, perpendicular to u
     area: FloatArray  # (V,) of the mixed Voronoi cell
 
 
@@ -70,25 +68,24 @@ class _Form(NamedTuple):
     g: float
 
 
-@njit(cache=True)
+@njit(cache=True, nogil=True, error_model="numpy")
 def _curvature_tensors(vertices: FloatArray, faces: IntArray) -> FloatArray:
     """(V, 3) the entries (e, f, g) of the second fundamental form in a tangent frame of every vertex."""
     count = len(vertices)
-    frames = _VertexFrames(np.zeros((count, 3)), np.empty((count, 3)), np.empty((count, 3)), np.zeros(count))
+    stars = _Stars(np.zeros((count, 3)), np.zeros(count))
     cells = np.zeros((len(faces), 3))
     for i in range(len(faces)):
-        _add_normals_and_cells(vertices, faces[i], frames, cells[i])
+        _add_normals_and_cells(vertices, faces[i], stars, cells[i])
     for v in range(count):
-        _normalize(frames.normal[v])
-        tangent_frame(frames.normal[v], frames.u[v], frames.v[v])
+        _normalize(stars.normal[v])
     tensor = np.zeros((count, 3))
     for i in range(len(faces)):
-        _add_face_tensor(vertices, faces[i], frames, cells[i], tensor)
+        _add_face_tensor(vertices, faces[i], stars, cells[i], tensor)
     return tensor
 
 
-@njit(cache=True)
-def _add_normals_and_cells(vertices: FloatArray, face: IntArray, frames: _VertexFrames, cells: FloatArray) -> None:
+@njit(cache=True, nogil=True, error_model="numpy")
+def _add_normals_and_cells(vertices: FloatArray, face: IntArray, stars: _Stars, cells: FloatArray) -> None:
     """Add a face to the normals of its vertices (weights of Max 1999) and to their areas (mixed Voronoi cells).
 
     The areas that its three corners get are written into ``cells`` (3,); they stay 0 for a sliver.
@@ -107,9 +104,9 @@ def _add_normals_and_cells(vertices: FloatArray, face: IntArray, frames: _Vertex
     weights = (1.0 / (lb * lc), 1.0 / (lc * la), 1.0 / (la * lb))
     for k in range(3):
         v = face[k]
-        frames.normal[v, 0] += weights[k] * nx
-        frames.normal[v, 1] += weights[k] * ny
-        frames.normal[v, 2] += weights[k] * nz
+        stars.normal[v, 0] += weights[k] * nx
+        stars.normal[v, 1] += weights[k] * ny
+        stars.normal[v, 2] += weights[k] * nz
     area = 0.5 * double_area
     # A corner with an obtuse angle gets half of the face and the others get a quarter.
     if la >= lb + lc:
@@ -125,10 +122,10 @@ def _add_normals_and_cells(vertices: FloatArray, face: IntArray, frames: _Vertex
         shares = ((lb * cot_b + lc * cot_c) / 8.0, (lc * cot_c + la * cot_a) / 8.0, (la * cot_a + lb * cot_b) / 8.0)
     for k in range(3):
         cells[k] = shares[k]
-        frames.area[face[k]] += shares[k]
+        stars.area[face[k]] += shares[k]
 
 
-@njit(cache=True)
+@njit(cache=True, nogil=True, error_model="numpy")
 def _normalize(normal: FloatArray) -> None:
     """Scale a normal (3,) to length 1, in place; a zero vector becomes the z-axis."""
     length = np.sqrt(normal[0] ** 2 + normal[1] ** 2 + normal[2] ** 2)
@@ -138,9 +135,9 @@ def _normalize(normal: FloatArray) -> None:
         normal[2] = 1.0
 
 
-@njit(cache=True)
+@njit(cache=True, nogil=True, error_model="numpy")
 def _add_face_tensor(
-    vertices: FloatArray, face: IntArray, frames: _VertexFrames, cells: FloatArray, tensor: FloatArray
+    vertices: FloatArray, face: IntArray, stars: _Stars, cells: FloatArray, tensor: FloatArray
 ) -> None:
     """Fit the second fundamental form of a face and add it to the tensors (V, 3) of its vertices."""
     if cells.max() <= 0.0:
@@ -158,7 +155,7 @@ def _add_face_tensor(
     for k in range(3):
         x, y, z = _edge(vertices, face, k)
         du, dv = x * tx + y * ty + z * tz, x * bx + y * by + z * bz
-        n0, n1 = frames.normal[face[(k + 1) % 3]], frames.normal[face[(k + 2) % 3]]
+        n0, n1 = stars.normal[face[(k + 1) % 3]], stars.normal[face[(k + 2) % 3]]
         dx, dy, dz = n1[0] - n0[0], n1[1] - n0[1], n1[2] - n0[2]
         nu, nv = dx * tx + dy * ty + dz * tz, dx * bx + dy * by + dz * bz
         suu += du * du
@@ -174,24 +171,23 @@ def _add_face_tensor(
     plane = _Plane((tx, ty, tz), (bx, by, bz))
     for k in range(3):
         v = face[k]
-        _add_rotated(form, plane, frames, v, cells[k] / frames.area[v], tensor[v])
+        _add_rotated(form, plane, stars, v, cells[k] / stars.area[v], tensor[v])
 
 
-@njit(cache=True)
+@njit(cache=True, nogil=True, error_model="numpy")
 def _edge(vertices: FloatArray, face: IntArray, k: int) -> Vector:
     """The edge opposite corner k, counter-clockwise."""
     a, b = vertices[face[(k + 1) % 3]], vertices[face[(k + 2) % 3]]
     return b[0] - a[0], b[1] - a[1], b[2] - a[2]
 
 
-@njit(cache=True)
-def _add_rotated(
-    form: _Form, plane: _Plane, frames: _VertexFrames, vertex: int, weight: float, tensor: FloatArray
-) -> None:
+@njit(cache=True, nogil=True, error_model="numpy")
+def _add_rotated(form: _Form, plane: _Plane, stars: _Stars, vertex: int, weight: float, tensor: FloatArray) -> None:
     """Rotate the frame of a vertex into the plane of a face, and add the form in that frame to the tensor (3,)."""
     (tx, ty, tz), (bx, by, bz) = plane
     e, f, g = form
-    normal, u, v = frames.normal[vertex], frames.u[vertex], frames.v[vertex]
+    normal = stars.normal[vertex]
+    u, v = tangent_vectors(normal[0], normal[1], normal[2])
     nx, ny, nz = ty * bz - tz * by, tz * bx - tx * bz, tx * by - ty * bx
     cosine = normal[0] * nx + normal[1] * ny + normal[2] * nz
     if cosine <= _OPPOSITE:

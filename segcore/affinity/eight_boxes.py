@@ -1,7 +1,7 @@
 """The entry of a ray into eight boxes at once, with vector instructions.
 
-numba compiles a loop over eight boxes to scalar instructions, because it unrolls the loop before LLVM could make vectors
-of it. The function is therefore given to LLVM as operations on vectors, which LLVM translates for any processor.
+numba compiles a loop over eight boxes to scalar instructions, because it unrolls the loop before LLVM could make
+vectors of it. The function is therefore given to LLVM as operations on vectors, which LLVM translates for any processor.
 """
 
 from typing import Any
@@ -16,7 +16,7 @@ _NONE = ir.Constant(_VECTOR, ir.Undefined)
 _FIRST = ir.Constant(ir.VectorType(ir.IntType(32), WIDTH), [0] * WIDTH)
 
 
-@intrinsic  # type: ignore[untyped-decorator]
+@intrinsic
 def enter_boxes(_context, groups, group, ray, nearest, entry):  # type: ignore[no-untyped-def]
     """Write the distances at which a ray enters eight boxes into ``entry``; bit k is set if it meets box k.
 

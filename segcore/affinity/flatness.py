@@ -83,7 +83,7 @@ def _are_large(surface: Surface, region: IntArray, dihedral: FloatArray) -> Bool
     return large
 
 
-@njit(cache=True)
+@njit(cache=True, nogil=True)
 def _grown(order: LongArray, rows: Rows, normals: FloatArray, cosine: float) -> IntArray:
     """(F,) regions grown breadth-first from the faces that have none yet, in an order (F,)."""
     region = np.full(len(order), -1, np.int32)

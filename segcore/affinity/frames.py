@@ -16,17 +16,18 @@ def tangent_frames(normals: FloatArray) -> tuple[FloatArray, FloatArray]:
     return u, v
 
 
-@njit(cache=True)
-def tangent_frame(normal: FloatArray, u: FloatArray, v: FloatArray) -> None:
-    """Write the frame of a unit normal (3,) into ``u`` and ``v``."""
-    sign = 1.0 if normal[2] >= 0.0 else -1.0
-    a = -1.0 / (sign + normal[2])
-    b = normal[0] * normal[1] * a
-    u[0], u[1], u[2] = 1.0 + sign * normal[0] ** 2 * a, sign * b, -sign * normal[0]
-    v[0], v[1], v[2] = b, sign + normal[1] ** 2 * a, -normal[1]
+@njit(cache=True, nogil=True, error_model="numpy")
+def tangent_vectors(x, y, z):  # type: ignore[no-untyped-def]
+    """The two vectors of the frame of a unit normal, three numbers each."""
+    sign = 1.0 if z >= 0.0 else -1.0
+    a = -1.0 / (sign + z)
+    b = x * y * a
+    return (1.0 + sign * x**2 * a, sign * b, -sign * x), (b, sign + y**2 * a, -y)
 
 
-@njit(cache=True)
+@njit(cache=True, nogil=True)
 def _tangent_frames(normals: FloatArray, u: FloatArray, v: FloatArray) -> None:
     for i in range(len(normals)):
-        tangent_frame(normals[i], u[i], v[i])
+        one, other = tangent_vectors(normals[i, 0], normals[i, 1], normals[i, 2])
+        u[i, 0], u[i, 1], u[i, 2] = one
+        v[i, 0], v[i, 1], v[i, 2] = other

@@ -3,14 +3,16 @@
 from dataclasses import dataclass
 
 import numpy as np
+from numba import njit
 
-from segcore.affinity.curvature import principal_curvatures
+from segcore.affinity.curvature import PrincipalCurvatures, principal_curvatures
 from segcore.affinity.patches import Patches, patches_of
 from segcore.affinity.thickness import Thickness, patch_thickness, smooth_logarithm
-from segcore.arrays import FloatArray, IntArray
-from segcore.clean.edge_geometry import EdgeGeometry
+from segcore.arrays import FloatArray
+from segcore.clean.edge_geometry import EdgeArrays, EdgeGeometry, across_edge
 from segcore.clean.surface import Surface
 from segcore.progress import OnPart, report_nothing
+from segcore.threads import in_blocks, meanwhile
 
 # The sources of these numbers are in docs/algorithm.md, "Constants" of section 2.
 _CURVATURE_SCALE = 8.0  # concave minimum curvature, times sqrt(total area), that bends as much as a mean dihedral angle
@@ -26,8 +28,8 @@ class Measurements:
     """Dimensionless quantities on the dual edges of a surface, and on its patches."""
 
     edges: EdgeGeometry
-    k1: FloatArray  # (E,) maximum curvature times sqrt(total area), mean over the ends of the edge
-    k2: FloatArray  # (E,) minimum curvature, likewise
+    size: float  # sqrt(total area)
+    curvatures: PrincipalCurvatures  # of the vertices
     bending: FloatArray  # (E,) concave bending, see ``measure``
     change: FloatArray  # (E,) change of thickness across the edge, 0 to 3
     patches: Patches
@@ -51,12 +53,13 @@ def measure(surface: Surface, seed: int, on_part: OnPart = report_nothing) -> Me
     seed : of the random order in which faces are merged into patches.
     on_part : called with the fraction of the stage "affinity" that is done.
     """
+    curved = meanwhile(principal_curvatures, surface.vertices, surface.faces)
     edges = EdgeGeometry.of(surface)
     size = float(np.sqrt(surface.areas.sum()))
-    curvatures = principal_curvatures(surface.vertices, surface.faces)
-    ends = surface.edge_vertices
-    k1, k2 = (0.5 * size * (k[ends[:, 0]] + k[ends[:, 1]]) for k in (curvatures.k1, curvatures.k2))
-    bending = np.maximum(0.0, -edges.dihedral) / edges.typical_dihedral + np.maximum(0.0, -k2) / _CURVATURE_SCALE
+    curvatures = curved()
+    bending = np.empty(len(edges.length))
+    bend = edges.typical_dihedral, 0.5 * size, surface.edge_vertices
+    in_blocks(_write_bending, len(bending), edges.dihedral, *bend, curvatures.k2, bending)
     guard = _LOWEST_GUARD + (1.0 - _LOWEST_GUARD) * np.exp(-bending)
     on_part(_CURVED)
     patches = patches_of(surface, guard, edges.positive_length, np.random.default_rng(seed))
@@ -64,13 +67,24 @@ def measure(surface: Surface, seed: int, on_part: OnPart = report_nothing) -> Me
     thickness = patch_thickness(surface, patches)
     log = smooth_logarithm(thickness, patches, THICKNESS_RADIUS * size)
     slope = patches.gradients(log) * (THICKNESS_RADIUS * size * thickness.confidence)[:, None]
-    change = _change_across(slope, patches.of_face[surface.edge_faces], edges.across)
+    change = np.empty(len(bending))
+    in_blocks(_write_change, len(change), EdgeArrays.of(surface), patches.of_face, slope, change)
     on_part(MEASURED)
-    return Measurements(edges, k1, k2, bending, change, patches, thickness, log)
+    return Measurements(edges, size, curvatures, bending, change, patches, thickness, log)
 
 
-def _change_across(slope: FloatArray, sides: IntArray, across: FloatArray) -> FloatArray:
-    """(E,) the derivative across every edge, from the slopes (P, 3) of the patches (E, 2) at its sides."""
-    along = np.einsum("ij,ij->i", 0.5 * (slope[sides[:, 0]] + slope[sides[:, 1]]), across)
-    change: FloatArray = np.minimum(_LARGEST_CHANGE, np.abs(along))
-    return change
+@njit(cache=True, nogil=True)
+def _write_bending(start, end, dihedral, typical, half_size, ends, k2, bending):  # type: ignore[no-untyped-def]
+    for e in range(start, end):
+        lowest = half_size * (k2[ends[e, 0]] + k2[ends[e, 1]])
+        bending[e] = max(0.0, -dihedral[e]) / typical + max(0.0, -lowest) / _CURVATURE_SCALE
+
+
+@njit(cache=True, nogil=True)
+def _write_change(start, end, arrays, of_face, slope, change):  # type: ignore[no-untyped-def]
+    """Write the derivative across every edge, from the slopes (P, 3) of the patches at its sides."""
+    for e in range(start, end):
+        x, y, z = across_edge(arrays, e)
+        one, other = slope[of_face[arrays.sides[e, 0]]], slope[of_face[arrays.sides[e, 1]]]
+        along = 0.5 * (one[0] + other[0]) * x + 0.5 * (one[1] + other[1]) * y + 0.5 * (one[2] + other[2]) * z
+        change[e] = min(_LARGEST_CHANGE, abs(along))

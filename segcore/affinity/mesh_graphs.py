@@ -60,7 +60,7 @@ def face_dual_graph(
         weight = cohesive_weights(surface, weight, length, is_piece)
     graph = SurfaceGraph(surface.edge_faces, weight, at_least(surface.areas, _SMALLEST_FACE), length)
     centroids = face_centroids(surface.vertices, surface.faces)
-    return MeshGraph(graph, centroids, None, affinity.thickness, affinity.confidence, surface.authored)
+    return MeshGraph(graph, centroids, None, affinity.thickness, affinity.confidence, surface.authored, affinity.grain)
 
 
 def vertex_graph(surface: Surface, parameters: SegmentationParameters) -> MeshGraph:

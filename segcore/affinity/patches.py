@@ -8,12 +8,13 @@ from dataclasses import dataclass
 import numpy as np
 from numba import njit
 
-from segcore.arrays import FloatArray, IntArray, at_least, group_sums
+from segcore.arrays import FloatArray, IntArray, at_least
 from segcore.clean.surface import Surface
+from segcore.coarsen.grains import grains_of
 from segcore.coarsen.matching import coarsen
 from segcore.graphs.laplacian import Elimination
 from segcore.graphs.surface_graph import SurfaceGraph
-from segcore.mesh import face_centroids
+from segcore.threads import sums_of_blocks
 
 COUNT = 2000  # of patches; set by hand
 # Patches of a surface have about six neighbours. If they have more than _MOST_NEIGHBOURS on average, because edges have
@@ -31,6 +32,7 @@ class Patches:
     """Connected patches of faces, a finite volume discretisation of the surface."""
 
     of_face: IntArray  # (F,) the patch of every face
+    grain: IntArray | None  # (F,) the groups of faces that the patches were made from, if the mesh is fine
     area: FloatArray  # (P,)
     centre: FloatArray  # (P, 3) centroids
     normal: FloatArray  # (P, 3) mean normals, of length 1 or 0
@@ -122,20 +124,21 @@ def patches_of(surface: Surface, affinity: FloatArray, length: FloatArray, rng: 
     """
     areas = at_least(surface.areas, _SMALLEST_FACE)
     graph = SurfaceGraph(surface.edge_faces, length * affinity, areas, length)
-    coarse, of_face = coarsen(graph, COUNT, rng, largest_share=_LARGEST_SHARE)
+    grain = grains_of(graph)
+    coarse, of_face = coarsen(graph, COUNT, rng, largest_share=_LARGEST_SHARE, grain=grain)
     if 2 * len(coarse.edges) > _MOST_NEIGHBOURS * coarse.node_count:
-        coarse, of_face = coarsen(graph, _FEW, rng, largest_share=_LARGEST_SHARE)
+        coarse, of_face = coarsen(graph, _FEW, rng, largest_share=_LARGEST_SHARE, grain=grain)
     count = coarse.node_count
-    centroids = face_centroids(surface.vertices, surface.faces)
-    centre = _sums(of_face, areas, centroids, count) / coarse.volume[:, None]
-    normal = _sums(of_face, areas, surface.normals, count)
+    arrays = of_face, areas, surface.vertices, surface.faces, surface.normals, count
+    sums = sums_of_blocks(_centres_and_normals, len(areas), *arrays, groups=count)
+    centre, normal = sums[:, :3] / coarse.volume[:, None], sums[:, 3:]
     size = np.linalg.norm(normal, axis=1, keepdims=True)
     normal = np.divide(normal, size, out=np.zeros_like(normal), where=size > 0)
     distance = np.linalg.norm(centre[coarse.edges[:, 1]] - centre[coarse.edges[:, 0]], axis=1)
     least = _SHORTEST_STEP * np.sqrt(coarse.total_volume / count)
     distance = np.maximum(distance, least)
     smoothing = _smoothing(coarse.edges, count)
-    return Patches(of_face, coarse.volume, centre, normal, coarse.edges, coarse.length, distance, smoothing)
+    return Patches(of_face, grain, coarse.volume, centre, normal, coarse.edges, coarse.length, distance, smoothing)
 
 
 def _smoothing(pairs: IntArray, count: int) -> Elimination:
@@ -144,6 +147,14 @@ def _smoothing(pairs: IntArray, count: int) -> Elimination:
     return Elimination.of(np.concatenate([pairs, spokes]), count + 1)
 
 
-def _sums(group: IntArray, weight: FloatArray, values: FloatArray, count: int) -> FloatArray:
-    """(count, 3) the weighted sums of values (N, 3) over groups."""
-    return np.stack([group_sums(group, weight * values[:, axis], count) for axis in range(3)], axis=1)
+@njit(cache=True, nogil=True)
+def _centres_and_normals(start, end, group, weight, vertices, faces, normals, count):  # type: ignore[no-untyped-def]
+    """(count, 6) the weighted sums of the centroids and the normals of some faces over groups."""
+    sums = np.zeros((count, 6))
+    for f in range(start, end):
+        a, b, c = vertices[faces[f, 0]], vertices[faces[f, 1]], vertices[faces[f, 2]]
+        row = sums[group[f]]
+        for axis in range(3):
+            row[axis] += weight[f] * ((a[axis] + b[axis] + c[axis]) / 3.0)
+            row[3 + axis] += weight[f] * normals[f, axis]
+    return sums

@@ -12,7 +12,7 @@ from typing import NamedTuple
 import numpy as np
 from numba import njit
 
-from segcore.affinity.frames import tangent_frame
+from segcore.affinity.frames import tangent_vectors
 from segcore.affinity.patches import Patches
 from segcore.affinity.rays import RayCaster, budget_of_visits, inner_distance
 from segcore.arrays import FloatArray, IntArray, LongArray, at_least
@@ -118,7 +118,7 @@ def _distances(surface: Surface, patches: Patches, chosen: LongArray, size: floa
     first = np.concatenate([[0], np.cumsum(np.bincount(patches.of_face, minlength=count))])
     faces = _Faces(surface.faces, surface.vertices, surface.normals, at_least(surface.areas, _SMALLEST_FACE))
     samples = _Samples(order, first, chosen, patches.normal, _START * size)
-    return _cast(RayCaster.of(surface.vertices, surface.faces), faces, samples, _disc())
+    return _cast(RayCaster.of(surface.vertices, surface.faces, patches.grain), faces, samples, _disc())
 
 
 @njit(cache=True)
@@ -131,7 +131,7 @@ def _cast(caster: RayCaster, faces: _Faces, samples: _Samples, disc: FloatArray)
     rays = len(disc)
     distance = np.empty((len(samples.chosen), rays))
     budget = budget_of_visits()
-    origin, inward, u, v = np.empty(3), np.empty(3), np.empty(3), np.empty(3)
+    origin, inward, direction = np.empty(3), np.empty(3), np.empty(3)
     for row in range(len(distance)):
         patch = samples.chosen[row]
         place, last = samples.first[patch], samples.first[patch + 1] - 1
@@ -156,14 +156,14 @@ def _cast(caster: RayCaster, faces: _Faces, samples: _Samples, disc: FloatArray)
                     + root * disc[j, 3] * faces.vertices[c, i]
                     + samples.start * inward[i]
                 )
-            tangent_frame(inward, u, v)
+            u, v = tangent_vectors(inward[0], inward[1], inward[2])
             for i in range(3):
-                u[i] = disc[j, 0] * u[i] + disc[j, 1] * v[i] + disc[j, 2] * inward[i]
-            distance[row, j] = inner_distance(caster, origin, u, budget)
+                direction[i] = disc[j, 0] * u[i] + disc[j, 1] * v[i] + disc[j, 2] * inward[i]
+            distance[row, j] = inner_distance(caster, origin, direction, budget)
     return distance
 
 
-@njit(cache=True)
+@njit(cache=True, nogil=True)
 def _typical(distances: FloatArray, cosines: FloatArray) -> tuple[FloatArray, FloatArray]:
     """(P,) the weighted mean of the distances near their median, 0 if there are none, and (P,) the share of hits.
 

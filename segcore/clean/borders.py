@@ -26,7 +26,7 @@ def ends_of(borders: IntArray, faces: IntArray) -> IntArray:
     return np.stack([faces[face, corner], faces[face, (corner + 1) % 3]], axis=1)
 
 
-@njit(cache=True)
+@njit(cache=True, nogil=True)
 def _paired(faces: IntArray, pairs: IntArray, ends: IntArray) -> BoolArray:
     """(F, 3) True for the edges, each beginning at a corner, that another face has as well."""
     paired = np.zeros((len(faces), 3), np.bool_)

@@ -8,7 +8,7 @@ from segcore.arrays import BoolArray, FloatArray, IntArray
 _SLIVER = 1e-6  # area over squared longest edge below which the normal is rounding noise; set by hand
 
 
-@njit(cache=True)
+@njit(cache=True, nogil=True)
 def patch_volumes(
     vertices: FloatArray, faces: IntArray, patch: IntArray, is_flipped: BoolArray, count: int
 ) -> tuple[FloatArray, FloatArray]:
@@ -46,7 +46,7 @@ def patch_volumes(
     return area, volume
 
 
-@njit(cache=True)
+@njit(cache=True, nogil=True)
 def flipped(faces: IntArray, is_flipped: BoolArray) -> IntArray:
     """(F, 3) the faces, some of them with their last two corners exchanged."""
     oriented = faces.copy()
@@ -56,7 +56,7 @@ def flipped(faces: IntArray, is_flipped: BoolArray) -> IntArray:
     return oriented
 
 
-@njit(cache=True)
+@njit(cache=True, nogil=True)
 def reliable_normals(vertices: FloatArray, faces: IntArray) -> tuple[FloatArray, FloatArray]:
     """Unit normals (F, 3), zero for slivers without a reliable direction, and areas (F,)."""
     normals = np.zeros((len(faces), 3))
@@ -77,7 +77,7 @@ def reliable_normals(vertices: FloatArray, faces: IntArray) -> tuple[FloatArray,
     return normals, areas
 
 
-@njit(cache=True)
+@njit(cache=True, nogil=True)
 def _centroid_and_cross(vertices, face):  # type: ignore[no-untyped-def]
     """The centroid of a face, and the cross product of two of its edges."""
     a, b, c = vertices[face[0]], vertices[face[1]], vertices[face[2]]

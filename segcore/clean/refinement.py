@@ -114,7 +114,7 @@ def _surface_of_pieces(surface: Surface, vertices: FloatArray, faces: IntArray, 
     )
 
 
-@njit(cache=True)
+@njit(cache=True, nogil=True)
 def _length(vertices, p, q):  # type: ignore[no-untyped-def]
     squared = 0.0
     for axis in range(3):
@@ -122,7 +122,7 @@ def _length(vertices, p, q):  # type: ignore[no-untyped-def]
     return np.sqrt(squared)
 
 
-@njit(cache=True)
+@njit(cache=True, nogil=True)
 def _longest_edge(vertices: FloatArray, faces: IntArray, allowed: FloatArray) -> float:
     """The largest ratio of an edge to the length allowed to its face."""
     longest = 0.0
@@ -132,7 +132,7 @@ def _longest_edge(vertices: FloatArray, faces: IntArray, allowed: FloatArray) ->
     return longest
 
 
-@njit(cache=True)
+@njit(cache=True, nogil=True)
 def _long_edges(vertices: FloatArray, faces: IntArray, allowed: FloatArray) -> BoolArray:
     """(F, 3) True if the edge from a corner to the next is longer than its face is allowed."""
     is_long = np.empty(faces.shape, np.bool_)
@@ -142,7 +142,7 @@ def _long_edges(vertices: FloatArray, faces: IntArray, allowed: FloatArray) -> B
     return is_long
 
 
-@njit(cache=True)
+@njit(cache=True, nogil=True)
 def _divided(vertices: FloatArray, faces: IntArray, middle: IntArray) -> tuple[IntArray, IntArray]:
     """The faces cut between the midpoints of their edges (M, 3), and (M,) the face that each is part of.
 
@@ -191,7 +191,7 @@ def _divided(vertices: FloatArray, faces: IntArray, middle: IntArray) -> tuple[I
     return pieces, origin
 
 
-@njit(cache=True)
+@njit(cache=True, nogil=True)
 def _put(pieces, n, a, b, c):  # type: ignore[no-untyped-def]
     pieces[n, 0], pieces[n, 1], pieces[n, 2] = a, b, c
     return n + 1

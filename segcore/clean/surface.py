@@ -13,7 +13,7 @@ from scipy.spatial import KDTree
 from segcore.arrays import BoolArray, FloatArray, IntArray, group_sums
 from segcore.clean.orientation import flipped, patch_volumes, reliable_normals
 from segcore.clean.stitching import stitch
-from segcore.clean.topology import DualEdges, consistent_orientation, dual_edges, first_equal_row
+from segcore.clean.topology import DualEdges, consistent_orientation, dual_edges, first_equal_row, sorted_rows
 from segcore.clean.welding import weld
 from segcore.graphs.surface_graph import SurfaceGraph, rows_of
 from segcore.mesh import Mesh, face_centroids
@@ -98,7 +98,7 @@ def distinct_faces(corners: IntArray) -> tuple[IntArray, IntArray]:
     a, b, c = corners.T
     proper = (a != b) & (b != c) & (c != a)
     candidates = np.flatnonzero(proper)
-    first = first_equal_row(np.sort(corners[candidates], axis=1).astype(np.int64))
+    first = first_equal_row(sorted_rows(corners, candidates))
     is_first = first == np.arange(len(first))
     position = np.cumsum(is_first) - 1
     representative = np.full(len(corners), -1, dtype=np.int32)

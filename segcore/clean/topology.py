@@ -21,7 +21,7 @@ class DualEdges(NamedTuple):
     disagrees: BoolArray  # (E,) both faces run through the edge in the same direction: their orientations differ
 
 
-@njit(cache=True)
+@njit(cache=True, nogil=True)
 def mixed_bits(key: np.uint64) -> np.uint64:
     """The finaliser of SplitMix64: mixes the bits of a key over the whole word."""
     key = (key ^ (key >> np.uint64(30))) * np.uint64(0xBF58476D1CE4E5B9)
@@ -29,8 +29,8 @@ def mixed_bits(key: np.uint64) -> np.uint64:
     return key ^ (key >> np.uint64(31))
 
 
-@njit(cache=True)
-def first_equal_row(rows: LongArray) -> IntArray:
+@njit(cache=True, nogil=True)
+def first_equal_row(rows: LongArray | IntArray) -> IntArray:
     """(N,) for every row of (N, 3) the index of the first row equal to it, by a hash table with open addressing."""
     count = len(rows)
     capacity = 16
@@ -55,7 +55,18 @@ def first_equal_row(rows: LongArray) -> IntArray:
     return first
 
 
-@njit(cache=True)
+@njit(cache=True, nogil=True)
+def sorted_rows(rows: IntArray, chosen: LongArray) -> IntArray:
+    """(M, 3) some rows of (N, 3), the numbers of each in ascending order."""
+    ascending = np.empty((len(chosen), 3), np.int32)
+    for i in range(len(chosen)):
+        a, b, c = rows[chosen[i], 0], rows[chosen[i], 1], rows[chosen[i], 2]
+        least, most = min(a, b, c), max(a, b, c)
+        ascending[i, 0], ascending[i, 1], ascending[i, 2] = least, max(min(a, b), min(max(a, b), c)), most
+    return ascending
+
+
+@njit(cache=True, nogil=True)
 def _first_half_edges(faces: IntArray, vertex_count: int) -> LongArray:
     """(V + 1,) the first half-edge of every vertex if half-edges are sorted by their smaller end."""
     start = np.zeros(vertex_count + 1, np.int64)
@@ -76,7 +87,7 @@ class _HalfEdges(NamedTuple):
     forward: BoolArray  # (3 F,) whether the face has the lower end first
 
 
-@njit(cache=True)
+@njit(cache=True, nogil=True)
 def _half_edges(faces: IntArray, vertex_count: int) -> _HalfEdges:
     """O(F log D) if D edges at most have one lower end."""
     half_edges = 3 * len(faces)
@@ -107,7 +118,7 @@ def _half_edges(faces: IntArray, vertex_count: int) -> _HalfEdges:
     return _HalfEdges(start, far_end, owner, forward)
 
 
-@njit(cache=True)
+@njit(cache=True, nogil=True)
 def dual_edges(faces: IntArray, vertex_count: int) -> DualEdges:
     """Pairs of faces (F, 3) that share an edge, ordered by the ends of the edge.
 
@@ -138,7 +149,7 @@ def dual_edges(faces: IntArray, vertex_count: int) -> DualEdges:
     return DualEdges(pairs[:count].copy(), ends[:count].copy(), is_manifold[:count].copy(), disagrees[:count].copy())
 
 
-@njit(cache=True)
+@njit(cache=True, nogil=True)
 def border_vertices(faces: IntArray, vertex_count: int) -> BoolArray:
     """(V,) True for the ends of edges of exactly one face (F, 3); edges between equal corners do not count."""
     edges = _half_edges(faces, vertex_count)
@@ -156,7 +167,7 @@ def border_vertices(faces: IntArray, vertex_count: int) -> BoolArray:
     return border
 
 
-@njit(cache=True)
+@njit(cache=True, nogil=True)
 def consistent_orientation(rows: Rows, dual: DualEdges) -> tuple[IntArray, BoolArray]:
     """Patches of faces that are connected by manifold edges, and the faces to flip within each.
 

@@ -36,14 +36,15 @@ def cluster_nodes(mesh_graph: MeshGraph, target: int, rng: np.random.Generator) 
     """
     graph, points = mesh_graph.graph, mesh_graph.points
     component = connected_components(graph.edges, graph.node_count)
-    authored = mesh_graph.authored
+    authored, grain = mesh_graph.authored, mesh_graph.grain
     is_host = largest(component, graph.volume, MOST_COMPONENTS)
     is_host |= largest_of_each_part(component, graph.volume, authored)
     if is_host.all():
-        coarse, of_node = coarsen(graph, target or graph.node_count, rng)
+        coarse, of_node = coarsen(graph, target or graph.node_count, rng, grain=grain)
     else:
         host_nodes = np.flatnonzero(is_host[component]).astype(np.int32)
-        coarse, of_host = coarsen(graph.subgraph(host_nodes), target or graph.node_count, rng)
+        of_host_nodes = None if grain is None else grain[host_nodes]
+        coarse, of_host = coarsen(graph.subgraph(host_nodes), target or graph.node_count, rng, grain=of_host_nodes)
         pairs = nearest_hosts(component, is_host, apart(points, authored))
         of_node = _with_small_components(of_host, host_nodes, component, pairs)
     return _with_means(coarse, of_node, mesh_graph)

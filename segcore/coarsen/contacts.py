@@ -130,7 +130,7 @@ def _partners(position: FloatArray, component: IntArray, radius: float) -> tuple
     return order[pairs].astype(np.int32), distance
 
 
-@njit(cache=True)
+@njit(cache=True, nogil=True)
 def _pairs_in_cells(position, component, key, squared_radius):  # type: ignore[no-untyped-def]
     """The search of ``_partners`` among points that are sorted by the keys of their cells."""
     count = len(position)
@@ -153,7 +153,7 @@ def _pairs_in_cells(position, component, key, squared_radius):  # type: ignore[n
     return found.pairs[:used].copy(), np.sqrt(found.squared[:used])
 
 
-@njit(cache=True)
+@njit(cache=True, nogil=True)
 def _keep_nearest(found, component, first, used, i, j, squared):  # type: ignore[no-untyped-def]
     """Enter j as the partner of i if it is the nearest point of its component; return the number of pairs then.
 

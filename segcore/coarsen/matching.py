@@ -10,6 +10,7 @@ import numpy as np
 from numba import njit
 
 from segcore.arrays import FloatArray, IntArray, LongArray, group_sums
+from segcore.coarsen.grains import merged_grains
 from segcore.graphs.surface_graph import SurfaceGraph
 
 # The sources of these numbers are in docs/algorithm.md, "Constants" of section 3.
@@ -37,6 +38,7 @@ def coarsen(
     rng: np.random.Generator,
     *,
     largest_share: float = LARGEST_SHARE,
+    grain: IntArray | None = None,
 ) -> tuple[SurfaceGraph, IntArray]:
     """Merge the nodes of a graph into about ``target`` connected clusters. O(E log E).
 
@@ -44,6 +46,7 @@ def coarsen(
     ----------
     target : number of clusters at which to stop. A graph without more nodes is returned as it is.
     largest_share : volume of the largest cluster, in mean volumes of the target.
+    grain : (N,) the groups of nodes to begin with; None to begin with the nodes. See ``segcore.coarsen.grains``.
     rng : randomises the order of visits; visiting nodes by volume alone leaves regular patterns on regular meshes.
 
     Returns
@@ -51,7 +54,10 @@ def coarsen(
     The graph of the clusters (weights and lengths summed over parallel edges, volumes summed), and (N,) the cluster of
     every node.
     """
-    cluster = np.arange(graph.node_count, dtype=np.int32)
+    if grain is None or graph.node_count <= target:
+        cluster = np.arange(graph.node_count, dtype=np.int32)
+    else:
+        graph, cluster = merged_grains(graph, grain)
     rows = graph.rows()
     adjacency = _Adjacency(rows.start, rows.neighbour, graph.weight[rows.edge], graph.length[rows.edge])
     volume = graph.volume
@@ -76,7 +82,7 @@ def coarsen(
     return SurfaceGraph(edges, adjacency.weight[once], volume, adjacency.border[once]), cluster
 
 
-@njit(cache=True)
+@njit(cache=True, nogil=True)
 def _match(
     order: LongArray, graph: _Adjacency, volume: FloatArray, guard: float, largest: float, most_merges: int
 ) -> tuple[IntArray, int]:
@@ -122,7 +128,7 @@ def _match(
     return merged, count
 
 
-@njit(cache=True)
+@njit(cache=True, nogil=True)
 def _contract(merged: IntArray, count: int, graph: _Adjacency) -> _Adjacency:
     """The graph of the merged nodes, at most two in each; parallel edges are summed.
 

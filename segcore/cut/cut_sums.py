@@ -58,8 +58,8 @@ def sums_of_cuts(part: SegmentFields, chosen: BoolArray, body_area: FloatArray) 
         np.zeros((count, 2, 3)), np.zeros((count, 2, 3)),
     )  # fmt: skip
     cuts = CutSums(
-        np.zeros(count), np.zeros(count), np.zeros(count), np.zeros(count), np.zeros(count), np.zeros(count), np.zeros(count),
-        np.full(count, -1, dtype=np.int32), np.zeros(count),
+        np.zeros(count), np.zeros(count), np.zeros(count), np.zeros(count), np.zeros(count), np.zeros(count),
+        np.zeros(count), np.full(count, -1, dtype=np.int32), np.zeros(count),
     )  # fmt: skip
     for n in range(count):
         small = _smaller(part, chosen[n])

@@ -4,6 +4,7 @@ from dataclasses import dataclass
 from typing import NamedTuple
 
 import numpy as np
+from numba import njit
 
 from segcore.arrays import FloatArray, IntArray, group_sums
 from segcore.clean.edge_geometry import dihedral_angles, edge_lengths
@@ -11,6 +12,7 @@ from segcore.clean.surface import Surface
 from segcore.coarsen.clusters import Clusters
 from segcore.cut.bodies import Bodies, pieces_of
 from segcore.graphs.surface_graph import EdgeIndex, SurfaceGraph, induced_edges
+from segcore.threads import in_blocks
 
 _COPLANAR = np.deg2rad(1.0)  # largest dihedral angle of two faces of a plane; set by hand
 
@@ -137,11 +139,30 @@ def cluster_fields(surface: Surface, clusters: Clusters) -> ClusterFields:
 
 def _open_border(surface: Surface, length: FloatArray) -> FloatArray:
     """(F,) the length of the edges of every face that no other face shares."""
-    a, b, c = surface.vertices[surface.faces].transpose(1, 0, 2)
-    perimeter = sum(np.linalg.norm(q - p, axis=1) for p, q in ((a, b), (b, c), (c, a)))
-    shared = group_sums(surface.edge_faces.ravel(), np.repeat(length, 2), len(surface.faces))
+    perimeter = np.empty(len(surface.faces))
+    in_blocks(_write_perimeters, len(perimeter), surface.vertices, surface.faces, perimeter)
+    shared = _sums_at_ends(surface.edge_faces, length, len(perimeter))
     rounding = 1e-9 * perimeter
     return np.where(perimeter - shared > rounding, np.maximum(perimeter - shared, 0.0), 0.0)
+
+
+@njit(cache=True, nogil=True)
+def _write_perimeters(start, end, vertices, faces, perimeter):  # type: ignore[no-untyped-def]
+    for f in range(start, end):
+        perimeter[f] = 0.0
+        for k in range(3):
+            p, q = vertices[faces[f, k]], vertices[faces[f, (k + 1) % 3]]
+            perimeter[f] += np.sqrt((q[0] - p[0]) ** 2 + (q[1] - p[1]) ** 2 + (q[2] - p[2]) ** 2)
+
+
+@njit(cache=True, nogil=True)
+def _sums_at_ends(edges: IntArray, values: FloatArray, count: int) -> FloatArray:
+    """(count,) the sum of the values (E,) of the edges (E, 2) at every node."""
+    sums = np.zeros(count)
+    for e in range(len(edges)):
+        sums[edges[e, 0]] += values[e]
+        sums[edges[e, 1]] += values[e]
+    return sums
 
 
 def _flat_share(surface: Surface, length: FloatArray, clusters: Clusters) -> FloatArray:
@@ -152,7 +173,7 @@ def _flat_share(surface: Surface, length: FloatArray, clusters: Clusters) -> Flo
     edge = EdgeIndex.of(graph).find(ends[crossing])
     known = edge >= 0  # a surface that is nearly symmetric has borders that the symmetric graph leaves out
     crossing, edge = crossing[known], edge[known]
-    is_flat = np.abs(dihedral_angles(surface)[crossing]) < _COPLANAR
+    is_flat = np.abs(dihedral_angles(surface, crossing)) < _COPLANAR
     flat = group_sums(edge, length[crossing] * is_flat, len(graph.edges))
     border = group_sums(edge, length[crossing], len(graph.edges))
     share: FloatArray = np.divide(flat, border, out=np.zeros(len(border)), where=border > 0.0)

@@ -104,10 +104,10 @@ def distinct_cuts(sides: BoolArray) -> BoolArray:
 @njit(cache=True)
 def _are_equal(side: BoolArray, canonical: BoolArray) -> bool:
     """Whether two sets are the same bipartition; node 0 is in the second."""
+    is_equal = True
     for i in range(len(side)):
-        if (side[i] == side[0]) != canonical[i]:
-            return False
-    return True
+        is_equal = is_equal and (side[i] == side[0]) == canonical[i]
+    return is_equal
 
 
 def cut_weight(graph: SurfaceGraph, side: BoolArray) -> float:

@@ -18,6 +18,7 @@ class MeshGraph:
     thickness: FloatArray | None = None  # (N,) logarithm of the shape diameter over sqrt(total area); None if unknown
     confidence: FloatArray | None = None  # (N,) share of the rays that met the other side from inside; None if unknown
     authored: IntArray | None = None  # (N,) the part of the structure of the file, if the cuts follow it
+    grain: IntArray | None = None  # (N,) groups of nodes to begin a coarsening with, if the mesh is fine
 
     @property
     def of_face(self) -> IntArray:

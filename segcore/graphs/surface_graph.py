@@ -138,7 +138,12 @@ def connected_components(edges: IntArray, node_count: int) -> IntArray:
     return components_of_edges(edges, node_count)
 
 
-@njit(cache=True)
+def components_inside(edges: IntArray, group: IntArray) -> IntArray:
+    """(N,) int32 connected component of every node in the graph of the edges that lie inside a group (N,)."""
+    return components_within(edges, group)[0]
+
+
+@njit(cache=True, nogil=True)
 def rows_of_edges(edges: IntArray, node_count: int) -> Rows:
     """``rows_of`` for use in other kernels."""
     start = np.zeros(node_count + 1, dtype=np.int32)
@@ -159,7 +164,7 @@ def rows_of_edges(edges: IntArray, node_count: int) -> Rows:
     return Rows(start, neighbour, edge)
 
 
-@njit(cache=True)
+@njit(cache=True, nogil=True)
 def induced_edges(edges: IntArray, nodes: IntArray, node_count: int) -> tuple[IntArray, IntArray]:
     """(M, 2) edges inside a set of nodes, numbered as in ``nodes``, and (M,) their indices in ``edges``."""
     local = np.full(node_count, -1, dtype=np.int32)
@@ -180,17 +185,17 @@ def induced_edges(edges: IntArray, nodes: IntArray, node_count: int) -> tuple[In
     return induced, kept[:count]
 
 
-@njit(cache=True)
-def components_within(edges: IntArray, side: BoolArray) -> tuple[IntArray, int]:
-    """(N,) the components of a graph without the edges between a set of nodes (N,) and the rest; their number."""
-    parent = np.arange(len(side)).astype(np.int32)
+@njit(cache=True, nogil=True)
+def components_within(edges: IntArray, group: IntArray | BoolArray) -> tuple[IntArray, int]:
+    """(N,) the components of a graph without the edges between groups of nodes (N,), and their number."""
+    parent = np.arange(len(group)).astype(np.int32)
     for e in range(len(edges)):
-        if side[edges[e, 0]] == side[edges[e, 1]]:
+        if group[edges[e, 0]] == group[edges[e, 1]]:
             _join(parent, edges[e, 0], edges[e, 1])
     return _numbered(parent)
 
 
-@njit(cache=True)
+@njit(cache=True, nogil=True)
 def components_of_edges(edges: IntArray, node_count: int) -> IntArray:
     """``connected_components`` for use in other kernels."""
     parent = np.arange(node_count).astype(np.int32)
@@ -199,7 +204,7 @@ def components_of_edges(edges: IntArray, node_count: int) -> IntArray:
     return _numbered(parent)[0]
 
 
-@njit(cache=True)
+@njit(cache=True, nogil=True)
 def _join(parent, a, b):  # type: ignore[no-untyped-def]
     """Union-find with path halving; the root of a component is its smallest node."""
     while parent[a] != a:
@@ -214,7 +219,7 @@ def _join(parent, a, b):  # type: ignore[no-untyped-def]
         parent[a] = b
 
 
-@njit(cache=True)
+@njit(cache=True, nogil=True)
 def _numbered(parent):  # type: ignore[no-untyped-def]
     """(N,) the components 0, 1, ... by their smallest nodes, and their number."""
     count = 0

@@ -3,7 +3,7 @@
 import numpy as np
 
 from segcore.arrays import IntArray
-from segcore.graphs.surface_graph import SurfaceGraph, connected_components
+from segcore.graphs.surface_graph import SurfaceGraph, components_inside
 from segcore.label.leaves import crossing_edges
 from segcore.symmetry.images import MirrorImage
 from segcore.symmetry.pieces import in_one_piece
@@ -48,8 +48,7 @@ def _images(place: IntArray, of_face: IntArray, count: int) -> IntArray:
 
 def _pieces(graph: SurfaceGraph, place: IntArray) -> int:
     """The number of pieces of all leaves together."""
-    a, b = graph.edges.T
-    return int(connected_components(graph.edges[place[a] == place[b]], graph.node_count).max()) + 1
+    return int(components_inside(graph.edges, place).max()) + 1
 
 
 def _crossed(graph: SurfaceGraph, place: IntArray, split_at: IntArray) -> IntArray:

@@ -2,7 +2,7 @@
 
 from collections.abc import Mapping
 from dataclasses import dataclass
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 from numba import njit
@@ -42,7 +42,22 @@ class LogisticModel:
 
     def probability(self, features: FloatArray) -> FloatArray:
         """(N,) in (0, 1) for features (N, M)."""
-        return _probabilities(features, self.mean, self.scale, self.weight.reshape(4, -1), self.bias)
+        probability = np.empty(len(features))
+        write_probabilities(np.ascontiguousarray(features.T), self.arrays(), probability)
+        return probability
+
+    def arrays(self) -> "LogisticArrays":
+        """The numbers of the model for compiled code."""
+        return LogisticArrays(self.mean, self.scale, self.weight.reshape(4, -1), self.bias)
+
+
+class LogisticArrays(NamedTuple):
+    """The numbers of a :class:`LogisticModel`."""
+
+    mean: FloatArray  # (M,)
+    scale: FloatArray  # (M,)
+    weight: FloatArray  # (4, M)
+    bias: float
 
 
 def basis(standardised: FloatArray) -> FloatArray:
@@ -51,21 +66,19 @@ def basis(standardised: FloatArray) -> FloatArray:
     return np.concatenate([z, z * z, np.maximum(z - _HINGE, 0.0), np.maximum(-z - _HINGE, 0.0)], axis=1)
 
 
-@njit(cache=True)
-def _probabilities(features, mean, scale, weight, bias):  # type: ignore[no-untyped-def]
-    """The logistic function of bias + weight . basis, without an array of the basis. Weights are (4, M)."""
-    probability = np.empty(len(features))
-    for i in range(len(features)):
-        score = bias
-        for j in range(len(mean)):
-            z = min(max((features[i, j] - mean[j]) / scale[j], -_CLIP), _CLIP)
-            score += weight[0, j] * z + weight[1, j] * z * z
-            score += weight[2, j] * max(z - _HINGE, 0.0) + weight[3, j] * max(-z - _HINGE, 0.0)
-        probability[i] = 1.0 / (1.0 + np.exp(-score))
-    return probability
+@njit(cache=True, nogil=True, error_model="numpy")
+def write_probabilities(columns, model, probability):  # type: ignore[no-untyped-def]
+    """The logistic function of bias + weight . basis, without an array of the basis, for columns (M, N) of features.
 
-
-def signed_log(x: FloatArray) -> FloatArray:
-    """sign(x) log(1 + |x|): linear near 0, logarithmic in the tails."""
-    squeezed: FloatArray = np.sign(x) * np.log1p(np.abs(x))
-    return squeezed
+    The loops over the rows are innermost, for vector instructions.
+    """
+    probability[:] = model.bias
+    for j in range(len(columns)):
+        mean, scale = model.mean[j], model.scale[j]
+        a, b, c, d = model.weight[0, j], model.weight[1, j], model.weight[2, j], model.weight[3, j]
+        for i in range(len(probability)):
+            z = min(max((columns[j, i] - mean) / scale, -_CLIP), _CLIP)
+            score = probability[i] + (a * z + b * z * z)
+            probability[i] = score + (c * max(z - _HINGE, 0.0) + d * max(-z - _HINGE, 0.0))
+    for i in range(len(probability)):
+        probability[i] = 1.0 / (1.0 + np.exp(-probability[i]))

@@ -140,10 +140,10 @@ def _has_converged(diagonal, beside, count):  # type: ignore[no-untyped-def]
     values, last = diagonal.copy(), np.zeros((1, steps))
     last[0, steps - 1] = 1.0
     diagonalise(values, beside.copy(), last)
+    has_converged = True
     for k in np.argsort(-values)[:count]:
-        if beside[steps - 1] * abs(last[0, k]) > TOLERANCE * values[k]:
-            return False
-    return True
+        has_converged = has_converged and beside[steps - 1] * abs(last[0, k]) <= TOLERANCE * values[k]
+    return has_converged
 
 
 @njit(cache=True)

@@ -43,6 +43,7 @@ def clusters_with_images(
         nodes.points[first],
         None,
         None if nodes.thickness is None else nodes.thickness[first],
+        grain=None if nodes.grain is None else nodes.grain[first],
     )
     of_first = cluster_nodes(half, (target + 1) // 2, rng).of_node
     on_part(_HALF_CLUSTERED)

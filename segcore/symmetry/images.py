@@ -10,16 +10,14 @@ from segcore.clean.surface import Surface
 from segcore.coarsen.assembly import NEGLIGIBLE
 from segcore.graphs.surface_graph import connected_components
 from segcore.mesh import face_centroids
-from segcore.progress import OnPart, report_nothing
+from segcore.symmetry.close_images import Halves, close_images, coinciding_area
 from segcore.symmetry.reflection import Reflection, find_reflection
+from segcore.threads import sums_of_blocks
 
 # All set by hand.
 _NORMAL = 0.1  # distance, in sqrt(total area), that counts as much as a difference of normals of 1
-_EXACT = 0.1  # distance of an image from its face, in sqrt(area of the face), up to which the meshes coincide
 _IN_PLANE = 1e-9  # distance from the plane, in extents of the surface, that is rounding error
 _VANISHING = 1e-12  # share of the area of a component in which halves cannot be told apart
-# Fractions of the processor time of the stage "coarsen", measured on a dumbbell of 1,000,000 faces.
-_REFLECTED, _IMAGED = 0.3, 0.6
 _MESHED_ALIKE = 0.9  # share of the area with exact images from which the mesh is symmetric and not only the shape
 
 
@@ -33,18 +31,10 @@ class MirrorImage:
     meshed_alike: bool  # the faces of the halves are images of each other, apart from a few
 
 
-def mirror_image(surface: Surface, on_part: OnPart = report_nothing) -> MirrorImage | None:
-    """The mirror image of a surface, or None if the surface is not symmetric.
-
-    Parameters
-    ----------
-    on_part : called with the fraction of the stage "coarsen" that is done.
-    """
+def mirror_image(surface: Surface) -> MirrorImage | None:
+    """The mirror image of a surface, or None if the surface is not symmetric."""
     reflection = find_reflection(surface)
-    on_part(_REFLECTED)
-    image = None if reflection is None else image_under(surface, reflection)
-    on_part(_IMAGED)
-    return image
+    return None if reflection is None else image_under(surface, reflection)
 
 
 def image_under(surface: Surface, reflection: Reflection) -> MirrorImage | None:
@@ -63,10 +53,16 @@ def image_under(surface: Surface, reflection: Reflection) -> MirrorImage | None:
     is_first = reflection.heights(centres) >= -_IN_PLANE
     if is_first.all() or not is_first.any():
         return None
-    places = _Places(surface, reflection, centres, is_first)
+    far = _NORMAL * float(np.sqrt(surface.areas.sum()))
+    plane = np.append(reflection.normal, reflection.offset)
+    halves = Halves(centres, surface.normals, surface.areas, is_first, far, plane)
     component = connected_components(surface.edge_faces, len(surface.faces))
     faces = np.arange(len(centres), dtype=np.int32)
-    of_face = places.nearest(faces, faces)
+    of_face = np.empty(len(faces), dtype=np.int32)
+    for here, there in ((faces[is_first], faces[~is_first]), (faces[~is_first], faces[is_first])):
+        of_face[here] = close_images(halves, here, there)
+    others = np.flatnonzero(of_face < 0).astype(np.int32)
+    of_face[others] = _nearest(halves, reflection, others, faces)
     if component.max() > 0:
         area = group_sums(component, surface.areas)
         if area.min() < _VANISHING * area.sum():
@@ -76,36 +72,32 @@ def image_under(surface: Surface, reflection: Reflection) -> MirrorImage | None:
             return None
         for c in np.unique(component[partner[component] != component[of_face]]).tolist():
             here, there = faces[component == c], faces[component == partner[c]]
-            of_face[here] = places.nearest(here, there, of_face[here])
-    away = np.linalg.norm(centres[of_face] - reflection.of_points(centres), axis=1)
-    exact = away <= _EXACT * np.sqrt(surface.areas)
-    alike = surface.areas[exact].sum() >= _MESHED_ALIKE * surface.areas.sum()
-    return MirrorImage(reflection, is_first, of_face, bool(alike))
+            of_face[here] = _nearest(halves, reflection, here, there, of_face[here])
+    alike, whole = sums_of_blocks(coinciding_area, len(faces), halves, of_face)
+    return MirrorImage(reflection, is_first, of_face, bool(alike >= _MESHED_ALIKE * whole))
 
 
-class _Places:
-    """The places of faces in the space of centroids and normals, and those of their images."""
+def _nearest(
+    halves: Halves, reflection: Reflection, faces: IntArray, among: IntArray, otherwise: IntArray | None = None
+) -> IntArray:
+    """(M,) the nearest of some faces to the image of every face (M,), in the other half.
 
-    def __init__(self, surface: Surface, reflection: Reflection, centres: FloatArray, is_first: BoolArray) -> None:
-        far = _NORMAL * float(np.sqrt(surface.areas.sum()))
-        normals = surface.normals
-        self._is_first = is_first
-        self._place = np.concatenate([centres, far * normals], axis=1)
-        self._image = np.concatenate([reflection.of_points(centres), far * reflection.of_directions(normals)], axis=1)
-
-    def nearest(self, faces: IntArray, among: IntArray, otherwise: IntArray | None = None) -> IntArray:
-        """(M,) the nearest of some faces to the image of every face (M,), in the other half.
-
-        Parameters
-        ----------
-        otherwise : (M,) the result if none of the faces to choose from is in the other half.
-        """
-        result = np.zeros(len(faces), dtype=np.int32) if otherwise is None else otherwise.copy()
-        for half in (True, False):
-            here, there = self._is_first[faces] == half, among[self._is_first[among] != half]
-            if len(there) > 0:
-                result[here] = there[KDTree(self._place[there]).query(self._image[faces[here]])[1]]
-        return result
+    Parameters
+    ----------
+    otherwise : (M,) the result if none of the faces to choose from is in the other half.
+    """
+    result = np.zeros(len(faces), dtype=np.int32) if otherwise is None else otherwise.copy()
+    for half in (True, False):
+        here = halves.is_first[faces] == half
+        there = among[halves.is_first[among] != half]
+        asked = faces[here]
+        if len(there) == 0 or len(asked) == 0:
+            continue
+        places = np.concatenate([halves.centre[there], halves.far * halves.normal[there]], axis=1)
+        centres = reflection.of_points(halves.centre[asked])
+        images = np.concatenate([centres, halves.far * reflection.of_directions(halves.normal[asked])], axis=1)
+        result[here] = there[KDTree(places).query(images)[1]]
+    return result
 
 
 def _partners(component: IntArray, image: IntArray, areas: FloatArray) -> IntArray | None:

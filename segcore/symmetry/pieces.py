@@ -1,9 +1,10 @@
 """Groups of nodes that have come apart, made connected again."""
 
 import numpy as np
+from numba import njit
 
-from segcore.arrays import IntArray, group_sums
-from segcore.graphs.surface_graph import SurfaceGraph, connected_components
+from segcore.arrays import BoolArray, IntArray, group_sums
+from segcore.graphs.surface_graph import SurfaceGraph, components_inside
 
 
 def in_one_piece(graph: SurfaceGraph, group: IntArray, kind: IntArray) -> IntArray:
@@ -25,20 +26,34 @@ def in_one_piece(graph: SurfaceGraph, group: IntArray, kind: IntArray) -> IntArr
 
 
 def _joined_once(graph: SurfaceGraph, group: IntArray, kind: IntArray) -> IntArray:
-    a, b = graph.edges.T
-    piece = connected_components(graph.edges[group[a] == group[b]], graph.node_count)
+    piece = components_inside(graph.edges, group)
     volume = group_sums(piece, graph.volume)
     of_piece = np.empty(len(volume), dtype=np.int32)
     of_piece[piece] = group
     order = np.lexsort((-volume, of_piece))
     is_loose = np.ones(len(volume), dtype=bool)
     is_loose[order[np.unique(of_piece[order], return_index=True)[1]]] = False
-    ends = piece[graph.edges]
+    if not is_loose.any():
+        return group
+    edge = _edges_between(graph.edges, is_loose[piece])
+    ends = piece[graph.edges[edge]]
     one, other = np.concatenate([ends, ends[:, ::-1]]).T
     near = is_loose[one] & ~is_loose[other] & (kind[of_piece[one]] == kind[of_piece[other]])
     keys, which = np.unique(one[near].astype(np.int64) * len(kind) + of_piece[other[near]], return_inverse=True)
-    border = group_sums(which, np.tile(graph.length, 2)[near])
+    border = group_sums(which, np.tile(graph.length[edge], 2)[near])
     ascending = np.argsort(border, kind="stable")
     of_piece[keys[ascending] // len(kind)] = keys[ascending] % len(kind)
     joined: IntArray = of_piece[piece]
     return joined
+
+
+@njit(cache=True, nogil=True)
+def _edges_between(edges: IntArray, inside: BoolArray) -> IntArray:
+    """The edges of which one node is inside a set of nodes (N,), and the other outside of it."""
+    found = np.empty(len(edges), np.int32)
+    count = 0
+    for e in range(len(edges)):
+        if inside[edges[e, 0]] != inside[edges[e, 1]]:
+            found[count] = e
+            count += 1
+    return found[:count].copy()

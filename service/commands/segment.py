@@ -37,6 +37,12 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("--preset", metavar="NAME", help="a published method, such as chahhou2014")
     add_structure(parser)
     add_parameters(parser, "solver=inverse_power")
+    parser.add_argument(
+        "--threads",
+        type=int,
+        metavar="N",
+        help="threads; the result is the same (idle cores from 200,000 faces on, or 1)",
+    )
     add_outputs(parser)
     parser.add_argument("--labels", type=Path, metavar="LABELS.seg", help="the segment of every face, one per line")
     parser.add_argument("--hierarchy", type=Path, metavar="TREE.json", help="the tree of cuts")
@@ -66,7 +72,7 @@ def run(choices: argparse.Namespace) -> None:
         bar("read", 0.0)
         mesh = read_input(choices)
         surface = segcore.build_surface(mesh)
-        hierarchy = segcore.segment(mesh, parameters, bar, surface)
+        hierarchy = segcore.segment(mesh, parameters, bar, surface, choices.threads)
         segments = fineness.segments_of(hierarchy)
         notes = _write(choices, options, mesh, hierarchy, segments)
     tell(f"{input_name(choices.mesh)}: {len(mesh.faces)} faces, {len(mesh.vertices)} vertices")

@@ -31,7 +31,7 @@ def perform(store: JobStore, settings: Settings, job_id: str, on_progress: OnPro
         return None
     clock = StageClock(on_progress)
     try:
-        outcome = segment_stored_mesh(store, job, read_limits(settings), clock)
+        outcome = segment_stored_mesh(store, job, read_limits(settings), clock, settings.job_threads)
         if store.finish(job_id, outcome).finished_at != outcome.finished_at:
             log.info("the job has ended meanwhile: the outcome of this run is dropped")
             return None
@@ -54,7 +54,9 @@ def _fields(work: Work) -> dict[str, object]:
     return fields | {"stage_seconds": {name: round(s, 4) for name, s in work.stage_seconds.items()}}
 
 
-def segment_stored_mesh(store: JobStore, job: Job, limits: ReadLimits, clock: StageClock) -> Outcome:
+def segment_stored_mesh(
+    store: JobStore, job: Job, limits: ReadLimits, clock: StageClock, threads: int | None = None
+) -> Outcome:
     """Segment the mesh of a job and write its result file; expected errors are returned as Failed."""
     try:
         clock("reading", 0.0)
@@ -63,7 +65,7 @@ def segment_stored_mesh(store: JobStore, job: Job, limits: ReadLimits, clock: St
         clock("clean", 0.0)
         surface = segcore.build_surface(mesh)
         parameters = segcore.SegmentationParameters.from_mapping(job.parameters)
-        hierarchy = segcore.segment(mesh, parameters, clock, surface)
+        hierarchy = segcore.segment(mesh, parameters, clock, surface, threads)
     except segcore.CleaveError as error:
         return Failed(finished_at=now(), code=error.code, message=str(error))
     except FileNotFoundError:

@@ -3,7 +3,9 @@
 import pytest
 
 from bench.__main__ import main
+from bench.checkout import HERE
 from bench.commands.scale import render, render_crowds, render_hard
+from bench.scale import versions
 from bench.scale.cost import STAGES, Cost
 from bench.scale.hard_shapes import HARD_SHAPES
 from segcore.method import segment
@@ -26,6 +28,17 @@ def test_hard_meshes_are_compared_with_smooth_ones_of_their_size():
     (line,) = render_hard([(hard, smooth)]).splitlines()[2:]
     assert line.split()[2:5] == ["2.50", "1.00", "2.50"]
     assert line.split()[-1] == "0.50"
+
+
+def test_versions_are_compared_with_the_first_one():
+    runs = {"before": versions.Run(1000, 2.0, 4.0, 500_000), "one thread": versions.Run(1000, 1.0, 1.0, 250_000)}
+    assert versions.render(runs).splitlines()[-1].split()[2:] == ["1000", "1.00", "0.50", "1.00", "0.25", "0", "250"]
+
+
+def test_this_version_is_measured_in_one_thread_and_in_two():
+    runs = versions.compare(HERE, 300, runs=1)
+    assert list(runs) == ["before", "one thread", "two threads"]
+    assert all(run.faces == 288 and run.cpu_s > 0 and run.wall_s > 0 for run in runs.values())
 
 
 @pytest.mark.parametrize("name", HARD_SHAPES)

@@ -11,6 +11,7 @@ from segcore.affinity.boundary_features import (
     patch_fields,
 )
 from segcore.affinity.measurements import measure
+from segcore.clean.edge_geometry import across_edges
 from segcore.clean.surface import build_surface
 from segcore.learned.models import learned_models
 from segcore.mesh import Mesh
@@ -29,7 +30,7 @@ def squeezed(x):
 def expected_features(surface, measured, fields):
     """The features by name, in numpy, one formula each."""
     sides = measured.patches.of_face[surface.edge_faces]
-    across = measured.edges.across
+    across = across_edges(surface)
     ends = surface.vertices[surface.edge_vertices]
     along = ends[:, 1] - ends[:, 0]
     along = along / np.linalg.norm(along, axis=1, keepdims=True)
@@ -40,8 +41,8 @@ def expected_features(surface, measured, fields):
     matrix = np.moveaxis(np.array([[xx, xy, xz], [xy, yy, yz], [xz, yz, zz]]), (0, 1), (2, 3))
     columns = {
         "dihedral": squeezed(measured.edges.dihedral / measured.edges.typical_dihedral),
-        "k1": squeezed(measured.k1),
-        "k2": squeezed(measured.k2),
+        "k1": squeezed(measured.size * measured.curvatures.k1[surface.edge_vertices].mean(axis=1)),
+        "k2": squeezed(measured.size * measured.curvatures.k2[surface.edge_vertices].mean(axis=1)),
         "bending": np.log1p(measured.bending),
         "change": np.log1p(measured.change),
         "thickness": thickness[:, 1],

@@ -42,8 +42,9 @@ def test_an_edge_at_a_sliver_without_a_normal_is_flat():
 
 def test_an_edge_without_a_length_has_no_direction_and_a_positive_length():
     mesh = Mesh([[0.0, 0, 0], [1e-300, 0, 0], [0, 1, 0], [0, -1, 0]], [[0, 1, 2], [1, 0, 3]])
-    geometry = EdgeGeometry.of(build_surface(mesh))
-    np.testing.assert_array_equal(geometry.across, [[0, 0, 0]])
+    surface = build_surface(mesh)
+    geometry = EdgeGeometry.of(surface)
+    np.testing.assert_array_equal(across_edges(surface), [[0, 0, 0]])
     assert geometry.positive_length.min() > 0
 
 
