@@ -23,7 +23,7 @@ _LEAF = 4  # faces in a leaf, at most; set by hand
 _DEPTH = 256  # of the stack of nodes: seven for each of 32 levels at most
 # Nodes that the rays may visit together: for each ray, and beyond that. On meshes of the benchmark a ray visits 13 to
 # 18 on average.
-_VISITS, _VISITS_AT_FIRST = 128, 2**20
+_VISITS, VISITS_AT_FIRST = 128, 2**20
 _HUGE = 1e30  # inverse of a zero component of a direction
 
 
@@ -33,7 +33,7 @@ class RayCaster(NamedTuple):
     Node i of the tree has the children 2 i and 2 i + 1, and three levels below it the nodes of group i, 8 i..8 i + 7.
     """
 
-    leaves: int  # L, a power of two: the last nodes of the tree are L..2 L - 1
+    first: LongArray  # (L + 1,) the faces of leaf k, node L + k of the tree, are first[k]..first[k + 1] - 1
     groups: NDArray[np.float32]  # (G, 6, 8) bounding boxes of the nodes of each group: least, then largest coordinates
     corner: NDArray[np.float32]  # (F, 3) first corner of the faces in the order of the leaves
     sides: NDArray[np.float32]  # (F, 6) the vectors from there to the two other corners
@@ -56,7 +56,8 @@ class RayCaster(NamedTuple):
         boxes, corner, sides = (np.empty(shape, np.float32) for shape in shapes)
         in_blocks(_pack, leaves, vertices, faces, order, boxes, corner, sides)
         _enclose(boxes)
-        return cls(leaves, _in_groups(boxes), corner, sides)
+        first = len(faces) * np.arange(leaves + 1) // leaves
+        return cls(first, _in_groups(boxes), corner, sides)
 
     def inner_distances(self, origins: FloatArray, directions: FloatArray) -> FloatArray:
         """Distances at which rays leave a body.
@@ -71,7 +72,9 @@ class RayCaster(NamedTuple):
         the ray was not inside a body. Also infinity if the search was given up: among faces that cross each other
         everywhere, as long as the whole, a ray would otherwise visit most of them. The time is O(N) for any mesh.
         """
-        return _inner_distances(self, origins, directions)
+        distances = np.empty(len(origins))
+        cast(self, origins, directions, distances)
+        return distances
 
 
 class _Ray(NamedTuple):
@@ -94,13 +97,6 @@ class _Stack(NamedTuple):
     node: IntArray  # (256,)
     entry: NDArray[np.float32]  # (256,)
     entries: NDArray[np.float32]  # (8,) of the nodes of a group
-
-
-class Budget(NamedTuple):
-    """What is left of the nodes that rays may visit, and memory for the search."""
-
-    left: LongArray  # (1,)
-    stack: _Stack
 
 
 @njit(cache=True, nogil=True)
@@ -233,72 +229,58 @@ def _in_groups(boxes: NDArray[np.float32]) -> NDArray[np.float32]:
     return np.ascontiguousarray(groups.reshape(-1, WIDTH, 6).transpose(0, 2, 1))
 
 
-@njit(cache=True)
-def budget_of_visits() -> Budget:
-    """A budget for the rays that are cast one after the other."""
-    return Budget(
-        np.array([_VISITS_AT_FIRST]),
-        _Stack(
-            np.empty(_DEPTH, dtype=np.int32),
-            np.empty(_DEPTH, dtype=np.float32),
-            np.empty(WIDTH, dtype=np.float32),
-        ),
+@njit(cache=True, error_model="numpy")
+def cast(
+    caster: RayCaster, origins: FloatArray, directions: FloatArray, distances: FloatArray, left: int = VISITS_AT_FIRST
+) -> int:
+    """Write ``RayCaster.inner_distances`` of N rays into ``distances`` (N,), for use in other kernels.
+
+    Parameters
+    ----------
+    left : what earlier rays have left of the nodes that may be visited.
+
+    Returns
+    -------
+    What these rays have left of them.
+    """
+    leaves = len(caster.first) - 1
+    stack = _Stack(
+        np.empty(_DEPTH, dtype=np.int32), np.empty(_DEPTH, dtype=np.float32), np.empty(WIDTH, dtype=np.float32)
     )
-
-
-@njit(cache=True)
-def inner_distance(caster: RayCaster, origin: FloatArray, direction: FloatArray, budget: Budget) -> float:
-    """``RayCaster.inner_distances`` of one ray, for use in other kernels."""
-    left = budget.left[0] + _VISITS
-    distance, visits = _inner_distance(caster, _ray(origin, direction), budget.stack, left)
-    budget.left[0] = left - visits
-    return distance
-
-
-@njit(cache=True)
-def _inner_distances(caster: RayCaster, origins: FloatArray, directions: FloatArray) -> FloatArray:
-    distances = np.empty(len(origins))
-    budget = budget_of_visits()
     for i in range(len(origins)):
-        distances[i] = inner_distance(caster, origins[i], directions[i], budget)
-    return distances
-
-
-@njit(cache=True)
-def _ray(origin, direction):  # type: ignore[no-untyped-def]
-    ox, oy, oz = np.float32(origin[0]), np.float32(origin[1]), np.float32(origin[2])
-    dx, dy, dz = np.float32(direction[0]), np.float32(direction[1]), np.float32(direction[2])
-    return _Ray(ox, oy, oz, dx, dy, dz, _inverse(dx), _inverse(dy), _inverse(dz))
-
-
-@njit(cache=True)
-def _inner_distance(caster, ray, stack, most_visits):  # type: ignore[no-untyped-def]
-    """The distance, infinity after ``most_visits`` nodes; and the number of nodes that were visited."""
-    leaves, count = caster.leaves, len(caster.corner)
-    numbers = (ray.ox, ray.oy, ray.oz, ray.ix, ray.iy, ray.iz)
-    nearest = np.float32(np.inf)
-    from_inside = False
-    size = _first_nodes(leaves, stack)
-    visits = 0
-    while size > 0:
-        if visits == most_visits:
-            return np.inf, visits
-        visits += 1
-        size -= 1
-        if stack.entry[size] > nearest:
-            continue
-        node = np.int64(stack.node[size])
-        if node >= leaves:
-            leaf = node - leaves
-            for f in range(count * leaf // leaves, count * (leaf + 1) // leaves):
-                determinant, distance = _meets(caster.corner[f], caster.sides[f], ray)
+        ray = _ray(origins, directions, i)
+        numbers = (ray.ox, ray.oy, ray.oz, ray.ix, ray.iy, ray.iz)
+        nearest = np.float32(np.inf)
+        from_inside = False
+        size = _first_nodes(leaves, stack)
+        left += _VISITS
+        while size > 0:
+            if left == 0:
+                from_inside = False
+                break
+            left -= 1
+            size -= 1
+            if stack.entry[size] > nearest:
+                continue
+            node = np.int64(stack.node[size])
+            if node < leaves:
+                met = enter_boxes(caster.groups, node, numbers, nearest, stack.entries)
+                size = _stacked(node, met, stack, size)
+                continue
+            for f in range(caster.first[node - leaves], caster.first[node - leaves + 1]):
+                determinant, distance = _meets(caster.corner, caster.sides, f, ray)
                 if distance < nearest:
                     nearest = distance
                     from_inside = determinant < 0.0
-            continue
-        met = enter_boxes(caster.groups, node, numbers, nearest, stack.entries)
-        size = _stacked(node, met, stack, size)
-    return (np.float64(nearest) if from_inside else np.inf), visits
+        distances[i] = np.float64(nearest) if from_inside else np.inf
+    return left
+
+
+@njit(cache=True, error_model="numpy")
+def _ray(origins, directions, i):  # type: ignore[no-untyped-def]
+    ox, oy, oz = np.float32(origins[i, 0]), np.float32(origins[i, 1]), np.float32(origins[i, 2])
+    dx, dy, dz = np.float32(directions[i, 0]), np.float32(directions[i, 1]), np.float32(directions[i, 2])
+    return _Ray(ox, oy, oz, dx, dy, dz, _inverse(dx), _inverse(dy), _inverse(dz))
 
 
 @njit(cache=True)
@@ -332,23 +314,24 @@ def _stacked(node, met, stack, size):  # type: ignore[no-untyped-def]
     return size
 
 
-@njit(cache=True)
+@njit(cache=True, error_model="numpy")
 def _inverse(x):  # type: ignore[no-untyped-def]
     return np.float32(1.0) / x if x != 0.0 else np.float32(_HUGE)
 
 
-@njit(cache=True)
-def _meets(corner, sides, ray):  # type: ignore[no-untyped-def]
+@njit(cache=True, error_model="numpy")
+def _meets(corners, sides, f, ray):  # type: ignore[no-untyped-def]
     """The determinant, negative if the ray meets the face from behind, and the distance, infinity if it misses it."""
     dx, dy, dz = ray.dx, ray.dy, ray.dz
-    ax, ay, az, bx, by, bz = sides[0], sides[1], sides[2], sides[3], sides[4], sides[5]
+    ax, ay, az = sides[f, 0], sides[f, 1], sides[f, 2]
+    bx, by, bz = sides[f, 3], sides[f, 4], sides[f, 5]
     px, py, pz = dy * bz - dz * by, dz * bx - dx * bz, dx * by - dy * bx
     determinant = ax * px + ay * py + az * pz
     missed = np.float32(np.inf)
     if determinant == 0.0:
         return determinant, missed
     scale = np.float32(1.0) / determinant
-    tx, ty, tz = ray.ox - corner[0], ray.oy - corner[1], ray.oz - corner[2]
+    tx, ty, tz = ray.ox - corners[f, 0], ray.oy - corners[f, 1], ray.oz - corners[f, 2]
     u = (tx * px + ty * py + tz * pz) * scale
     if u < 0.0 or u > 1.0:
         return determinant, missed

@@ -14,7 +14,7 @@ from numba import njit
 
 from segcore.affinity.frames import tangent_vectors
 from segcore.affinity.patches import Patches
-from segcore.affinity.rays import RayCaster, budget_of_visits, inner_distance
+from segcore.affinity.rays import VISITS_AT_FIRST, RayCaster, cast
 from segcore.arrays import FloatArray, IntArray, LongArray, at_least
 from segcore.clean.surface import Surface
 
@@ -121,7 +121,7 @@ def _distances(surface: Surface, patches: Patches, chosen: LongArray, size: floa
     return _cast(RayCaster.of(surface.vertices, surface.faces, patches.grain), faces, samples, _disc())
 
 
-@njit(cache=True)
+@njit(cache=True, error_model="numpy")
 def _cast(caster: RayCaster, faces: _Faces, samples: _Samples, disc: FloatArray) -> FloatArray:
     """``_distances``: the rays of a patch start at equal steps of area through its faces.
 
@@ -130,8 +130,8 @@ def _cast(caster: RayCaster, faces: _Faces, samples: _Samples, disc: FloatArray)
     """
     rays = len(disc)
     distance = np.empty((len(samples.chosen), rays))
-    budget = budget_of_visits()
-    origin, inward, direction = np.empty(3), np.empty(3), np.empty(3)
+    origin, direction, inward = np.empty((rays, 3)), np.empty((rays, 3)), np.empty(3)
+    left = VISITS_AT_FIRST
     for row in range(len(distance)):
         patch = samples.chosen[row]
         place, last = samples.first[patch], samples.first[patch + 1] - 1
@@ -150,7 +150,7 @@ def _cast(caster: RayCaster, faces: _Faces, samples: _Samples, disc: FloatArray)
             a, b, c = faces.corner[f, 0], faces.corner[f, 1], faces.corner[f, 2]
             for i in range(3):
                 inward[i] = -samples.normal[patch, i] if is_sliver else -faces.normal[f, i]
-                origin[i] = (
+                origin[j, i] = (
                     (1.0 - root) * faces.vertices[a, i]
                     + root * (1.0 - disc[j, 3]) * faces.vertices[b, i]
                     + root * disc[j, 3] * faces.vertices[c, i]
@@ -158,8 +158,8 @@ def _cast(caster: RayCaster, faces: _Faces, samples: _Samples, disc: FloatArray)
                 )
             u, v = tangent_vectors(inward[0], inward[1], inward[2])
             for i in range(3):
-                direction[i] = disc[j, 0] * u[i] + disc[j, 1] * v[i] + disc[j, 2] * inward[i]
-            distance[row, j] = inner_distance(caster, origin, direction, budget)
+                direction[j, i] = disc[j, 0] * u[i] + disc[j, 1] * v[i] + disc[j, 2] * inward[i]
+        left = cast(caster, origin, direction, distance[row], left)
     return distance
 
 
