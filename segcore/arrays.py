@@ -116,6 +116,22 @@ def ascending(values: FloatArray) -> IntArray:
     return order
 
 
+@njit(cache=True, nogil=True)
+def members_by_group(group: IntArray, count: int) -> tuple[IntArray, LongArray]:
+    """(N,) the members of groups 0..count - 1, by group and ascending in each, and (count + 1,) where each begins."""
+    start = np.zeros(count + 1, dtype=np.int64)
+    for i in range(len(group)):
+        start[group[i] + 1] += 1
+    for k in range(count):
+        start[k + 1] += start[k]
+    free = start[:count].copy()
+    members = np.empty(len(group), dtype=np.int32)
+    for i in range(len(group)):
+        members[free[group[i]]] = i
+        free[group[i]] += 1
+    return members, start
+
+
 @njit(cache=True)
 def dot(x: FloatArray, y: FloatArray) -> float:
     """The inner product of two vectors (N,), added in an order that depends on N alone.

@@ -5,7 +5,7 @@ from typing import NamedTuple
 import numpy as np
 from numba import njit
 
-from segcore.arrays import BoolArray, FloatArray, IntArray, LongArray, group_sums
+from segcore.arrays import BoolArray, FloatArray, IntArray, ascending, group_sums
 from segcore.clean.edge_geometry import dihedral_angles, edge_lengths
 from segcore.clean.surface import Surface
 from segcore.graphs.surface_graph import Rows, connected_components
@@ -63,7 +63,7 @@ def _kinds(surface: Surface, is_piece: BoolArray | None) -> _Kinds:
 
 def flat_regions(surface: Surface) -> IntArray:
     """(F,) the flat region 0, 1, ... of every face, grown from its largest face; most are single faces."""
-    order = np.argsort(-surface.areas, kind="stable")
+    order = ascending(-surface.areas)
     return _grown(order, surface.face_graph().rows(), surface.normals, float(np.cos(_FLAT)))
 
 
@@ -84,7 +84,7 @@ def _are_large(surface: Surface, region: IntArray, dihedral: FloatArray) -> Bool
 
 
 @njit(cache=True, nogil=True)
-def _grown(order: LongArray, rows: Rows, normals: FloatArray, cosine: float) -> IntArray:
+def _grown(order: IntArray, rows: Rows, normals: FloatArray, cosine: float) -> IntArray:
     """(F,) regions grown breadth-first from the faces that have none yet, in an order (F,)."""
     region = np.full(len(order), -1, np.int32)
     queue = np.empty(len(order), np.int32)

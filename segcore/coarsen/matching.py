@@ -9,7 +9,7 @@ from typing import NamedTuple
 import numpy as np
 from numba import njit
 
-from segcore.arrays import FloatArray, IntArray, LongArray, group_sums
+from segcore.arrays import FloatArray, IntArray, ascending, group_sums
 from segcore.coarsen.grains import merged_grains
 from segcore.graphs.surface_graph import SurfaceGraph
 
@@ -64,7 +64,7 @@ def coarsen(
     largest = largest_share * float(volume.sum()) / target
     guard = _GUARD
     while len(volume) > target:
-        order = np.argsort(volume * rng.lognormal(sigma=_NOISE, size=len(volume)), kind="stable")
+        order = ascending(volume * rng.lognormal(sigma=_NOISE, size=len(volume)))
         merged, count = _match(order, adjacency, volume, guard, largest, len(volume) - target)
         removed = 1.0 - count / len(volume)
         if removed < _STALLED and guard <= _LEAST_GUARD and removed < _GIVEN_UP:
@@ -84,7 +84,7 @@ def coarsen(
 
 @njit(cache=True, nogil=True)
 def _match(
-    order: LongArray, graph: _Adjacency, volume: FloatArray, guard: float, largest: float, most_merges: int
+    order: IntArray, graph: _Adjacency, volume: FloatArray, guard: float, largest: float, most_merges: int
 ) -> tuple[IntArray, int]:
     """Merge every node with the free neighbour with the largest w (w / l)**2 / sqrt(vol vol) that the guard allows.
 

@@ -16,6 +16,7 @@ from segcore.cut.order import best_order_of_steps
 from segcore.cut.symmetric_cuts import second_of_pair, symmetric_cuts, symmetric_sweeps
 from segcore.graphs.cheeger import Cut, cut_of
 from segcore.graphs.connected_sides import with_connected_sides
+from segcore.graphs.ordering import minimum_degree, order_inside
 from segcore.graphs.surface_graph import SurfaceGraph
 from segcore.graphs.tree import Tree
 from segcore.learned.models import learned_models
@@ -139,7 +140,8 @@ class RatioRule:
         cut = SOLVERS[self._parameters.solver](segment.graph, self._parameters, self._rng)
         if image is not None:
             graph = segment.graph
-            symmetric = [*symmetric_cuts(graph, image, [cut.side]), *symmetric_sweeps(graph, image)]
+            order = minimum_degree(graph.rows())
+            symmetric = [*symmetric_cuts(graph, image, [cut.side]), *symmetric_sweeps(graph, image, order)]
             if symmetric:
                 return self._split(segment, min(symmetric, key=lambda cut: cut.ncut)).with_image(image)
         return self._split(segment, with_connected_sides(segment.graph, cut))
@@ -176,6 +178,7 @@ class LearnedRule:
         self._parameters = parameters
         self._rng = rng
         self._total = fields.graph.total_volume
+        self._elimination = minimum_degree(fields.graph.rows())
 
     @property
     def smallest_segment(self) -> float:
@@ -209,7 +212,8 @@ class LearnedRule:
         """Return different cuts of a segment, each with connected sides."""
         graph = segment.graph
         if self._parameters.solver == "flow":
-            sides = connected_sweeps(graph, start_noise(graph.node_count), VECTORS)
+            order = order_inside(self._elimination, segment.nodes)
+            sides = connected_sweeps(graph, order, start_noise(graph.node_count), VECTORS)
             cuts = [cut_of(graph, side) for side in sides]
         else:
             cuts = [with_connected_sides(graph, self._solved(graph)).canonical]
@@ -220,7 +224,8 @@ class LearnedRule:
         graph = segment.graph
         between = [cut.side for cut in cuts_between_pieces(graph, inside.piece)]
         if self._parameters.solver == "flow":
-            return [*symmetric_sweeps(graph, image), *symmetric_cuts(graph, image, between)]
+            order = order_inside(self._elimination, segment.nodes)
+            return [*symmetric_sweeps(graph, image, order), *symmetric_cuts(graph, image, between)]
         return symmetric_cuts(graph, image, [self._solved(graph).side, *between])
 
     def _solved(self, graph: SurfaceGraph) -> Cut:

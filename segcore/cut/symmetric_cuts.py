@@ -21,7 +21,7 @@ _LEAST_PART = 0.05  # norm of the even or odd part of an eigenvector of norm 1; 
 _MOST_PIECES = 8  # of a cut that are compared, the best ones; set by hand
 
 
-def symmetric_sweeps(graph: SurfaceGraph, image: IntArray) -> list[Cut]:
+def symmetric_sweeps(graph: SurfaceGraph, image: IntArray, order: IntArray) -> list[Cut]:
     """Symmetric cuts from the even and odd parts of several eigenvectors, the best of them improved by maximum flows.
 
     An even function is swept. So is the magnitude of an odd one, which gives pairs, and its sign gives a mirror cut.
@@ -30,8 +30,9 @@ def symmetric_sweeps(graph: SurfaceGraph, image: IntArray) -> list[Cut]:
     ----------
     graph : connected, at least two nodes.
     image : (N,) the image of every node, an automorphism of the graph without a fixed point.
+    order : (N,) of the elimination of the nodes.
     """
-    return [cut_of(graph, side) for side in _symmetric_sweeps(graph, image, start_noise(graph.node_count))]
+    return [cut_of(graph, side) for side in _symmetric_sweeps(graph, image, order, start_noise(graph.node_count))]
 
 
 def symmetric_cuts(graph: SurfaceGraph, image: IntArray, sides: Sequence[BoolArray]) -> list[Cut]:
@@ -53,9 +54,9 @@ def second_of_pair(side: BoolArray, image: IntArray) -> BoolArray | None:
 
 
 @njit(cache=True)
-def _symmetric_sweeps(graph: SurfaceGraph, image: IntArray, noise: FloatArray) -> BoolArray:
+def _symmetric_sweeps(graph: SurfaceGraph, image: IntArray, order: IntArray, noise: FloatArray) -> BoolArray:
     """(C, N) ``symmetric_sweeps``."""
-    network = network_of(graph)
+    network = network_of(graph, order)
     vectors = eigenvectors_of(graph, network.factor, noise, VECTORS)
     count = len(image)
     even = np.empty((2 * len(vectors), count))

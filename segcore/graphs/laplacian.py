@@ -6,7 +6,7 @@ import numpy as np
 from numba import njit
 
 from segcore.arrays import FloatArray, IntArray, LongArray
-from segcore.graphs.ordering import minimum_degree, minimum_degree_of
+from segcore.graphs.ordering import minimum_degree
 from segcore.graphs.surface_graph import IndexArray, Rows, SurfaceGraph, rows_of
 
 
@@ -86,9 +86,8 @@ def factorise_edges(edges: IntArray, weight: FloatArray, node_count: int) -> Lap
 
 
 @njit(cache=True)
-def factor_of(rows: Rows, weight: FloatArray) -> LaplacianFactor:
-    """``factorise_edges`` of the rows of an edge list, for use in other kernels."""
-    order = minimum_degree_of(rows)
+def factor_of(rows: Rows, weight: FloatArray, order: IntArray) -> LaplacianFactor:
+    """``factorise_edges`` of the rows of an edge list, in an order of elimination, for use in other kernels."""
     start, row = _structure(rows, order)
     share, pivot = _eliminate(rows, weight[rows.edge], order, start, row)
     return LaplacianFactor(order, start, row, share, pivot)

@@ -5,8 +5,9 @@ from typing import NamedTuple
 import numpy as np
 from numba import njit
 
-from segcore.arrays import BoolArray, FloatArray
+from segcore.arrays import BoolArray, FloatArray, IntArray
 from segcore.graphs.laplacian import LaplacianFactor, factor_of, substitute
+from segcore.graphs.ordering import minimum_degree
 from segcore.graphs.surface_graph import IndexArray, SurfaceGraph, rows_of_edges
 
 
@@ -29,7 +30,7 @@ class Network(NamedTuple):
     @classmethod
     def of(cls, graph: SurfaceGraph) -> "Network":
         """The network whose capacities are the weights of a graph."""
-        return network_of(graph)
+        return network_of(graph, minimum_degree(graph.rows()))
 
     def minimum_cut(self, supply: FloatArray) -> BoolArray:
         """(N,) ``minimum_cut`` of the network."""
@@ -37,12 +38,12 @@ class Network(NamedTuple):
 
 
 @njit(cache=True)
-def network_of(graph: SurfaceGraph) -> Network:
-    """``Network.of`` for use in other kernels."""
+def network_of(graph: SurfaceGraph, order: IntArray) -> Network:
+    """``Network.of`` for use in other kernels, with the order (N,) in which the nodes are eliminated."""
     rows = rows_of_edges(graph.edges, len(graph.volume))
     reverse = _reverse_arcs(rows.edge, len(graph.edges))
     arcs = Arcs(rows.start.astype(np.uint32), rows.neighbour.astype(np.uint32), reverse)
-    return Network(graph, arcs, graph.weight[rows.edge], factor_of(rows, graph.weight))
+    return Network(graph, arcs, graph.weight[rows.edge], factor_of(rows, graph.weight, order))
 
 
 @njit(cache=True)

@@ -66,13 +66,30 @@ def minimum_degree(rows: Rows) -> IntArray:
     ----------
     Amestoy, Davis and Duff, An approximate minimum degree ordering algorithm, SIAM J. Matrix Anal. Appl. 17, 1996.
     """
-    return minimum_degree_of(rows)
+    dense = max(LEAST_DENSE_ROW, int(DENSE_ROW * (len(rows.start) - 1) ** 0.5))
+    return _minimum_degree(rows, dense)
 
 
 @njit(cache=True)
-def minimum_degree_of(rows: Rows) -> IntArray:
-    """``minimum_degree`` for use in other kernels."""
-    dense = max(LEAST_DENSE_ROW, int(DENSE_ROW * (len(rows.start) - 1) ** 0.5))
+def order_inside(order: IntArray, nodes: IntArray) -> IntArray:
+    """(M,) the places in ``nodes`` (M,) of some nodes, in an order (N,) of all nodes.
+
+    The elimination of a part of a graph in the order of the whole fills no more than that of the whole does there.
+    """
+    place = np.full(len(order), -1, dtype=np.int32)
+    for i in range(len(nodes)):
+        place[nodes[i]] = i
+    inside = np.empty(len(nodes), dtype=np.int32)
+    filled = 0
+    for node in order:
+        if place[node] >= 0:
+            inside[filled] = place[node]
+            filled += 1
+    return inside
+
+
+@njit(cache=True)
+def _minimum_degree(rows, dense):  # type: ignore[no-untyped-def]
     node_count = len(rows.start) - 1
     memory = rows.neighbour.copy()
     free = len(memory)
