@@ -1,7 +1,8 @@
 """The entry of a ray into eight boxes at once, with vector instructions.
 
 numba compiles a loop over eight boxes to scalar instructions, because it unrolls the loop before LLVM could make
-vectors of it. The function is therefore given to LLVM as operations on vectors, which LLVM translates for any processor.
+vectors of it. The function is therefore given to LLVM as operations on vectors, which LLVM translates for any
+processor.
 """
 
 from typing import Any
