@@ -15,11 +15,11 @@ def report_nothing(_: float) -> None:
 # The times per million are those of 2,000,000 faces in the section "Scale" of bench/RESULTS.md. The fixed times were
 # measured on 20,000 faces before rays and features of cuts became faster: both have fallen to less than half since.
 _SECONDS = {
-    "clean": (0.0, 0.4),
-    "affinity": (0.3, 3.0),
-    "coarsen": (0.0, 0.9),
+    "clean": (0.0, 0.3),
+    "affinity": (0.3, 1.25),
+    "coarsen": (0.0, 0.65),
     "cut": (0.36, 0.0),
-    "label": (0.0, 0.95),
+    "label": (0.0, 0.11),
 }
 STAGES = tuple(_SECONDS)  # in order
 

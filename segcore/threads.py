@@ -10,8 +10,11 @@ from collections.abc import Callable, Iterator
 from concurrent.futures import ThreadPoolExecutor
 from contextlib import contextmanager
 from contextvars import ContextVar, copy_context
-from functools import partial
+from dataclasses import dataclass
+from functools import partial, reduce
 from typing import Any, TypeVar
+
+import numpy as np
 
 from segcore.arrays import FloatArray
 
@@ -20,24 +23,33 @@ MANY_FACES = 200_000  # from which on a segmentation gets all free cores by defa
 
 _Result = TypeVar("_Result")
 
-_pool: ContextVar[ThreadPoolExecutor | None] = ContextVar("_pool", default=None)
+
+@dataclass(frozen=True, slots=True)
+class _Helpers:
+    """The threads beside the one that calls."""
+
+    count: int
+    pool: ThreadPoolExecutor
+
+
+_helpers: ContextVar[_Helpers | None] = ContextVar("_helpers", default=None)
 
 
 @contextmanager
 def use_threads(count: int) -> Iterator[None]:
-    """Let the calls inside a ``with`` statement use a number of threads, at least 1.
+    """Let the calls inside a ``with`` statement use a number of threads, at least 1, with the one that calls.
 
-    The threads are made here, and so in the process that uses them, and end with the statement.
+    The other threads are made here, and so in the process that uses them, and end with the statement.
     """
     if count <= 1:
         yield
         return
-    with ThreadPoolExecutor(count, "segcore") as pool:
-        token = _pool.set(pool)
+    with ThreadPoolExecutor(count - 1, "segcore") as pool:
+        token = _helpers.set(_Helpers(count - 1, pool))
         try:
             yield
         finally:
-            _pool.reset(token)
+            _helpers.reset(token)
             pool.shutdown(cancel_futures=True)
 
 
@@ -61,14 +73,7 @@ def in_blocks(kernel: Callable[..., object], count: int, *arguments: object) -> 
     ----------
     kernel : compiled with ``nogil=True``; writes only to the items of its block.
     """
-    blocks = [(start, min(start + BLOCK, count)) for start in range(0, count, BLOCK)]
-    pool = _pool.get()
-    if pool is None or len(blocks) == 1:
-        for start, end in blocks:
-            kernel(start, end, *arguments)
-        return
-    for done in [pool.submit(kernel, start, end, *arguments) for start, end in blocks]:
-        done.result()
+    _each(lambda start, end, _: kernel(start, end, *arguments), count, BLOCK)
 
 
 def sums_of_blocks(kernel: Callable[..., FloatArray], count: int, *arguments: object, groups: int = 0) -> FloatArray:
@@ -80,30 +85,43 @@ def sums_of_blocks(kernel: Callable[..., FloatArray], count: int, *arguments: ob
     groups : rows of the arrays; blocks are at least 16 times as large.
     """
     size = max(BLOCK, 16 * groups)
-    blocks = [(start, min(start + size, count)) for start in range(0, count, size)]
-    pool = _pool.get()
-    if pool is None or len(blocks) == 1:
-        parts: Iterator[FloatArray] = (kernel(start, end, *arguments) for start, end in blocks)
-    else:
-        begun = [pool.submit(kernel, start, end, *arguments) for start, end in blocks]
-        parts = (done.result() for done in begun)
-    total = next(parts)
-    for part in parts:
-        total = total + part
-    return total
+    parts: list[FloatArray] = [np.empty(0)] * -(-count // size)
+
+    def add(start: int, end: int, number: int) -> None:
+        parts[number] = kernel(start, end, *arguments)
+
+    _each(add, count, size)
+    return reduce(np.add, parts)
+
+
+def _each(work: Callable[[int, int, int], object], count: int, size: int) -> None:
+    """Call ``work(start, end, number)`` for every block. Threads take the next block when they have done one."""
+    blocks = iter([(start, min(start + size, count), number) for number, start in enumerate(range(0, count, size))])
+
+    def take() -> None:
+        for block in blocks:  # each is given to one thread: the iterator of a list is not interrupted
+            work(*block)
+
+    helpers = _helpers.get()
+    helping = [helpers.pool.submit(take) for _ in range(helpers.count)] if helpers and count > size else []
+    take()
+    for one in helping:
+        if not one.cancel():  # a thread that is still at other work has not begun, and there is nothing left to do
+            one.result()
 
 
 def meanwhile(function: Callable[..., _Result], *arguments: Any) -> Callable[[], _Result]:
-    """Begin a call in another thread if there are several; return a function that waits for its result.
+    """Begin a call in another thread if there are several; return a function that returns its result.
 
-    The call uses one thread.
+    The call uses one thread. If no thread has begun with it, the function makes the call itself.
     """
-    pool = _pool.get()
-    if pool is None:
+    helpers = _helpers.get()
+    if helpers is None:
         return partial(function, *arguments)
-    return pool.submit(copy_context().run, _alone, function, *arguments).result
+    begun = helpers.pool.submit(copy_context().run, _alone, function, *arguments)
+    return lambda: function(*arguments) if begun.cancel() else begun.result()
 
 
-def _alone(function: Callable[..., _Result], *arguments: object) -> _Result:
-    _pool.set(None)
+def _alone(function: Callable[..., _Result], *arguments: Any) -> _Result:
+    _helpers.set(None)
     return function(*arguments)

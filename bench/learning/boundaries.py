@@ -10,8 +10,9 @@ from scipy.spatial import KDTree
 from bench.assets.dataset import NO_PART
 from bench.datasets import on_surface
 from bench.learning.rows import Rows
-from segcore.affinity.boundary_features import edge_features, patch_fields
+from segcore.affinity.boundary_features import edge_features
 from segcore.affinity.measurements import measure
+from segcore.affinity.patch_fields import patch_fields
 from segcore.clean.refinement import refine
 from segcore.clean.surface import build_surface
 

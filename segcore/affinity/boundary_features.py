@@ -1,16 +1,12 @@
-"""The probability that a person's cut runs along a mesh edge, by a logistic model of curvature and thickness around it.
-
-Curvature is measured at several scales by normal cycles (Cohen-Steiner and Morvan, Restricted Delaunay triangulations
-and normal cycle, SoCG 2003): sums over edges of dihedral angle times length, which do not depend on the meshing.
-"""
+"""The probability that a person cuts along a mesh edge, by a logistic model of curvature and thickness around it."""
 
 from typing import NamedTuple
 
 import numpy as np
 from numba import njit
 
-from segcore.affinity.measurements import THICKNESS_RADIUS, Measurements
-from segcore.affinity.thickness import smooth_logarithm
+from segcore.affinity.measurements import Measurements
+from segcore.affinity.patch_fields import TENSOR_RADII, THICKNESS_RADII, PatchFields, patch_fields
 from segcore.arrays import FloatArray, IntArray, LongArray
 from segcore.clean.edge_geometry import EdgeArrays, across_edge
 from segcore.clean.surface import Surface
@@ -18,12 +14,7 @@ from segcore.learned.logistic import write_probabilities
 from segcore.learned.models import learned_models
 from segcore.learned.squeezing import squeeze
 from segcore.progress import OnPart, report_nothing
-from segcore.threads import in_blocks, sums_of_blocks
-
-# Radii of smoothing in sqrt(total area), set by hand. The model is trained with them; its card is
-# docs/explanation/learned-models.md.
-TENSOR_RADII = (0.0, 0.03, 0.06, 0.12)
-THICKNESS_RADII = (0.03, THICKNESS_RADIUS, 0.12)
+from segcore.threads import in_blocks
 
 FEATURES = (
     "dihedral",
@@ -68,20 +59,9 @@ _LOGARITHMS = _GRADIENTS + 3 * (_SCALES - 1)
 _SLOPES = _LOGARITHMS + len(THICKNESS_RADII)
 _SHARE = _SLOPES + 3 * len(THICKNESS_RADII)
 
-_PREDICTED = 0.92  # fraction of the processor time of the stage "affinity", as in measurements.py
+_PREDICTED = 0.85  # fraction of the processor time of the stage "affinity", as in measurements.py
 _AT_ONCE = 512  # edges whose features are in memory at a time: 114 kB, which stay in the cache of a core
 _WIDTH = _AT_ONCE + 8  # of their rows: columns whose distance is a power of two would share few lines of the cache
-
-
-class PatchFields(NamedTuple):
-    """Curvature and thickness of patches, smoothed over S and T radii."""
-
-    tensor: FloatArray  # (P, S, 6) curvature tensors times sqrt(total area): xx, yy, zz, xy, xz, yz
-    mean: FloatArray  # (P, S) half their trace
-    mean_gradient: FloatArray  # (P, S - 1, 3) of all but the first
-    thickness: FloatArray  # (P, T) logarithms
-    thickness_gradient: FloatArray  # (P, T, 3)
-    confidence: FloatArray  # (P,)
 
 
 class _Inputs(NamedTuple):
@@ -127,49 +107,6 @@ def _inputs(surface: Surface, measured: Measurements) -> _Inputs:
         measured.change,
         measured.patches.of_face,
     )
-
-
-def patch_fields(surface: Surface, measured: Measurements) -> PatchFields:
-    """Curvature tensors and thickness of the patches at all radii, with the gradients of both."""
-    patches = measured.patches
-    size = float(np.sqrt(patches.area.sum()))
-    raw = _tensors(surface, measured) * size / patches.area[:, None]
-    tensors = [raw if r == 0 else patches.smoothed(raw, r * size, patches.area) for r in TENSOR_RADII]
-    tensor = np.stack(tensors, axis=1)
-    mean = 0.5 * tensor[:, :, :3].sum(axis=2)
-    mean_gradient = np.stack([size * patches.gradients(column) for column in mean[:, 1:].T], axis=1)
-    logs = [
-        measured.log_thickness if r == THICKNESS_RADIUS else smooth_logarithm(measured.thickness, patches, r * size)
-        for r in THICKNESS_RADII
-    ]
-    gradient = np.stack([size * patches.gradients(log) for log in logs], axis=1)
-    return PatchFields(tensor, mean, mean_gradient, np.stack(logs, axis=1), gradient, measured.thickness.confidence)
-
-
-def _tensors(surface: Surface, measured: Measurements) -> FloatArray:
-    """(P, 6) the normal cycle of every patch: sums of theta l / 2 over the edges of its faces, bent across the edge."""
-    edges, count = measured.edges, len(measured.patches.area)
-    arrays = EdgeArrays.of(surface), edges.dihedral, edges.length, measured.patches.of_face, count
-    if len(edges.length) == 0:
-        return np.zeros((count, 6))
-    return sums_of_blocks(_patch_tensors, len(edges.length), *arrays, groups=count)
-
-
-@njit(cache=True, nogil=True)
-def _patch_tensors(start, end, arrays, dihedral, length, of_face, count):  # type: ignore[no-untyped-def]
-    tensors = np.zeros((count, 6))
-    for e in range(start, end):
-        half = 0.5 * dihedral[e] * length[e]
-        x, y, z = across_edge(arrays, e)
-        for side in range(2):
-            tensor = tensors[of_face[arrays.sides[e, side]]]
-            tensor[0] += half * (x * x)
-            tensor[1] += half * (y * y)
-            tensor[2] += half * (z * z)
-            tensor[3] += half * (x * y)
-            tensor[4] += half * (x * z)
-            tensor[5] += half * (y * z)
-    return tensors
 
 
 def edge_features(

@@ -19,46 +19,50 @@ _LEAST_SHARE = 0.005  # area of a flat region in the area of its component
 _LEAST_BEND = np.deg2rad(3.0)  # mean angle along the outline of a flat region
 
 
-class _Kinds(NamedTuple):
+class SmoothEdges(NamedTuple):
     """Which dual edges lie inside smooth faces."""
 
     flat: BoolArray  # (E,) flat or convex
     hollow: BoolArray  # (E,) concave
 
 
-def cohesive_weights(
-    surface: Surface, weight: FloatArray, length: FloatArray, is_piece: BoolArray | None = None
-) -> FloatArray:
+def cohesive_weights(smooth: SmoothEdges, weight: FloatArray, length: FloatArray) -> FloatArray:
     """(E,) weights of the dual edges, raised inside flat and smoothly bent faces.
 
-    Inside them the affinity g becomes 2 sqrt(g), and sqrt(g) if the face is bent inwards. An edge lies inside such a
-    face if both its sides belong to one flat region, or if both are pieces of divided faces and its dihedral angle is
-    below 15 degrees. A flat region is a connected set of faces whose normals are within 1 degree of that of its largest
-    face, with at least 0.5 % of the area of its component and an outline along which the surface bends by 3 degrees on
-    average: any small piece of a finely meshed round surface is as flat, but has no such outline.
+    Inside them the affinity g becomes 2 sqrt(g), and sqrt(g) if the face is bent inwards.
 
     Parameters
     ----------
     weight, length : (E,) of the dual edges; the affinity is their ratio.
-    is_piece : (F,) True for pieces of faces that were divided; None if there are none.
     """
-    kinds = _kinds(surface, is_piece)
     cohesive = weight.copy()
-    for chosen, factor in ((kinds.flat, COHESION), (kinds.hollow, 1.0)):
+    for chosen, factor in ((smooth.flat, COHESION), (smooth.hollow, 1.0)):
         affinity = weight[chosen] / length[chosen]
         cohesive[chosen] = factor * length[chosen] * affinity**_EVENNESS
     return cohesive
 
 
-def _kinds(surface: Surface, is_piece: BoolArray | None) -> _Kinds:
+def smooth_edges(surface: Surface, is_piece: BoolArray | None = None) -> SmoothEdges:
+    """The dual edges inside flat and smoothly bent faces.
+
+    An edge lies inside such a face if both its sides belong to one flat region, or if both are pieces of divided faces
+    and its dihedral angle is below 15 degrees. A flat region is a connected set of faces whose normals are within 1
+    degree of that of its largest face, with at least 0.5 % of the area of its component and an outline along which the
+    surface bends by 3 degrees on average: any small piece of a finely meshed round surface is as flat, but has no such
+    outline.
+
+    Parameters
+    ----------
+    is_piece : (F,) True for pieces of faces that were divided; None if there are none.
+    """
     dihedral = dihedral_angles(surface)
     a, b = surface.edge_faces.T
     region = flat_regions(surface)
     flat = (region[a] == region[b]) & _are_large(surface, region, dihedral)[region[a]]
     if is_piece is None:
-        return _Kinds(flat, np.zeros_like(flat))
+        return SmoothEdges(flat, np.zeros_like(flat))
     smooth = (np.abs(dihedral) < _SMOOTH) & is_piece[a] & is_piece[b] & ~flat
-    return _Kinds(flat | (smooth & (dihedral > -_FLAT)), smooth & (dihedral <= -_FLAT))
+    return SmoothEdges(flat | (smooth & (dihedral > -_FLAT)), smooth & (dihedral <= -_FLAT))
 
 
 def flat_regions(surface: Surface) -> IntArray:

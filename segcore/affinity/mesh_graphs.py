@@ -3,7 +3,7 @@
 import numpy as np
 
 from segcore.affinity.affinities import FACE_AFFINITIES, VERTEX_AFFINITIES
-from segcore.affinity.flatness import cohesive_weights
+from segcore.affinity.flatness import cohesive_weights, smooth_edges
 from segcore.arrays import BoolArray, IntArray, at_least
 from segcore.clean.edge_geometry import edge_lengths
 from segcore.clean.surface import Surface
@@ -14,6 +14,7 @@ from segcore.graphs.surface_graph import SurfaceGraph, connected_components, wei
 from segcore.mesh import face_centroids
 from segcore.parameters import SegmentationParameters
 from segcore.progress import OnPart, report_nothing
+from segcore.threads import meanwhile
 
 # Set by hand: a face of the least area has edges of about the least length. Without a least length a triangle whose
 # corners nearly coincide is the cheapest cut of its segment (tests/segcore/test_laws.py).
@@ -53,11 +54,12 @@ def face_dual_graph(
     Areas are at least 1e-4 of the mean area and lengths at least 1e-2 of the mean length, so that degenerate faces and
     edges have a positive weight and a face that is nearly a point is not the cheapest cut.
     """
+    smooth = meanwhile(smooth_edges, surface, is_piece) if parameters.measures_shape else None
     affinity = FACE_AFFINITIES[parameters.affinity](surface, parameters, on_part)
     length = at_least(edge_lengths(surface), _SHORTEST_EDGE)
     weight = length * affinity.value
-    if parameters.measures_shape:
-        weight = cohesive_weights(surface, weight, length, is_piece)
+    if smooth is not None:
+        weight = cohesive_weights(smooth(), weight, length)
     graph = SurfaceGraph(surface.edge_faces, weight, at_least(surface.areas, _SMALLEST_FACE), length)
     centroids = face_centroids(surface.vertices, surface.faces)
     return MeshGraph(graph, centroids, None, affinity.thickness, affinity.confidence, surface.authored, affinity.grain)

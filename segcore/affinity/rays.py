@@ -15,7 +15,8 @@ from numba import njit
 from numpy.typing import NDArray
 
 from segcore.affinity.eight_boxes import WIDTH, enter_boxes
-from segcore.arrays import FloatArray, IntArray, LongArray
+from segcore.arrays import FloatArray, IntArray, LongArray, members_by_group
+from segcore.coarsen.grains import listed
 from segcore.mesh import face_centroids
 from segcore.threads import in_blocks
 
@@ -158,38 +159,10 @@ def _halve(centres, order, low, high, middle, axis):  # type: ignore[no-untyped-
 
 def _arranged_grains(vertices: FloatArray, faces: IntArray, grain: IntArray) -> IntArray:
     """(F,) the faces in the order of their grains, whose first faces are arranged as the faces of small meshes are."""
-    by_grain, first = _members(grain, int(grain.max()) + 1)
-    middles = face_centroids(vertices, faces[by_grain[first[:-1]]])
+    members, first = members_by_group(grain, int(grain.max()) + 1)
+    middles = face_centroids(vertices, faces[members[first[:-1]]])
     order = _arranged(middles.astype(np.float32), 1 << max(0, int(np.ceil(np.log2(len(middles))))))
-    return _listed(order, by_grain, first)
-
-
-@njit(cache=True, nogil=True)
-def _members(group, count):  # type: ignore[no-untyped-def]
-    """(N,) the items 0..N - 1 by their groups (N,), and (count + 1,) the first place of every group."""
-    first = np.zeros(count + 1, np.int32)
-    for i in range(len(group)):
-        first[group[i] + 1] += 1
-    for g in range(count):
-        first[g + 1] += first[g]
-    fill = first[:-1].copy()
-    members = np.empty(len(group), np.int32)
-    for i in range(len(group)):
-        members[fill[group[i]]] = i
-        fill[group[i]] += 1
-    return members, first
-
-
-@njit(cache=True, nogil=True)
-def _listed(groups, members, first):  # type: ignore[no-untyped-def]
-    """(N,) the members of groups in the order of these."""
-    listed = np.empty(len(members), np.int64)
-    used = 0
-    for g in groups:
-        for p in range(first[g], first[g + 1]):
-            listed[used] = members[p]
-            used += 1
-    return listed
+    return listed(order, members, first)
 
 
 @njit(cache=True, nogil=True)

@@ -36,17 +36,31 @@ def grown_grains(graph: SurfaceGraph) -> IntArray:
 
 
 def merged_grains(graph: SurfaceGraph, grain: IntArray) -> tuple[SurfaceGraph, IntArray]:
-    """The graph of the grains of a graph, or of what is left of them in it, and (N,) the new number of every grain.
+    """The graph of the grains of a graph, or of what is left of them in it, and (N,) the new grain of every node.
 
     Parameters
     ----------
-    grain : (N,) of every node. A grain that is not connected in this graph is divided.
+    grain : (N,) of every node. A grain that edges of this graph with an affinity of at least 0.5 do not connect is
+        divided.
     """
-    grain = components_inside(graph.edges, grain)
+    is_strong = graph.weight >= _GUARD * graph.length
+    grain = components_inside(graph.edges[is_strong], grain)
     edge = _edges_across(graph.edges, grain)
     volume = group_sums(grain, graph.volume)
     pairs = grain[graph.edges[edge]]
     return SurfaceGraph.with_sums(pairs, graph.weight[edge], volume, graph.length[edge]), grain
+
+
+@njit(cache=True, nogil=True)
+def listed(grains, members, first):  # type: ignore[no-untyped-def]
+    """(N,) the members of grains in an order of these (G,); see ``segcore.arrays.members_by_group``."""
+    nodes = np.empty(len(members), np.int64)
+    used = 0
+    for g in grains:
+        for p in range(first[g], first[g + 1]):
+            nodes[used] = members[p]
+            used += 1
+    return nodes
 
 
 @njit(cache=True, nogil=True)

@@ -13,8 +13,8 @@ from segcore.progress import OnPart, report_nothing
 from segcore.symmetry.images import MirrorImage
 from segcore.symmetry.pieces import in_one_piece
 
-# Fractions of the processor time of the stage "coarsen", measured on a dumbbell of 1,000,000 faces.
-_HALF_CLUSTERED, CLUSTERED = 0.72, 0.98
+# Fractions of the processor time of the stage "coarsen", measured on a dumbbell of 2,000,000 faces.
+_HALF_CLUSTERED, CLUSTERED = 0.8, 0.98
 
 
 def clusters_with_images(

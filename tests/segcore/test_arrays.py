@@ -3,7 +3,7 @@ from fractions import Fraction
 import numpy as np
 import pytest
 
-from segcore.arrays import dot, transformed
+from segcore.arrays import distinct_pairs, dot, transformed
 
 
 @pytest.mark.parametrize("count", [*range(18), 20_001])
@@ -18,3 +18,12 @@ def test_the_image_of_a_point_is_the_product_of_matrix_and_point() -> None:
     points = np.array([[1.0, 2.0, 3.0], [5.0, 0.0, 7.0]])
     assert transformed(points, matrix).tolist() == [[-2.0, 2.0], [0.0, 10.0]]
     assert transformed(points[None], matrix).tolist() == [[[-2.0, 2.0], [0.0, 10.0]]]
+
+
+@pytest.mark.parametrize(("pairs", "indices"), [(0, 1), (1, 2), (50, 4), (2000, 900), (2000, 7), (20, 10_000)])
+def test_distinct_pairs_are_sorted_and_every_pair_is_one_of_them(pairs: int, indices: int) -> None:
+    drawn = np.random.default_rng(pairs).integers(0, indices, (pairs, 2)).astype(np.int32)
+    distinct, which = distinct_pairs(drawn)
+    expected = sorted({(int(min(pair)), int(max(pair))) for pair in drawn})
+    assert distinct.tolist() == [list(pair) for pair in expected]
+    np.testing.assert_array_equal(distinct[which], np.sort(drawn, axis=1))

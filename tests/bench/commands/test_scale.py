@@ -9,6 +9,7 @@ from bench.scale import versions
 from bench.scale.cost import STAGES, Cost
 from bench.scale.hard_shapes import HARD_SHAPES
 from segcore.method import segment
+from segcore.shapes import dumbbell
 
 
 def test_costs_are_per_face_and_add_up():
@@ -38,7 +39,8 @@ def test_versions_are_compared_with_the_first_one():
 def test_this_version_is_measured_in_one_thread_and_in_two():
     runs = versions.compare(HERE, 300, runs=1)
     assert list(runs) == ["before", "one thread", "two threads"]
-    assert all(run.faces == 288 and run.cpu_s > 0 and run.wall_s > 0 for run in runs.values())
+    assert {run.faces for run in runs.values()} == {len(dumbbell(rings=17, around=9).mesh.faces)}
+    assert min(run.cpu_s for run in runs.values()) > 0
 
 
 @pytest.mark.parametrize("name", HARD_SHAPES)

@@ -4,13 +4,11 @@ import pytest
 from segcore import shapes
 from segcore.affinity.boundary_features import (
     FEATURES,
-    TENSOR_RADII,
-    THICKNESS_RADII,
     boundary_probability,
     edge_features,
-    patch_fields,
 )
 from segcore.affinity.measurements import measure
+from segcore.affinity.patch_fields import TENSOR_RADII, THICKNESS_RADII, patch_fields
 from segcore.clean.edge_geometry import across_edges
 from segcore.clean.surface import build_surface
 from segcore.learned.models import learned_models

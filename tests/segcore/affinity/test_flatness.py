@@ -1,7 +1,7 @@
 import numpy as np
 
 from segcore import shapes
-from segcore.affinity.flatness import cohesive_weights, flat_regions
+from segcore.affinity.flatness import cohesive_weights, flat_regions, smooth_edges
 from segcore.clean.edge_geometry import dihedral_angles, edge_lengths
 from segcore.clean.refinement import refine
 from segcore.clean.surface import build_surface
@@ -12,7 +12,7 @@ from segcore.shapes import revolve
 def factors(surface, affinity, is_piece=None):
     """The affinity of every edge divided by what it was, a constant."""
     length = edge_lengths(surface)
-    return cohesive_weights(surface, affinity * length, length, is_piece) / (affinity * length)
+    return cohesive_weights(smooth_edges(surface, is_piece), affinity * length, length) / (affinity * length)
 
 
 def turned(radius, height, around):
