@@ -36,6 +36,9 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("--runs", type=int, default=3, metavar="N", help="the fastest of N runs counts (default 3)")
     parser.add_argument("--hard", action="store_true", help="measure hard meshes beside smooth ones of their size")
     parser.add_argument("--from", dest="base", metavar="COMMIT", help="compare with this version in place of these")
+    parser.add_argument(
+        "--lines", type=int, metavar="N", help="with --from: the N lines of segcore that take the most time"
+    )
 
 
 def run(arguments: argparse.Namespace) -> None:
@@ -43,7 +46,10 @@ def run(arguments: argparse.Namespace) -> None:
         raise BenchmarkError("--runs must be at least 1, and each of --sizes at least 100 faces.")
     if arguments.base is not None:
         with one_thread_by_default(), checked_out(arguments.base) as base:
-            print(versions.render(versions.compare(base, max(arguments.sizes), arguments.runs)))
+            runs = versions.compare(base, max(arguments.sizes), arguments.runs)
+        print(versions.render(runs), versions.render_memory(runs), sep="\n\n")
+        for name in ("before", "one thread") if arguments.lines else ():
+            print(f"\n{name}", versions.render_lines(runs[name], arguments.lines), sep="\n")
         return
     if arguments.hard:
         with one_thread_by_default():

@@ -6,13 +6,13 @@ import json
 import os
 import subprocess
 import sys
-from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
 from bench.checkout import HERE
 from bench.errors import BenchmarkError
 from bench.text import format_table, number
+from segcore.progress import STAGES
 
 _PROBE = HERE / "bench" / "scale" / "probe.py"
 # The threads share one heap, as those of a work-horse do (service/host/programs.py).
@@ -26,11 +26,16 @@ class Run:
     faces: int
     cpu_s: float
     wall_s: float
-    memory_bytes: int  # growth of the peak memory of the process
+    memory_bytes: dict[str, int]  # growth of the peak memory of the process, by stage
+    line_s: dict[str, float]  # CPU seconds by line of segcore
+
+    @property
+    def peak_bytes(self) -> int:
+        return max(self.memory_bytes.values())
 
 
 def compare(base: Path, faces: int, runs: int) -> dict[str, Run]:
-    """Return the least costs of some runs of both versions, which take turns, each in its own process.
+    """Return the runs of least CPU time of both versions, which take turns, each in its own process.
 
     Raises
     ------
@@ -42,16 +47,7 @@ def compare(base: Path, faces: int, runs: int) -> dict[str, Run]:
     for _ in range(runs):
         for name, (root, threads) in kinds.items():
             found[name].append(_run(root, faces, threads))
-    return {name: _least(costs) for name, costs in found.items()}
-
-
-def _least(runs: Sequence[Run]) -> Run:
-    return Run(
-        runs[0].faces,
-        min(run.cpu_s for run in runs),
-        min(run.wall_s for run in runs),
-        min(run.memory_bytes for run in runs),
-    )
+    return {name: min(costs, key=lambda run: run.cpu_s) for name, costs in found.items()}
 
 
 def _run(root: Path, faces: int, threads: int) -> Run:
@@ -76,9 +72,21 @@ def render(runs: dict[str, Run]) -> str:
             number(run.cpu_s / base.cpu_s, 2),
             number(run.wall_s, 2),
             number(run.wall_s / base.wall_s, 2),
-            number(run.memory_bytes / 1e6, 0),
-            number(run.memory_bytes / run.faces, 0),
+            number(run.peak_bytes / 1e6, 0),
+            number(run.peak_bytes / run.faces, 0),
         ]
         for name, run in runs.items()
     ]
     return format_table(header, rows)
+
+
+def render_memory(runs: dict[str, Run]) -> str:
+    """Return a line for every version and number of threads, with the growth of the memory up to each stage."""
+    rows = [[name, *(number(run.memory_bytes[stage] / 1e6, 0) for stage in STAGES)] for name, run in runs.items()]
+    return format_table(["version", *(f"{stage} MB" for stage in STAGES)], rows)
+
+
+def render_lines(run: Run, most: int) -> str:
+    """Return the lines of segcore that take the most CPU time."""
+    costly = sorted(run.line_s.items(), key=lambda entry: -entry[1])[:most]
+    return format_table(["line", "CPU s"], [[name, number(seconds, 3)] for name, seconds in costly])

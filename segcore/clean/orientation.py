@@ -4,6 +4,7 @@ import numpy as np
 from numba import njit
 
 from segcore.arrays import BoolArray, FloatArray, IntArray
+from segcore.threads import in_blocks
 
 _SLIVER = 1e-6  # area over squared longest edge below which the normal is rounding noise; set by hand
 
@@ -56,12 +57,17 @@ def flipped(faces: IntArray, is_flipped: BoolArray) -> IntArray:
     return oriented
 
 
-@njit(cache=True, nogil=True)
 def reliable_normals(vertices: FloatArray, faces: IntArray) -> tuple[FloatArray, FloatArray]:
     """Unit normals (F, 3), zero for slivers without a reliable direction, and areas (F,)."""
     normals = np.zeros((len(faces), 3))
     areas = np.empty(len(faces))
-    for f in range(len(faces)):
+    in_blocks(_write_normals, len(faces), vertices, faces, normals, areas)
+    return normals, areas
+
+
+@njit(cache=True, nogil=True)
+def _write_normals(start, end, vertices, faces, normals, areas):  # type: ignore[no-untyped-def]
+    for f in range(start, end):
         _, (nx, ny, nz) = _centroid_and_cross(vertices, faces[f])
         doubled = np.sqrt(nx * nx + ny * ny + nz * nz)
         areas[f] = 0.5 * doubled
@@ -74,7 +80,6 @@ def reliable_normals(vertices: FloatArray, faces: IntArray) -> tuple[FloatArray,
             longest = max(longest, squared)
         if areas[f] > _SLIVER * longest:
             normals[f, 0], normals[f, 1], normals[f, 2] = nx / doubled, ny / doubled, nz / doubled
-    return normals, areas
 
 
 @njit(cache=True, nogil=True)

@@ -11,6 +11,7 @@ from segcore.clean.stitching import stitch
 from segcore.clean.surface import Surface
 from segcore.clean.topology import dual_edges
 from segcore.graphs.surface_graph import connected_components
+from segcore.threads import in_blocks
 
 # Longest edges that are not divided, set by hand.
 _OF_COMPONENT = 0.06  # in the square root of the area of the component
@@ -52,6 +53,8 @@ def refine(surface: Surface) -> Refinement:
     vertices, faces = surface.vertices, surface.faces
     parent = undivided(surface).parent
     allowed = _allowed_lengths(surface)
+    if np.isinf(allowed).all():
+        return undivided(surface)
     excess = _longest_edge(vertices, faces, allowed)
     if not 1.0 < excess < 2.0**_MOST_PASSES:
         return undivided(surface)
@@ -74,7 +77,8 @@ def _allowed_lengths(surface: Surface) -> FloatArray:
     component = connected_components(surface.edge_faces, len(surface.faces))
     area = group_sums(component, surface.areas)
     allowed = np.maximum(_OF_COMPONENT * np.sqrt(area), _OF_WHOLE * np.sqrt(total))
-    is_large = _long_edges(surface.vertices, surface.faces, allowed[component]).any(axis=1)
+    is_large = np.empty(len(component), dtype=bool)
+    in_blocks(_find_long_edges, len(component), surface.vertices, surface.faces, allowed, component, is_large)
     in_large_faces = group_sums(component[is_large], surface.areas[is_large], len(area))
     of_face: FloatArray = np.where(in_large_faces > _LEAST_SHARE * area, allowed, np.inf)[component]
     return of_face
@@ -130,6 +134,15 @@ def _longest_edge(vertices: FloatArray, faces: IntArray, allowed: FloatArray) ->
         for k in range(3):
             longest = max(longest, _length(vertices, faces[f, k], faces[f, (k + 1) % 3]) / allowed[f])
     return longest
+
+
+@njit(cache=True, nogil=True)
+def _find_long_edges(start, end, vertices, faces, allowed, component, found):  # type: ignore[no-untyped-def]
+    """Write whether one of the edges of a face is longer than its component (C,) allows."""
+    for f in range(start, end):
+        found[f] = False
+        for k in range(3):
+            found[f] |= _length(vertices, faces[f, k], faces[f, (k + 1) % 3]) > allowed[component[f]]
 
 
 @njit(cache=True, nogil=True)

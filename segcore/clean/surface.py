@@ -79,7 +79,7 @@ def build_surface(mesh: Mesh) -> Surface:
 
 def _normalized(vertices: FloatArray) -> tuple[float, FloatArray]:
     """The extent of the bounding box, 1 if it is 0, and vertices centred and scaled to the extent 1."""
-    low, high = vertices.min(axis=0), vertices.max(axis=0)
+    low, high = (np.array([find(axis) for axis in vertices.T]) for find in (np.min, np.max))
     unit = float((high - low).max()) or 1.0
     return unit, (vertices - (0.5 * low + 0.5 * high)) / unit
 

@@ -82,14 +82,15 @@ def _segment(
     parameters: SegmentationParameters | None = None,
     on_progress: OnProgress = lambda *_: None,
     surface: Any = None,
+    threads: int | None = None,
 ) -> Hierarchy:
     chosen = parameters or SegmentationParameters()
     if chosen.structure != "none" or len(mesh.faces) > _MOST_FACES:
-        return _compute(mesh, chosen, on_progress, surface)
-    key = mesh.vertices.tobytes(), mesh.faces.tobytes(), chosen
+        return _compute(mesh, chosen, on_progress, surface, threads)
+    key = mesh.vertices.tobytes(), mesh.faces.tobytes(), chosen, threads
     if key not in _known:
         steps: list[tuple[str, float]] = []
-        _known[key] = _compute(mesh, chosen, lambda *step: steps.append(step), surface), steps
+        _known[key] = _compute(mesh, chosen, lambda *step: steps.append(step), surface, threads), steps
     hierarchy, steps = _known[key]
     for step in steps:
         on_progress(*step)

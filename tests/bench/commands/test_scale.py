@@ -32,7 +32,13 @@ def test_hard_meshes_are_compared_with_smooth_ones_of_their_size():
 
 
 def test_versions_are_compared_with_the_first_one():
-    runs = {"before": versions.Run(1000, 2.0, 4.0, 500_000), "one thread": versions.Run(1000, 1.0, 1.0, 250_000)}
+    memory = dict.fromkeys(STAGES, 250000)
+    runs = {
+        "before": versions.Run(1000, 2.0, 4.0, memory | {"cut": 500_000}, {"a.py:1": 2.0}),
+        "one thread": versions.Run(1000, 1.0, 1.0, memory, {"a.py:1": 0.1, "b.py:2": 0.9}),
+    }
+    assert versions.render_memory(runs).splitlines()[-1].split()[2:] == ["0"] * 5
+    assert versions.render_lines(runs["one thread"], 1).splitlines()[-1].split() == ["b.py:2", "0.900"]
     assert versions.render(runs).splitlines()[-1].split()[2:] == ["1000", "1.00", "0.50", "1.00", "0.25", "0", "250"]
 
 
@@ -41,6 +47,8 @@ def test_this_version_is_measured_in_one_thread_and_in_two():
     assert list(runs) == ["before", "one thread", "two threads"]
     assert {run.faces for run in runs.values()} == {len(dumbbell(rings=17, around=9).mesh.faces)}
     assert min(run.cpu_s for run in runs.values()) > 0
+    assert {tuple(run.memory_bytes) for run in runs.values()} == {STAGES}
+    assert all(0 < sum(run.line_s.values()) <= run.cpu_s for run in runs.values())
 
 
 @pytest.mark.parametrize("name", HARD_SHAPES)

@@ -45,6 +45,17 @@ def test_the_result_file_has_the_bytes_that_the_library_writes(mesh: Path, tmp_p
     assert (tmp_path / "ball.cleave").read_bytes() == expected.getvalue()
 
 
+def test_threads_change_no_byte_and_must_be_at_least_one(
+    mesh: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    paths = [tmp_path / f"{count}.cleave" for count in (1, 2)]
+    for count, path in enumerate(paths, start=1):
+        assert main(["segment", str(mesh), "--threads", str(count), "--result", str(path)]) == 0
+    assert paths[0].read_bytes() == paths[1].read_bytes()
+    assert main(["segment", str(mesh), "--threads", "0"]) == 2
+    assert "The number of threads must be at least 1, not 0." in capsys.readouterr().err
+
+
 def test_a_granularity_can_be_given_instead_of_a_number(
     mesh: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:

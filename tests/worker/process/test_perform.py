@@ -68,11 +68,11 @@ def test_the_appearance_in_the_file_is_kept(store: JobStore, settings: Settings)
     assert appearance.normals.tolist() == [[0, 0, 1]] * 3
 
 
-def test_a_second_run_writes_the_same_bytes(store: JobStore, settings: Settings) -> None:
+def test_a_second_run_writes_the_same_bytes_with_more_threads(store: JobStore, settings: Settings) -> None:
     contents = []
-    for _ in range(2):
+    for threads in (1, 2):
         job = accepted(store, sphere(12))
-        perform(store, settings, job.id, ignore)
+        perform(store, settings.model_copy(update={"job_threads": threads}), job.id, ignore)
         with store.results.open(job.id) as file:
             contents.append(file.read())
     assert contents[0] == contents[1]
