@@ -45,6 +45,7 @@ def _busy() -> None:
     with installed(workers=3) as installation, httpx.Client(base_url=installation.url, timeout=120) as client:
         path = measures.keep_busy(client, 60)[-1]
         _print(f"status polls for {_POLLS_S} s", measures.polls(installation, path, _POLLS_S))
+        _print("status polls, as many as are answered", measures.most_polls(installation, path, _POLLS_S // 2))
         _print("upload to queued", measures.uploads(client, 60))
         _print("memory of the service", measures.upload_memory(installation, client, 200))
         left = client.get(path).json()["status"]

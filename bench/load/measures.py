@@ -15,6 +15,7 @@ from bench.load.meshes import wavy_torus
 
 _POLLS = Path(__file__).with_name("polls.lua")
 _CONNECTIONS = 75  # 300 requests a second with the delay in polls.lua
+_EAGER_CONNECTIONS = 16
 
 
 def keep_busy(client: httpx.Client, jobs: int) -> list[str]:
@@ -36,11 +37,20 @@ def keep_busy(client: httpx.Client, jobs: int) -> list[str]:
 def polls(installation: Installation, path: str, seconds: int) -> str:
     """Poll a status with wrk, a little more than 300 times a second."""
     command = ["wrk", "-t1", f"-c{_CONNECTIONS}", f"-d{seconds}s", "--latency", "--timeout", "10s", "-s", str(_POLLS)]
-    done = subprocess.run([*command, installation.url + path], capture_output=True, text=True, check=True)
+    return _summary(subprocess.run([*command, installation.url + path], capture_output=True, text=True, check=True))
+
+
+def _summary(done: subprocess.CompletedProcess[str]) -> str:
     rate = _find(r"Requests/sec:\s+(\S+)", done.stdout)
     p50, p99 = _find(r"50%\s+(\S+)", done.stdout), _find(r"99%\s+(\S+)", done.stdout)
     errors = "".join(re.findall(r"(?:Socket errors|Non-2xx).*", done.stdout)) or "no error"
     return f"{rate} requests/s, median {p50}, p99 {p99}, {errors}"
+
+
+def most_polls(installation: Installation, path: str, seconds: int) -> str:
+    """Poll a status with wrk as often as it is answered."""
+    command = ["wrk", "-t1", f"-c{_EAGER_CONNECTIONS}", f"-d{seconds}s", "--latency", "--timeout", "10s"]
+    return _summary(subprocess.run([*command, installation.url + path], capture_output=True, text=True, check=True))
 
 
 def uploads(client: httpx.Client, count: int) -> str:

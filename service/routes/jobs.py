@@ -60,10 +60,10 @@ def list_jobs(
 )
 async def get_job(job_id: JobId, request: Request, context: ContextOf, caller: CallerOf, wait: Wait = 0) -> Response:
     """The state of a job. With ``wait`` the response is sent when the job has ended, or after so many seconds."""
-    job = await run_in_threadpool(find_job, context, caller, job_id)
     if wait:
+        job = await run_in_threadpool(find_job, context, caller, job_id)
         await wait_for_end(context.store, job.id, min(wait, context.settings.max_wait_s))
-    document = await run_in_threadpool(describe, context, job)
+    document = await run_in_threadpool(lambda: describe(context, find_job(context, caller, job_id)))
     retry = {} if document.finished_at else {"Retry-After": "1"}
     return answer_json(request, document.model_dump_json().encode(), headers=retry)
 
