@@ -13,6 +13,8 @@ from pathlib import Path
 
 import httpx
 
+from worker.process.spare import WAITING_NAME
+
 _STARTED = re.compile(r"listening on +(http://\S+)")
 _READY_WITHIN_S = 180.0  # enough to compile all kernels on a busy machine
 _STOPPED_WITHIN_S = 60  # more than the grace period of the workers
@@ -37,8 +39,8 @@ class Installation:
         return [pid for pid in children_of(self.pid) if word.encode() in _command_line(pid)]
 
     def work_horses(self) -> list[int]:
-        """Return the ids of the child processes of the workers."""
-        return [pid for worker in self.children("worker.process") for pid in children_of(worker)]
+        """Return the ids of the child processes of the workers that run a job."""
+        return [pid for worker in self.children("worker.process") for pid in children_of(worker) if runs_a_job(pid)]
 
     def service_pid(self) -> int:
         """Return the id of the HTTP server."""
@@ -103,6 +105,13 @@ def children_of(pid: int) -> list[int]:
     with suppress(FileNotFoundError, ProcessLookupError):
         return [int(child) for child in Path(f"/proc/{pid}/task/{pid}/children").read_text().split()]
     return []
+
+
+def runs_a_job(pid: int) -> bool:
+    """Whether a child process of a worker runs a job or an edit, rather than waiting for one."""
+    with suppress(FileNotFoundError, ProcessLookupError):
+        return Path(f"/proc/{pid}/comm").read_text().strip() != WAITING_NAME
+    return False
 
 
 def _command_line(pid: int) -> bytes:
