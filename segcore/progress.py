@@ -1,7 +1,7 @@
 """Progress of a segmentation as a fraction of its work, estimated from the size of the mesh."""
 
 from collections.abc import Callable
-from math import log
+from math import ceil, log
 
 OnProgress = Callable[[str, float], None]
 OnPart = Callable[[float], None]  # called with the fraction of a stage that is done
@@ -22,6 +22,26 @@ _SECONDS = {
     "label": (0.0, 0.95),
 }
 STAGES = tuple(_SECONDS)  # in order
+
+
+_ESTIMATED_FROM_S = 1.0  # before that an estimate would jump with every report; set by hand
+
+
+def seconds_left(elapsed_s: float, fraction: float) -> int | None:
+    """Estimate the seconds that work still takes, rounded up, as if it went on at its mean speed so far.
+
+    Parameters
+    ----------
+    elapsed_s : seconds since its start.
+    fraction : of the work that is done, 0 to 1.
+
+    Returns
+    -------
+    None in the first second, or if nothing is done.
+    """
+    if elapsed_s < _ESTIMATED_FROM_S or fraction <= 0.0:
+        return None
+    return ceil(elapsed_s * (1.0 - min(fraction, 1.0)) / fraction)
 
 
 class Progress:
