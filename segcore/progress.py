@@ -12,7 +12,7 @@ def report_nothing(_: float) -> None:
 
 
 # Processor seconds of every stage in the order of the work, fixed and per million faces; only their proportions matter.
-# Measured on tori and burrs of 20,000, 300,000 and 1,060,000 faces, whose stages begin within 0.06 of the right fraction.
+# Measured on tori and burrs of 20,000, 300,000 and 1,060,000 faces, whose stages begin within 0.06 of their fraction.
 _SECONDS = {
     "clean": (0.0, 0.35),
     "affinity": (0.075, 4.0),

@@ -97,8 +97,9 @@ class JobWorker(Worker):  # type: ignore[misc]  # rq is not analysed
             self._spare.fork_ahead()
         self.set_state(WorkerStatus.IDLE)
 
-    def bootstrap(self, *arguments: Any) -> None:
-        super().bootstrap(*arguments)
+    def _install_signal_handlers(self) -> None:
+        """Begin to stop in order at a signal; from then on there is a spare work-horse."""
+        super()._install_signal_handlers()
         gc.collect()
         gc.freeze()  # a collection in a work-horse would otherwise copy the pages of all objects
         self._spare.fork_ahead()

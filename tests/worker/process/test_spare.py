@@ -61,6 +61,7 @@ def test_a_spare_that_is_killed_costs_no_attempt_and_none_outlives_its_worker(
     worker = start_worker(program=("-c", _PROGRAM))
     killed = the_spare(worker.pid)
     os.kill(killed, signal.SIGKILL)
+    wait_until(lambda: not is_alive(killed))
     pid, job_id, ran = run(store, queue)
     assert pid != killed
     assert ran == [job_id]
