@@ -31,5 +31,21 @@ def checked_out(commit: str) -> Iterator[Path]:
             _git("worktree", "remove", "--force", str(folder))
 
 
+@contextmanager
+def version(name: str) -> Iterator[Path]:
+    """Return the folder of a version: the folder itself if the name is that of a checkout, or a commit checked out.
+
+    Raises
+    ------
+    BenchmarkError
+        If there is no such version.
+    """
+    if (Path(name) / "segcore").is_dir():
+        yield Path(name).resolve()
+        return
+    with checked_out(name) as folder:
+        yield folder
+
+
 def _git(*arguments: str) -> subprocess.CompletedProcess[str]:
     return subprocess.run(["git", "-C", str(HERE), *arguments], capture_output=True, text=True, check=False)

@@ -2,13 +2,13 @@
 
 from collections.abc import AsyncIterator
 from contextlib import asynccontextmanager
-from functools import partial
 
 from fastapi import Depends, FastAPI
 from starlette.middleware.cors import CORSMiddleware
 
 from cleave.settings import Settings
 from cleave.version import installed_version
+from service.answer.endings import Endings
 from service.context import Context, QueueView
 from service.edit.editors import Editors
 from service.guard.foreign_sites import CrossSiteCheckMiddleware, HostCheckMiddleware
@@ -68,14 +68,13 @@ _ROUTES = (
 def create_app(settings: Settings) -> FastAPI:
     """Return the application for some settings; ``redis_url`` must be set."""
     assert settings.redis_url, "redis_url must be set"
-    editors = Editors(settings)
     app = FastAPI(
         title="Cleave",
         summary="Cuts a 3D mesh into the parts that a person would name.",
         version=installed_version(),
         generate_unique_id_function=lambda route: route.name,
         redirect_slashes=False,
-        lifespan=partial(_stopping, editors),
+        lifespan=_lifespan,
         docs_url=None,
         redoc_url=None,
     )
@@ -95,7 +94,8 @@ def create_app(settings: Settings) -> FastAPI:
         keys=keys,
         metrics=metrics,
         batches=store.batches,
-        editors=editors,
+        editors=Editors(settings),
+        endings=Endings(settings.redis_url),
         keys_required=settings.auth == "required" or (settings.auth == "auto" and bool(keys.all())),
     )
     for module in _PAGES:
@@ -113,10 +113,12 @@ def create_app(settings: Settings) -> FastAPI:
 
 
 @asynccontextmanager
-async def _stopping(editors: Editors, _: FastAPI) -> AsyncIterator[None]:
-    """End the processes of edits with the application."""
-    yield
-    editors.stop()
+async def _lifespan(app: FastAPI) -> AsyncIterator[None]:
+    """Listen to the ends of jobs while the application runs, and end the processes of edits with it."""
+    context: Context = app.state.context
+    async with context.endings.listening():
+        yield
+    context.editors.stop()
 
 
 def _add_middleware(app: FastAPI, settings: Settings) -> None:

@@ -7,6 +7,7 @@ from typing import Annotated
 from fastapi import Depends, Request
 
 from cleave.settings import Settings
+from service.answer.endings import Endings
 from service.edit.editors import Editors
 from service.keys import KeyRing
 from service.result_cache import ResultCache
@@ -64,6 +65,7 @@ class Context:
     metrics: Metrics
     batches: BatchStore
     editors: Editors
+    endings: Endings
 
     def admit(self, owner: str | None, new: Job | None = None) -> None:
         """Move waiting jobs of an owner into the queue, as many as the owner may have there."""

@@ -8,12 +8,13 @@ from typing_extensions import TypeAliasType
 
 from segcore.levels import one_segment_note
 from segcore.parameters import USUAL_SEGMENTS
+from segcore.progress import seconds_left
 from segcore.report import MeshReport, structure_note
 from service.answer.model_formats import model_links
 from service.mount import public_path
 from service.problems import JobError
 from worker.jobs.attempts import Attempt
-from worker.jobs.job import Canceled, Failed, Job, Outcome, Succeeded
+from worker.jobs.job import Canceled, Failed, Job, Outcome, Succeeded, now
 from worker.jobs.queue.queue import Activity
 from worker.process.progress import REPORTED_STAGES
 
@@ -73,6 +74,12 @@ class _Job(BaseModel):
     status: Status
     stage: Stage | None = Field(description="Stage of a running job; null if it is not known.")
     progress: float = Field(ge=0, le=1, description="Fraction of the work that is done.")
+    seconds_left: int | None = Field(
+        ge=0,
+        description="Estimated seconds until the end of a running job, from its progress so far. Null if the job does "
+        "not run, in its first second, and if its progress is not known.",
+        examples=[12],
+    )
     queue_position: int | None = Field(description="Position of a waiting job: 1 is next. Null if it is not known.")
     created_at: datetime
     started_at: datetime | None = Field(description="Start of the latest attempt.")
@@ -189,7 +196,10 @@ def job_document(
         position = activity.position if activity is not None else None
         return QueuedJob(**fields | {"status": "queued", "queue_position": position})
     progress = activity.progress if activity is not None else None
-    shown = {} if progress is None else {"stage": progress.stage, "progress": progress.fraction}
+    shown: dict[str, Any] = {} if progress is None else {"stage": progress.stage, "progress": progress.fraction}
+    if progress is not None and attempts:
+        elapsed_s = (now() - attempts[-1].started_at).total_seconds()
+        shown["seconds_left"] = seconds_left(elapsed_s, progress.fraction)
     return RunningJob(**fields | {"status": "running"} | shown)
 
 

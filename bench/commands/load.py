@@ -5,30 +5,38 @@ waiting  the overhead of Prefer: wait=10
 levels   labels at any number of segments
 edits    the round trip of an edit, at 20,000 and 300,000 faces
 
-Each measurement starts `cleave serve` with its own data folder.
+Each measurement starts `cleave serve` with its own data folder. With --from, the other version is measured in turn with
+this one in `waiting`, whose ratio is printed.
 """
 
 from __future__ import annotations
 
 import argparse
+import statistics
 from collections.abc import Callable
 from functools import partial
 from typing import Any
 
 import httpx
 
-import segcore
+from bench.checkout import HERE, version
 from bench.errors import BenchmarkError
 from bench.load import measures
 from bench.load.edit_times import EDITS, edit_times, finished_job
 from bench.load.installation import installed
+from bench.load.waiting import Waiting, waiting
 
 _POLLS_S = 60
+_WAITING = "Prefer: wait=10, 20,000 faces"
+_WAITING_FACES, _WAITING_JOBS = 20_000, 9
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument(
         "names", nargs="*", metavar="NAME", help=f"some of {', '.join(_MEASURES)} (default all, in this order)"
+    )
+    parser.add_argument(
+        "--from", dest="previous", metavar="VERSION", help="a commit, or the folder of a checkout, to compare with"
     )
 
 
@@ -37,7 +45,10 @@ def run(arguments: argparse.Namespace) -> None:
     if unknown:
         raise BenchmarkError(f"There is no measurement {unknown[0]!r}: there are {', '.join(_MEASURES)}.")
     for name in arguments.names or _MEASURES:
-        _MEASURES[name]()
+        if name == "waiting" and arguments.previous:
+            _compare_waiting(arguments.previous)
+        else:
+            _MEASURES[name]()
 
 
 def _busy() -> None:
@@ -53,9 +64,20 @@ def _busy() -> None:
 
 
 def _waiting() -> None:
-    segcore.warm_up()
-    with installed(workers=1) as installation, httpx.Client(base_url=installation.url, timeout=120) as client:
-        _print("Prefer: wait=10, 20,000 faces", measures.waiting(client, 20_000, 9))
+    (found,) = waiting([HERE], _WAITING_FACES, _WAITING_JOBS)
+    _print(_WAITING, str(found))
+
+
+def _compare_waiting(previous: str) -> None:
+    with version(previous) as root:
+        this, other = waiting([HERE, root], _WAITING_FACES, _WAITING_JOBS)
+    _print(f"{_WAITING}, this version", str(this))
+    _print(f"{_WAITING}, {previous}", str(other))
+    _print("ratio of the median overheads", f"{_median_overhead(this) / _median_overhead(other):.2f}")
+
+
+def _median_overhead(found: Waiting) -> float:
+    return statistics.median(found.overhead_ms)
 
 
 def _levels() -> None:

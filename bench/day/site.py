@@ -15,7 +15,7 @@ from redis import Redis
 
 from bench.day.proxies import free_port
 from bench.errors import BenchmarkError
-from bench.load.installation import children_of, cleave
+from bench.load.installation import children_of, cleave, runs_a_job
 from worker.jobs.queue.workers import live_workers
 
 WORKERS = 2  # of the service
@@ -83,7 +83,7 @@ class Site:
     def host_is_working(self) -> bool:
         """Whether the other host runs a job."""
         assert self._host is not None
-        return any(children_of(process) for process in children_of(self._host.pid))
+        return any(runs_a_job(child) for process in children_of(self._host.pid) for child in children_of(process))
 
     def lose_host(self) -> None:
         """End all processes of the other host at once, as a loss of power does."""

@@ -8,10 +8,13 @@ import tempfile
 import time
 from collections.abc import Iterator, Mapping
 from contextlib import contextmanager, suppress
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 
 import httpx
+
+from bench.checkout import HERE
+from worker.process.spare import WAITING_NAME
 
 _STARTED = re.compile(r"listening on +(http://\S+)")
 _READY_WITHIN_S = 180.0  # enough to compile all kernels on a busy machine
@@ -26,6 +29,7 @@ class Installation:
     url: str
     pid: int  # of the supervisor
     data_dir: Path
+    version: Path = HERE  # the root of its checkout
 
     @property
     def log(self) -> Path:
@@ -37,8 +41,8 @@ class Installation:
         return [pid for pid in children_of(self.pid) if word.encode() in _command_line(pid)]
 
     def work_horses(self) -> list[int]:
-        """Return the ids of the child processes of the workers."""
-        return [pid for worker in self.children("worker.process") for pid in children_of(worker)]
+        """Return the ids of the child processes of the workers that run a job."""
+        return [pid for worker in self.children("worker.process") for pid in children_of(worker) if runs_a_job(pid)]
 
     def service_pid(self) -> int:
         """Return the id of the HTTP server."""
@@ -47,29 +51,35 @@ class Installation:
 
 
 @contextmanager
-def installed(workers: int, settings: Mapping[str, str] = _SETTINGS) -> Iterator[Installation]:
-    """Start an installation and wait until it is ready for jobs, or for requests if it has no workers."""
+def installed(workers: int, settings: Mapping[str, str] = _SETTINGS, version: Path = HERE) -> Iterator[Installation]:
+    """Start an installation and wait until it is ready for jobs, or for requests if it has no workers.
+
+    ``version`` is the root of a checkout.
+    """
     with (
         tempfile.TemporaryDirectory(prefix="cleave-load-", ignore_cleanup_errors=True) as folder,
-        installed_in(Path(folder) / "data", workers, settings) as installation,
+        installed_in(Path(folder) / "data", workers, settings, version) as installation,
     ):
         yield installation
 
 
 @contextmanager
-def installed_in(data_dir: Path, workers: int, settings: Mapping[str, str] = _SETTINGS) -> Iterator[Installation]:
+def installed_in(
+    data_dir: Path, workers: int, settings: Mapping[str, str] = _SETTINGS, version: Path = HERE
+) -> Iterator[Installation]:
     """Start an installation with a data folder, which may have jobs already; its log lies beside the folder."""
-    environment = os.environ | dict(settings) | {"CLEAVE_DATA_DIR": str(data_dir)}
+    environment = environment_of(version) | dict(settings) | {"CLEAVE_DATA_DIR": str(data_dir)}
     with data_dir.with_suffix(".log").open("wb") as log:
         process = subprocess.Popen(
             cleave("serve", "--port", "0", "--workers", str(workers)),
+            cwd=version,
             env=environment,
             stdout=subprocess.PIPE,
             stderr=log,
             text=True,
         )
     try:
-        yield _ready(process, data_dir, needs_workers=workers > 0)
+        yield replace(_ready(process, data_dir, needs_workers=workers > 0), version=version)
     finally:
         process.terminate()
         process.wait(_STOPPED_WITHIN_S)
@@ -83,7 +93,8 @@ def more_workers(installation: Installation, count: int, queue: str) -> Iterator
     url = f"unix://{installation.data_dir}/queue/queue.sock"
     process = subprocess.Popen(
         cleave("worker", "--redis-url", url, "--queue", queue, "--workers", str(count)),
-        env=os.environ | _SETTINGS | {"CLEAVE_DATA_DIR": str(installation.data_dir)},
+        cwd=installation.version,
+        env=environment_of(installation.version) | _SETTINGS | {"CLEAVE_DATA_DIR": str(installation.data_dir)},
         stdout=subprocess.DEVNULL,
     )
     try:
@@ -93,8 +104,13 @@ def more_workers(installation: Installation, count: int, queue: str) -> Iterator
         process.wait(_STOPPED_WITHIN_S)
 
 
+def environment_of(version: Path) -> dict[str, str]:
+    """Return the environment in which Python imports the packages of a checkout."""
+    return os.environ | {"PYTHONPATH": str(version)}
+
+
 def cleave(*arguments: str) -> list[str]:
-    """Return the command line of `cleave` of this checkout."""
+    """Return the command line of `cleave` of the checkout that is the working directory."""
     return [sys.executable, "-m", "service.commands", *arguments]
 
 
@@ -103,6 +119,13 @@ def children_of(pid: int) -> list[int]:
     with suppress(FileNotFoundError, ProcessLookupError):
         return [int(child) for child in Path(f"/proc/{pid}/task/{pid}/children").read_text().split()]
     return []
+
+
+def runs_a_job(pid: int) -> bool:
+    """Whether a child process of a worker runs a job or an edit, rather than waiting for one."""
+    with suppress(FileNotFoundError, ProcessLookupError):
+        return Path(f"/proc/{pid}/comm").read_text().strip() != WAITING_NAME
+    return False
 
 
 def _command_line(pid: int) -> bytes:

@@ -9,7 +9,6 @@ from pathlib import Path
 
 import httpx
 
-import segcore
 from bench.load.installation import Installation
 from bench.load.meshes import wavy_torus
 
@@ -83,31 +82,6 @@ def upload_memory(installation: Installation, client: httpx.Client, megabytes: i
     return f"{megabytes} MB raise it by {grown / 2**20:.1f} MiB"
 
 
-def waiting(client: httpx.Client, faces: int, count: int) -> str:
-    """Measure the overhead of the service with Prefer: wait=10 over reading and segmenting in this process."""
-    overheads, alone = [], []
-    for seed in range(count):
-        mesh, parameters = wavy_torus(faces, 4 + seed % 3), segcore.SegmentationParameters(seed=seed)
-        alone_s = min(_alone(mesh, parameters) for _ in range(2))
-        began_at = time.perf_counter()
-        response = client.post(
-            "/v1/jobs",
-            content=mesh,
-            params={"parameters": f'{{"seed": {seed}}}'},
-            headers={"Content-Type": "model/ply", "Prefer": "wait=10"},
-        )
-        took_s = time.perf_counter() - began_at
-        assert response.status_code == 200, response.text
-        assert len(response.json()["labels"]) == response.json()["mesh"]["faces"]
-        overheads.append(took_s - alone_s)
-        alone.append(alone_s)
-    more_ms = [1000 * overhead for overhead in overheads]
-    return (
-        f"alone {1000 * statistics.median(alone):.0f} ms, overhead: median {statistics.median(more_ms):.0f} ms, "
-        f"largest {max(more_ms):.0f} ms"
-    )
-
-
 def levels(client: httpx.Client, faces: int, form: str) -> str:
     """Measure requests for labels at new numbers of segments; the first one also opens the result."""
     response = client.post("/v1/jobs", content=wavy_torus(faces), headers={"Content-Type": "model/ply"})
@@ -124,14 +98,6 @@ def levels(client: httpx.Client, faces: int, form: str) -> str:
         f"first {1000 * times_s[0]:.0f} ms, median {1000 * statistics.median(times_s):.0f} ms, "
         f"largest {1000 * max(times_s):.0f} ms"
     )
-
-
-def _alone(mesh: bytes, parameters: segcore.SegmentationParameters) -> float:
-    from io import BytesIO
-
-    began_at = time.perf_counter()
-    segcore.segment(segcore.read_mesh(BytesIO(mesh)), parameters)
-    return time.perf_counter() - began_at
 
 
 def _peak_bytes(pid: int) -> int:

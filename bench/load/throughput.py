@@ -8,6 +8,7 @@ from pathlib import Path
 
 import httpx
 
+from bench.checkout import HERE
 from bench.load.installation import Installation, installed, more_workers
 from bench.load.meshes import wavy_torus
 
@@ -26,9 +27,12 @@ class Throughput:
         return jobs / self.seconds
 
 
-def throughput(workers: int, jobs: int, faces: int) -> Throughput:
+def throughput(workers: int, jobs: int, faces: int, version: Path = HERE) -> Throughput:
     """Submit different jobs of one size, then start the workers and wait until all jobs have succeeded."""
-    with installed(workers=0) as installation, httpx.Client(base_url=installation.url, timeout=120) as client:
+    with (
+        installed(workers=0, version=version) as installation,
+        httpx.Client(base_url=installation.url, timeout=120) as client,
+    ):
         for number in range(jobs):
             _submit(client, wavy_torus(faces, 3 + number % 5), number)
         with more_workers(installation, workers, "small"):

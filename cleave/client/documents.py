@@ -28,6 +28,7 @@ class Job:
     status: Status
     stage: str | None
     progress: float  # 0..1
+    seconds_left: int | None  # an estimate; None if there is none
     queue_position: int | None
     created_at: datetime
     finished_at: datetime | None
@@ -93,6 +94,7 @@ def job_from(document: Mapping[str, Any]) -> Job:
         status=document["status"],
         stage=document["stage"],
         progress=document["progress"],
+        seconds_left=document.get("seconds_left"),  # servers of earlier versions do not send it
         queue_position=document["queue_position"],
         created_at=datetime.fromisoformat(document["created_at"]),
         finished_at=None if finished is None else datetime.fromisoformat(finished),

@@ -1,6 +1,5 @@
 """The changes of a job as server-sent events."""
 
-import asyncio
 import time
 from collections.abc import AsyncIterator
 from datetime import timedelta
@@ -55,7 +54,7 @@ async def job_events(context: Context, job: Job, last_id: int) -> AsyncIterator[
             yield ": still here\n\n"
         if document.finished_at is not None or not await run_in_threadpool(context.store.records.job, job.id):
             return
-        await asyncio.sleep(max(_POLL_S, 2 * context.store.objects.poll_interval_s))
+        await context.endings.pause(job.id, max(_POLL_S, 2 * context.store.objects.poll_interval_s))
 
 
 def has_last_event(document: JobDocument, last_id: int) -> bool:

@@ -3,9 +3,11 @@
 import os
 import sys
 import threading
+import time
 from types import TracebackType
 from typing import TextIO
 
+_MINUTES_FROM_S = 100  # from which minutes are shown, as the page does; set by hand
 _BAR_WIDTH, _BOARD_BAR_WIDTH = 30, 20  # characters; with its percentage and stage, either fits on a line of 80
 # Control characters, and bytes of file names that are no text, which Python has as U+DC80 to U+DCFF.
 _ESCAPES = {
@@ -49,6 +51,7 @@ class ProgressBar:
     def __init__(self, terminal: TextIO) -> None:
         self._terminal = terminal if terminal.isatty() else None
         self._shown = ""
+        self._began_at = time.monotonic()
 
     def __enter__(self) -> "ProgressBar":
         return self
@@ -59,7 +62,10 @@ class ProgressBar:
         self._show("")
 
     def __call__(self, stage: str, fraction: float) -> None:
-        self._show(f"{_bar(fraction, _BAR_WIDTH)}  {stage}")
+        from segcore.progress import seconds_left  # here, so that commands without a bar start sooner
+
+        left = _left(seconds_left(time.monotonic() - self._began_at, fraction))
+        self._show(f"{_bar(fraction, _BAR_WIDTH)}  {stage}{left}")
 
     def _show(self, text: str) -> None:
         if self._terminal is None or text == self._shown:
@@ -78,7 +84,7 @@ class ProgressBoard:
     def __init__(self, output: TextIO) -> None:
         self._output = output
         self._is_terminal = output.isatty()
-        self._bars: dict[str, tuple[str, float]] = {}
+        self._bars: dict[str, tuple[str, float, int | None]] = {}
         self._drawn = 0
         self._lock = threading.Lock()
 
@@ -92,10 +98,10 @@ class ProgressBoard:
             self._bars.clear()
             self._draw()
 
-    def show(self, name: str, stage: str, fraction: float) -> None:
-        """Draw the bar of a task."""
+    def show(self, name: str, stage: str, fraction: float, left_s: int | None = None) -> None:
+        """Draw the bar of a task; ``left_s`` is an estimate of the seconds until its end."""
         with self._lock:
-            self._bars[name] = (stage, fraction)
+            self._bars[name] = (stage, fraction, left_s)
             self._draw()
 
     def finish(self, name: str, sentence: str) -> None:
@@ -112,12 +118,19 @@ class ProgressBoard:
         # Move the cursor up to the first bar and clear everything below it, then write the line and the bars again.
         up = f"\x1b[{self._drawn}F" if self._drawn else ""
         bars = "".join(
-            f"{name[:_NAME_WIDTH]:{_NAME_WIDTH}} {_bar(fraction, _BOARD_BAR_WIDTH)} {stage}\n"
-            for name, (stage, fraction) in self._bars.items()
+            f"{name[:_NAME_WIDTH]:{_NAME_WIDTH}} {_bar(fraction, _BOARD_BAR_WIDTH)} {stage}{_left(left_s)}\n"
+            for name, (stage, fraction, left_s) in self._bars.items()
         )
         self._output.write(f"{up}\x1b[J{line}{bars}")
         self._output.flush()
         self._drawn = len(self._bars)
+
+
+def _left(seconds: int | None) -> str:
+    """Return how long a task still takes, in words that follow its stage; empty if that is not known."""
+    if seconds is None:
+        return ""
+    return f", {seconds} s left" if seconds < _MINUTES_FROM_S else f", {round(seconds / 60)} min left"
 
 
 def _bar(fraction: float, width: int) -> str:

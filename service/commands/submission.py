@@ -115,7 +115,7 @@ def _finished_job(session: Session, submission: Submission, companions: dict[str
     session.board.show(label, "upload", 0.0)
     job = _submitted_job(session, submission, companions, digest)
     while not job.has_ended:
-        session.board.show(label, job.stage or job.status, job.progress)
+        session.board.show(label, job.stage or job.status, job.progress, job.seconds_left)
         if session.stopping.is_set():
             raise JobEnded(job)
         job = session.client.job(job.id, wait_s=_WAIT_S)

@@ -102,4 +102,4 @@ def delete_batch(batch_id: BatchId, context: ContextOf, caller: CallerOf) -> Non
 async def _wait_for_jobs(context: Context, batch: Batch, at_most_s: float) -> None:
     began_at = now()
     for job_id in batch.job_ids if at_most_s else ():
-        await wait_for_end(context.store, job_id, at_most_s - (now() - began_at).total_seconds())
+        await wait_for_end(context.store, context.endings, job_id, at_most_s - (now() - began_at).total_seconds())

@@ -62,7 +62,7 @@ async def get_job(job_id: JobId, request: Request, context: ContextOf, caller: C
     """The state of a job. With ``wait`` the response is sent when the job has ended, or after so many seconds."""
     if wait:
         job = await run_in_threadpool(find_job, context, caller, job_id)
-        await wait_for_end(context.store, job.id, min(wait, context.settings.max_wait_s))
+        await wait_for_end(context.store, context.endings, job.id, min(wait, context.settings.max_wait_s))
     document = await run_in_threadpool(lambda: describe(context, find_job(context, caller, job_id)))
     retry = {} if document.finished_at else {"Retry-After": "1"}
     return answer_json(request, document.model_dump_json().encode(), headers=retry)

@@ -62,7 +62,7 @@ async def rerun_job(
 async def _answer(context: Context, submission: Submission, prefer: str | None) -> Response:
     preference = read_preference(prefer, context.settings.max_wait_s)
     if preference.wait_s:
-        await wait_for_end(context.store, submission.receipt.job.id, preference.wait_s)
+        await wait_for_end(context.store, context.endings, submission.receipt.job.id, preference.wait_s)
     return await run_in_threadpool(_response, context, submission, preference)
 
 

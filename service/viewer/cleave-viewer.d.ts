@@ -117,6 +117,13 @@ export interface LoadDetail {
   readonly faces: number;
 }
 
+/** Detail of `cleave-coarse`. */
+export interface CoarseDetail {
+  /** Of the coarse model. */
+  readonly faces: number;
+  readonly fullFaces: number;
+}
+
 /** Detail of `cleave-error`, and the property `error`. */
 export interface ErrorDetail {
   readonly code: "no_webgl" | "not_loaded" | "invalid_model";
@@ -127,6 +134,8 @@ export interface ErrorDetail {
 /** Events by name. All of them bubble out of shadow roots. */
 export interface CleaveViewerEventMap {
   "cleave-loading": CustomEvent<{ readonly src: string | null }>;
+  /** A coarse model is shown, until `cleave-load` reports the full one. */
+  "cleave-coarse": CustomEvent<CoarseDetail>;
   "cleave-load": CustomEvent<LoadDetail>;
   "cleave-error": CustomEvent<ErrorDetail>;
   "cleave-look": CustomEvent<{ readonly look: Look }>;
@@ -150,6 +159,8 @@ export interface CleaveViewerAttributes {
   concavity?: boolean | "";
   "no-lines"?: boolean | "";
   "no-entrance"?: boolean | "";
+  /** By default 200000. */
+  "coarse-from"?: number | string;
   up?: "y" | "z";
   look?: Look;
   "original-src"?: string;

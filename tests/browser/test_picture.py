@@ -103,3 +103,36 @@ def test_the_concavity_overlay_marks_the_roots_of_the_arms(visit: Visit, job: st
     red = [color for color in shown if color[3] == 255 and color[0] > color[2] + 40]
     assert not [color for color in plain if color[3] == 255 and color[0] > color[2] + 40]
     assert 10 < len(red) < len([color for color in shown if color[3] == 255]) / 2
+
+
+# Opens a job whose model is shown coarse first, and returns what the page is like at that time.
+_OPEN_COARSE = """(job) => new Promise((done) => {
+  const viewer = document.getElementById('viewer');
+  viewer.setAttribute('coarse-from', '1000');
+  viewer.addEventListener('cleave-coarse', ({ detail }) => {
+    const box = viewer.getBoundingClientRect();
+    done({
+      ...detail,
+      isShown: box.width > 0 && viewer.figures.drawCalls() >= 0,
+      state: viewer.state,
+      says: viewer.shadowRoot.querySelector('p').textContent,
+      part: viewer.partAt(box.x + box.width / 2, box.y + box.height / 2),
+      tools: getComputedStyle(document.getElementById('tools')).visibility,
+    });
+  });
+  location.hash = `job=${job}`;
+})"""
+
+
+def test_a_large_model_is_shown_coarse_and_without_tools_until_the_full_one_is_there(visit: Visit, job: str) -> None:
+    visit.open("")
+    coarse = visit.page.evaluate(_OPEN_COARSE, job)
+    assert coarse["isShown"]
+    assert coarse["faces"] <= coarse["fullFaces"]
+    assert (coarse["state"], coarse["part"], coarse["tools"]) == ("loading", -1, "hidden")
+    assert coarse["says"] == "A coarse model; the full one follows."
+    visit.wait_for_parts()
+    assert visit.viewer("v.tree.node(0).faces") == coarse["fullFaces"]
+    assert visit.viewer("v.state") == "loaded"
+    assert max(visit.parts_at(visit.grid())) >= 0
+    assert visit.page.evaluate("getComputedStyle(document.getElementById('tools')).visibility") == "visible"

@@ -11,7 +11,7 @@ import pytest
 
 from helpers.installation import Installation
 from helpers.jobs import LONG, sphere
-from helpers.processes import children_of
+from helpers.processes import horses_of
 from helpers.waiting import wait_until
 from worker.jobs.job import now
 
@@ -21,7 +21,7 @@ def test_a_job_whose_worker_and_work_horse_are_killed_together_runs_again_within
         path = installation.submit(sphere(100), json.dumps(LONG))
         wait_until(installation.horses)
         (horse,) = installation.horses()
-        (worker,) = [pid for pid in installation.children("worker.process") if horse in children_of(pid)]
+        (worker,) = [pid for pid in installation.children("worker.process") if horse in horses_of(pid)]
         killed_at = now()
         os.kill(worker, signal.SIGKILL)
         os.kill(horse, signal.SIGKILL)

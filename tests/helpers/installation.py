@@ -15,7 +15,7 @@ from typing import Any, ClassVar
 import httpx
 from redis import Redis
 
-from helpers.processes import children_of
+from helpers.processes import children_of, horses_of
 from helpers.waiting import wait_until
 
 _STARTED = re.compile(r"listening on +(http://\S+)")
@@ -124,7 +124,8 @@ class Installation:
         return [pid for pid in children_of(self.process.pid) if name in _command_line(pid)]
 
     def horses(self) -> list[int]:
-        return [horse for worker in self.children("worker.process") for horse in children_of(worker)]
+        """Return the process ids of the work-horses that run a job."""
+        return [horse for worker in self.children("worker.process") for horse in horses_of(worker)]
 
     def processes(self) -> list[int]:
         """Return the process ids of this installation, which have its data folder in their environment."""

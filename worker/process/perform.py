@@ -1,6 +1,7 @@
 """Runs a job: segments its mesh, and writes the result file and the outcome to the store."""
 
 import logging
+from collections.abc import Callable
 from dataclasses import asdict, dataclass
 
 import segcore
@@ -24,15 +25,24 @@ class Work:
     stage_seconds: dict[str, float]
 
 
-def perform(store: JobStore, settings: Settings, job_id: str, on_progress: OnProgress) -> Work | None:
-    """Give a job its outcome; return None if it has one already or was deleted."""
+def perform(
+    store: JobStore,
+    settings: Settings,
+    job_id: str,
+    on_progress: OnProgress,
+    announce_end: Callable[[], None] = lambda: None,
+) -> Work | None:
+    """Give a job its outcome; return None if it has one already or was deleted.
+
+    ``announce_end`` is called as soon as the outcome can be read.
+    """
     job = store.records.job(job_id)
     if job is None or store.records.outcome(job_id) is not None:
         return None
     clock = StageClock(on_progress)
     try:
         outcome = segment_stored_mesh(store, job, read_limits(settings), clock, settings.job_threads)
-        if store.finish(job_id, outcome).finished_at != outcome.finished_at:
+        if store.finish(job_id, outcome, announce_end).finished_at != outcome.finished_at:
             log.info("the job has ended meanwhile: the outcome of this run is dropped")
             return None
     except UnknownJob:

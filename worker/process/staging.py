@@ -30,28 +30,31 @@ DuringTransfer = Callable[[], AbstractContextManager[None]]
 
 @dataclass(frozen=True, slots=True)
 class StagedJob:
-    """The store in which a child process finds its job and leaves the outcome."""
+    """A job as a child process finds it, in which it leaves the outcome."""
 
-    store: JobStore  # for the child process
+    folder: Path | None  # of the copy; None if the child process uses the original store
     _job_id: str
     _origin: JobStore
-    _folder: Path | None  # of the copy; None if the two stores are the same
     _during_transfer: DuringTransfer
 
-    def publish(self) -> None:
+    def publish(self) -> bool:
         """Copy the outcome, if there is one, to the original store, unless the job was deleted meanwhile.
+
+        Return whether there was something to copy.
 
         Raises
         ------
         StoreError
             If the store does not answer for a minute.
         """
-        if self._folder is not None:
-            with self._during_transfer():
-                self._upload(self._folder)
+        if self.folder is None:
+            return False
+        with self._during_transfer():
+            self._upload(self.folder)
+        return True
 
     def _upload(self, folder: Path) -> None:
-        outcome = self.store.records.outcome(self._job_id)
+        outcome = staged_store(folder).records.outcome(self._job_id)
         if outcome is None:
             return
         gives_up_at = time.monotonic() + _PUBLISH_TIMEOUT_S
@@ -84,15 +87,20 @@ def stage(store: JobStore, job_id: str, during_transfer: DuringTransfer) -> Iter
         If the store does not answer.
     """
     if store.objects.survives_fork:
-        yield StagedJob(store, job_id, store, None, during_transfer)
+        yield StagedJob(None, job_id, store, during_transfer)
         return
     with store.spool.stage() as folder:
         with during_transfer():
-            copy = _download(store, job_id, folder)
-        yield StagedJob(copy, job_id, store, folder, during_transfer)
+            _download(store, job_id, folder)
+        yield StagedJob(folder, job_id, store, during_transfer)
 
 
-def _download(store: JobStore, job_id: str, folder: Path) -> JobStore:
+def staged_store(folder: Path) -> JobStore:
+    """Return the store in the folder of a copy."""
+    return JobStore(LocalObjects(folder), Spool(folder / "spool"))
+
+
+def _download(store: JobStore, job_id: str, folder: Path) -> None:
     job = store.records.job(job_id)
     if job is None:
         raise UnknownJob(job_id)
@@ -105,4 +113,3 @@ def _download(store: JobStore, job_id: str, folder: Path) -> JobStore:
     except FileNotFoundError:
         log.error("the mesh is not in the store")  # the child process reports it to the client
     Records(objects).create_job(job)
-    return JobStore(objects, Spool(folder / "spool"))

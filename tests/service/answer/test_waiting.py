@@ -6,13 +6,15 @@ from typing import cast
 import pytest
 
 from service.answer import waiting
+from service.answer.endings import Endings
 from worker.jobs.store.store import JobStore
 
 
 class Clock:
-    """A clock that advances only in sleep, and a store with a job that ends at a given time."""
+    """A clock that advances only in pauses, and a store with a job that ends at a given time."""
 
     poll_interval_s = 0.0
+    are_announced = False
 
     def __init__(self, ends_at: float) -> None:
         self.now, self.polls = 0.0, 0
@@ -22,7 +24,7 @@ class Clock:
     def monotonic(self) -> float:
         return self.now
 
-    async def sleep(self, pause_s: float) -> None:
+    async def pause(self, _: str, pause_s: float) -> None:
         self.now += pause_s
 
     def has_ended(self, _: str) -> bool:
@@ -32,8 +34,7 @@ class Clock:
 
 def wait(monkeypatch: pytest.MonkeyPatch, clock: Clock, at_most_s: float) -> bool:
     monkeypatch.setattr(waiting, "time", clock)
-    monkeypatch.setattr(waiting, "asyncio", clock)
-    return asyncio.run(waiting.wait_for_end(cast(JobStore, clock), "job", at_most_s))
+    return asyncio.run(waiting.wait_for_end(cast(JobStore, clock), cast(Endings, clock), "job", at_most_s))
 
 
 @pytest.mark.parametrize("takes_s", [0.004, 0.3, 0.7, 5.0, 20.0])

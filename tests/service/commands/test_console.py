@@ -52,11 +52,13 @@ def test_a_board_shows_a_bar_for_each_running_task_and_a_line_for_each_that_has_
     terminal, file = Terminal(), io.StringIO()
     for output in (terminal, file):
         with ProgressBoard(output) as board:
-            board.show("a.off", "cut", 0.5)
+            board.show("a.off", "cut", 0.4, left_s=130)
+            board.show("a.off", "cut", 0.5, left_s=7)
             board.show("b.off", "queued", 0.0)
             board.finish("a.off", "3 segments")
     assert file.getvalue() == "a.off: 3 segments\n"
-    assert "[##########..........]  50% cut\n" in terminal.getvalue()
+    assert "[##########..........]  50% cut, 7 s left\n" in terminal.getvalue()
+    assert "[########............]  40% cut, 2 min left\n" in terminal.getvalue()
     last_drawn, cleared = terminal.getvalue().split("\x1b[J")[-2:]
     assert last_drawn.startswith("a.off: 3 segments\nb.off ")
     assert last_drawn.endswith("\x1b[1F")

@@ -4,6 +4,8 @@ import json
 import threading
 import time
 from collections.abc import Callable
+from dataclasses import replace
+from datetime import timedelta
 
 import httpx
 import pytest
@@ -13,7 +15,10 @@ from helpers.api import AGAIN, FACES, problem, submit, traces
 from helpers.files.samples import TWO_SQUARES
 from helpers.jobs import SMALL
 from service.job_documents import Status
+from worker.jobs.job import now
 from worker.jobs.queue.queue import JobQueue, Progress
+from worker.jobs.store.layout import job_key
+from worker.jobs.store.records import ATTEMPT
 from worker.jobs.store.store import JobStore
 from worker.process.perform import perform
 
@@ -26,6 +31,18 @@ def test_a_leased_job_is_running_and_has_a_stage(client: httpx.Client, queue: Jo
     queue.publish(job_id, Progress("coarsen", 0.5))
     job = client.get(path).json()
     assert (job["status"], job["stage"], job["progress"]) == ("running", "coarsen", 0.5)
+    assert job["seconds_left"] is None  # no attempt has begun
+
+
+def test_a_running_job_says_how_long_it_still_takes(client: httpx.Client, store: JobStore, queue: JobQueue) -> None:
+    path = submit(client)
+    job_id = path.rpartition("/")[2]
+    attempt = replace(store.begin_attempt(job_id, "worker"), started_at=now() - timedelta(seconds=90))
+    store.records.withdraw_attempt(job_id, attempt)
+    store.objects.create(job_key(job_id, "attempt-1.json"), ATTEMPT.dump_json(attempt))
+    queue.take(job_id, "worker", lease_s=30)
+    queue.publish(job_id, Progress("cut", 0.75))
+    assert 30 <= client.get(path).json()["seconds_left"] < 90
 
 
 def test_a_finished_job_describes_its_mesh_and_levels(client: httpx.Client, finished_job: Callable[..., str]) -> None:

@@ -8,7 +8,7 @@ from pathlib import Path
 import pytest
 
 from helpers.jobs import LONG, SMALL, accepted, sphere
-from helpers.processes import StartWorker, children_of
+from helpers.processes import StartWorker, horses_of
 from helpers.waiting import wait_until
 from service.host.queue_server import QueueServer, embedded_queue_server
 from worker.jobs.job import Job, Succeeded
@@ -57,7 +57,7 @@ def at_work(
     worker = start_worker(CLEAVE_REDIS_URL=server.url)
     running = accepted(store, sphere(100), **LONG)
     queue.enqueue(running.id, SMALL)
-    wait_until(lambda: children_of(worker.pid))
+    wait_until(lambda: horses_of(worker.pid))
     return queue, worker, running
 
 
@@ -67,7 +67,7 @@ def test_a_worker_survives_the_loss_of_its_queue_server(
     queue, worker, running = at_work(start_worker, store, server)
     server.lose()
     wait_until(lambda: succeeded(store, running.id))  # without a queue server
-    wait_until(lambda: not children_of(worker.pid))
+    wait_until(lambda: not horses_of(worker.pid))
     with pytest.raises(QueueError):
         queue.lengths()
     server.start()

@@ -11,7 +11,7 @@ import pytest
 from redis import Redis
 
 from helpers.jobs import LARGE, LONG, SMALL, accepted, sphere
-from helpers.processes import StartWorker, children_of, is_alive
+from helpers.processes import StartWorker, horses_of, is_alive
 from helpers.waiting import wait_until
 from worker.jobs.job import Canceled, Failed, Job, Outcome, Succeeded, now
 from worker.jobs.queue.entries import FUNCTION_NAME
@@ -29,8 +29,8 @@ def outcome_of(store: JobStore, job: Job, within_s: float = 60.0) -> Outcome:
 
 def horse_of(worker: "subprocess.Popen[bytes]") -> int:
     """Wait for the work-horse of a worker and return its process id."""
-    wait_until(lambda: children_of(worker.pid))
-    return children_of(worker.pid)[0]
+    wait_until(lambda: horses_of(worker.pid))
+    return horses_of(worker.pid)[0]
 
 
 def submitted(store: JobStore, queue: JobQueue, **parameters: object) -> Job:
@@ -99,7 +99,7 @@ def poison(statement: str) -> tuple[str, str]:
 import ctypes, os, tempfile
 from worker.jobs.job import Canceled, now
 from worker.process import process
-def perform(store, settings, job_id, on_progress):
+def perform(store, settings, job_id, *_):
     if store.open_mesh(job_id).read() == b"poison":
         {statement}
     store.finish(job_id, Canceled(finished_at=now()))

@@ -7,7 +7,7 @@ from pathlib import Path
 
 from helpers.buckets import s3_server
 from helpers.jobs import LONG, accepted, sphere, unfinished
-from helpers.processes import StartWorker, children_of
+from helpers.processes import StartWorker, horses_of
 from helpers.waiting import wait_until
 from worker.jobs.job import Succeeded
 from worker.jobs.queue.queue import JobQueue
@@ -41,7 +41,7 @@ def test_a_worker_runs_jobs_of_a_bucket_even_if_the_bucket_hangs_meanwhile(
         with store.results.open(jobs[0]) as result:
             assert result.read(4)
         jobs.append(submitted(store, queue, sphere(100), **LONG))
-        wait_until(lambda: children_of(worker.pid))
+        wait_until(lambda: horses_of(worker.pid))
         os.kill(server.pid, signal.SIGSTOP)
         time.sleep(4)
         os.kill(server.pid, signal.SIGCONT)

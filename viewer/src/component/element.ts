@@ -1,6 +1,7 @@
 /** The web component ``<cleave-viewer>``, which shows the GLB file of a job. docs/reference/viewer.md describes it. */
 
-import type { CleaveViewer as Declared, Color, Colors, ErrorDetail, FaceTable, LoadDetail, Partition, Point, ViewerState } from "./cleave-viewer";
+import type { CleaveViewer as Declared, CoarseDetail, Color, Colors, ErrorDetail, FaceTable, LoadDetail, Partition, Point, ViewerState } from "./cleave-viewer";
+import { coarseModel } from "./coarse";
 import { Drawing, type Inks } from "./drawing";
 import { faceTable } from "./faces";
 import { sphereAround } from "./framing";
@@ -16,7 +17,7 @@ import { reasonOf, Status, unreachable } from "./status";
 import { buildSurface, type Surface } from "./surface";
 import type { Cut, PartTree } from "./tree";
 
-export type { Color, Colors, FaceTable, LoadDetail, Look, Model, Partition, Point, View };
+export type { CoarseDetail, Color, Colors, FaceTable, LoadDetail, Look, Model, Partition, Point, View };
 export { nodeOfPart } from "./partition";
 export type { Faces } from "./sight";
 export { type Cut, type PartTree, type TreeNode } from "./tree";
@@ -46,12 +47,15 @@ canvas.over { cursor: pointer; }
 p { position: absolute; inset: 0; display: grid; place-content: center; margin: 0; padding: 1em; text-align: center; pointer-events: none; }
 p[hidden] { display: none; }
 :host([state="failed"]) canvas { visibility: hidden; }
+:host([state="loading"]) p.over { inset: auto 0 0; }
 :host([state="loading"]) p { animation: wait 0s 0.3s both; }
 @keyframes wait { from { visibility: hidden; } }
 canvas:focus-visible { box-shadow: inset 0 0 0 3px var(--cleave-focus, #5b5bd6); }
 `;
 const NO_COLORS: Colors = new Map();
 const CLICK_PIXELS = 5; // a pointer that moves farther drags
+/** Models of more faces are shown coarse first: the processor draws so many in about half a second. */
+const COARSE_FROM = 200_000;
 const PAUSE_MS = 12; // of work on a model before control returns to the event loop
 
 /** The server did not send the model; the message says why. */
@@ -354,6 +358,7 @@ export class CleaveViewer extends HTMLElement implements Declared {
 
   /** Return the part at a position in the window; -1 if there is none. */
   partAt(clientX: number, clientY: number): number {
+    if (this.#model === null) return -1; // what is drawn is coarse, if anything
     const box = this.#canvas.getBoundingClientRect();
     const id = this.#stage?.idAt(clientX - box.left, clientY - box.top) ?? -1;
     const leaf = id < 0 || this.#partitioned === null ? id : this.#labels!.parts[id]!;
@@ -426,30 +431,51 @@ export class CleaveViewer extends HTMLElement implements Declared {
 
   async #show(data: ArrayBuffer, signal: AbortSignal): Promise<void> {
     const model = parseModel(data);
+    const faces = model.index.length / 3;
+    const isCoarseFirst = faces > Number(this.getAttribute("coarse-from") ?? COARSE_FROM);
+    if (isCoarseFirst) await this.#showCoarse(model, signal);
     const surface = await buildSurface(model, eventLoopYielder());
     if (signal.aborted || this.#stage === null) return;
+    const view = isCoarseFirst ? this.view : null; // to which it was turned meanwhile
     this.#remove();
     this.#model = model;
     this.#surface = surface;
-    this.#drawing = new Drawing(model, surface, this.#inks());
-    const segments = Number(this.getAttribute("segments") ?? model.automaticSegments);
-    this.#cut = model.tree.cutAt(segments);
-    this.#hidden = new Set();
-    this.#selected = [];
-    this.#stage.view = this.#firstView ?? FIRST_VIEW;
-    this.#stage.show(this.#drawing);
-    this.#applyModes();
+    this.#draw(new Drawing(model, surface, this.#inks()), model, view);
     void this.#applyLook();
     const detail = {
       maxSegments: model.tree.maxSegments,
       automaticSegments: model.automaticSegments,
       limitReached: model.limitReached,
-      faces: model.index.length / 3,
+      faces,
     };
     this.#status.state = "loaded";
     this.#emit("cleave-load", detail satisfies LoadDetail);
-    if (this.#firstView === null && !this.hasAttribute("no-entrance")) this.#stage.enter();
+    if (!isCoarseFirst && this.#firstView === null && !this.hasAttribute("no-entrance")) this.#stage.enter();
     this.#firstView = null;
+  }
+
+  /** Show a coarse model until the full one is drawn; nothing can be picked on it. */
+  async #showCoarse(model: Model, signal: AbortSignal): Promise<void> {
+    const coarse = coarseModel(model);
+    const surface = await buildSurface(coarse, eventLoopYielder());
+    if (signal.aborted || this.#stage === null) return;
+    this.#remove();
+    this.#draw(new Drawing(coarse, surface, this.#inks()), coarse, null);
+    const detail = { faces: coarse.index.length / 3, fullFaces: model.index.length / 3 };
+    this.#status.explainCoarse();
+    this.#emit("cleave-coarse", detail satisfies CoarseDetail);
+    await shown();
+  }
+
+  /** Show the first cut of a model in a view, by default the first one. */
+  #draw(drawing: Drawing, { tree, automaticSegments }: Model, view: View | null): void {
+    this.#drawing = drawing;
+    this.#cut = tree.cutAt(Number(this.getAttribute("segments") ?? automaticSegments));
+    this.#hidden = new Set();
+    this.#selected = [];
+    this.#stage!.view = view ?? this.#firstView ?? FIRST_VIEW;
+    this.#stage!.show(drawing);
+    this.#applyModes();
   }
 
   #applyModes(): void {
@@ -635,6 +661,14 @@ export class CleaveViewer extends HTMLElement implements Declared {
 
 function percent(share: number): string {
   return new Intl.NumberFormat("en", { style: "percent", maximumSignificantDigits: 2 }).format(share);
+}
+
+/** Wait until the browser has shown a frame; it shows none of a page in the background. */
+function shown(): Promise<void> {
+  return new Promise((resolve) => {
+    if (document.hidden) resolve();
+    else requestAnimationFrame(() => setTimeout(resolve));
+  });
 }
 
 /** Return a function that yields to the event loop if PAUSE_MS have passed since the last time. */

@@ -53,6 +53,8 @@ export class Stage {
   #reach = 1;
   /** The size for which the numbers of faces are drawn: a lower resolution of the picture leaves them. */
   #framed = "";
+  /** Whether the canvas had no size when it was to get that of the page. */
+  #isUnsized = false;
 
   /** ``onView`` is called after the camera has moved. Throws if the browser has no WebGL 2. */
   constructor(canvas: HTMLCanvasElement, onView: () => void) {
@@ -123,7 +125,8 @@ export class Stage {
     this.#drawing = drawing;
     this.#framed = "";
     if (drawing !== null) this.#upright.add(drawing.group);
-    this.resize();
+    this.#fit();
+    this.changed(); // with the next frame, when the state of its parts is set
   }
 
   /** Animate the camera into the first view, unless reduced motion is preferred. */
@@ -153,8 +156,16 @@ export class Stage {
   }
 
   resize(): void {
+    if (!this.#fit()) return;
+    // A resized canvas is blank: draw before the browser shows it.
+    this.draw();
+  }
+
+  /** Take the size of the canvas on the page; return false if it has none. */
+  #fit(): boolean {
     const { clientWidth: width, clientHeight: height } = this.canvas;
-    if (width === 0 || height === 0) return;
+    this.#isUnsized = width === 0 || height === 0;
+    if (this.#isUnsized) return false;
     const ratio = Math.min(devicePixelRatio, MOST_PIXELS) * this.#sharpness;
     this.#renderer.setPixelRatio(ratio);
     this.#renderer.setSize(width, height, false);
@@ -169,8 +180,7 @@ export class Stage {
     if (framed === this.#framed) this.repaint();
     else this.changed();
     this.#framed = framed;
-    // A resized canvas is blank: draw before the browser shows it.
-    this.draw();
+    return true;
   }
 
   /** Request a new frame after a change of what is where. */
@@ -192,6 +202,8 @@ export class Stage {
   draw(): void {
     cancelAnimationFrame(this.#frame);
     this.#frame = 0;
+    // The lines of a drawing that does not know the size would cover the whole picture.
+    if (this.#isUnsized) return this.resize();
     this.#controls.update();
     this.#renderer.render(this.#scene, this.#camera);
   }

@@ -3,6 +3,7 @@
 import type { ErrorDetail, ViewerState } from "./cleave-viewer";
 
 const LOADING = "Loading the model…";
+const COARSE = "A coarse model; the full one follows.";
 
 /** Sets the attribute ``state`` of an element, and the text in its box. */
 export class Status {
@@ -25,6 +26,12 @@ export class Status {
     this.#set(state, null, state === "loading" ? LOADING : "");
   }
 
+  /** Say below a coarse model that the full one follows. */
+  explainCoarse(): void {
+    this.box.textContent = COARSE;
+    this.box.classList.add("over");
+  }
+
   fail(error: ErrorDetail): void {
     this.#set("failed", error, error.message);
   }
@@ -36,6 +43,7 @@ export class Status {
     this.box.role = error === null ? "status" : "alert";
     this.box.hidden = text === "";
     this.box.textContent = text;
+    this.box.classList.remove("over");
   }
 }
 

@@ -10,6 +10,8 @@ export interface Job {
   readonly status: Status;
   readonly stage: string | null;
   readonly progress: number;
+  /** An estimate; null if there is none, missing in documents of earlier versions. */
+  readonly seconds_left?: number | null;
   readonly queue_position: number | null;
   readonly created_at: string;
   readonly finished_at: string | null;

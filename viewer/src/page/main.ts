@@ -81,6 +81,7 @@ class Page {
 
   #listen(): void {
     const viewer = this.#viewer;
+    viewer.addEventListener("cleave-coarse", () => this.#showCoarse());
     viewer.addEventListener("cleave-load", (event) => this.#loaded((event as CustomEvent<LoadDetail>).detail));
     viewer.addEventListener("cleave-error", (event) => this.#failed((event as CustomEvent<Problem & { message: string }>).detail));
     viewer.addEventListener("cleave-hover", (event) => this.#parts.highlight((event as CustomEvent<{ part: number }>).detail.part));
@@ -192,6 +193,15 @@ class Page {
     this.#restore();
     announce(`${name}: ${plural(this.#session.parts.length, "part")}.`);
     void this.#editing.open(job, this.#session).catch((error: unknown) => toast(explain(problemOf(error)).title));
+  }
+
+  /** Show the coarse model without tools, which need the full one. */
+  #showCoarse(): void {
+    const job = this.#job!;
+    this.#viewer.setAttribute("up", this.#wanted(job).modes.up ?? usualUp(job));
+    this.#start.show("none");
+    byId("work").hidden = false;
+    document.body.classList.add("is-coarse");
   }
 
   #restore(): void {
@@ -316,6 +326,7 @@ class Page {
   }
 
   #showWork(isShown: boolean): void {
+    document.body.classList.remove("is-coarse");
     document.body.classList.toggle("has-result", isShown);
     byId("work").hidden = !isShown;
     if (isShown) this.#start.show("none");

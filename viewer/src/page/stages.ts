@@ -4,8 +4,10 @@ import { getReadiness, type Job } from "./api";
 import { announce, byId, h, icon } from "./dom";
 import lists from "./lists.json";
 import { pause } from "./pause";
+import { plural } from "./text";
 
 const UPLOAD = 0.1; // share of the bar; set by hand: most uploads are much shorter than their jobs
+const MINUTES_FROM_S = 100; // from which minutes are shown, as the command line does
 const ASKED_MS = 2000; // between two questions whether workers are ready
 const STARTING =
   "No worker is ready yet: the server is starting. The first start compiles the numerical kernels, which takes up to a minute.";
@@ -19,6 +21,7 @@ const STAGES: readonly [stage: string, title: string][] = [
 ];
 
 export function openStages(name: string): void {
+  byId("progress-left").textContent = "";
   byId("progress-name").textContent = name;
   byId("stages").replaceChildren(
     ...STAGES.map(([stage, title]) =>
@@ -59,8 +62,15 @@ export function showStage(stage: string, done: number): void {
 
 export function showProgress(job: Job): void {
   showStage(stageOf(job), job.progress);
+  byId("progress-left").textContent = left(job.seconds_left ?? null);
   const place = job.status === "queued" && (job.queue_position ?? 0) > 1 ? `, ${job.queue_position! - 1} ahead of it` : "";
   byId("stages").querySelector("[data-stage=queued] span")!.textContent = `Waiting for a worker${place}`;
+}
+
+/** Return how long a job still takes, in words; empty if that is not known. */
+function left(seconds: number | null): string {
+  if (seconds === null) return "";
+  return seconds < MINUTES_FROM_S ? `About ${plural(seconds, "second")} left` : `About ${plural(Math.round(seconds / 60), "minute")} left`;
 }
 
 /** Say why a job waits while no worker is ready, until the signal is aborted. */

@@ -25,6 +25,7 @@ from worker.jobs.size_class import SizeClass
 
 QUEUE_NAMES = {size: f"cleave:{size}" for size in SizeClass}
 
+ENDINGS_CHANNEL = "cleave:ended"  # of announcements with the id of a job that has ended
 _PROGRESS_TTL_S = 24 * 3600  # longer than a job may run by default (CLEAVE_JOB_TIMEOUT_S)
 _NO_TIMEOUT = -1  # rq's value; the worker process has its own timeout
 
@@ -126,6 +127,10 @@ class JobQueue:
     def publish(self, job_id: str, progress: Progress) -> None:
         document = json.dumps({"stage": progress.stage, "fraction": progress.fraction})
         self.connection.set(_progress_key(job_id), document, ex=_PROGRESS_TTL_S)
+
+    def announce_end(self, job_id: str) -> None:
+        """Tell the services that a job has an outcome now."""
+        self.connection.publish(ENDINGS_CHANNEL, job_id)
 
     def activities(self, job_ids: Iterable[str]) -> dict[str, Activity]:
         """Return the states of some unfinished jobs, by their ids."""

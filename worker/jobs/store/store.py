@@ -4,6 +4,7 @@ A job is accepted when its record is created, after everything else that belongs
 is created, which only the first writer can do. ``worker.jobs.store.layout`` lists the names of the objects.
 """
 
+from collections.abc import Callable
 from contextlib import suppress
 from dataclasses import replace
 from typing import BinaryIO
@@ -111,12 +112,16 @@ class JobStore:
         self.spool.remove_results(job_id)
         return attempt
 
-    def finish(self, job_id: str, outcome: Outcome) -> Outcome:
-        """Give a job its outcome, unless it has one; return the outcome that it has now."""
+    def finish(self, job_id: str, outcome: Outcome, announce: Callable[[], None] = lambda: None) -> Outcome:
+        """Give a job its outcome, unless it has one; return the outcome that it has now.
+
+        ``announce`` is called as soon as the outcome can be read.
+        """
         job = self.records.job(job_id)
         if job is None:
             raise UnknownJob(job_id)
         standing = self.records.write_outcome(job_id, outcome)
+        announce()
         if isinstance(standing, Succeeded):
             with suppress(OSError):  # only an optimisation is lost
                 self.computed.add(job)
