@@ -5,7 +5,8 @@ from dataclasses import dataclass
 import numpy as np
 from numba import njit
 
-from segcore.arrays import FloatArray, IntArray, at_least, dot
+from segcore.array_kernels import dot
+from segcore.arrays import FloatArray, IntArray, at_least
 from segcore.clean.surface import Surface
 
 _TINY = float(np.finfo(float).tiny)

@@ -6,7 +6,8 @@ mirror cut); or S and sigma S are disjoint, and both are cut off in one step (a 
 
 import numpy as np
 
-from segcore.arrays import BoolArray, FloatArray, IntArray, dot, group_sums
+from segcore.array_kernels import dot
+from segcore.arrays import BoolArray, FloatArray, IntArray, group_sums
 from segcore.graphs.cheeger import Cut, cut_of, sweep, valleys
 from segcore.graphs.max_flow import Network
 from segcore.graphs.surface_graph import SurfaceGraph, connected_components

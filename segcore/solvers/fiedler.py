@@ -6,7 +6,8 @@ import numpy as np
 from numba import njit
 from scipy.linalg import eigh_tridiagonal
 
-from segcore.arrays import FloatArray, dot
+from segcore.array_kernels import dot
+from segcore.arrays import FloatArray
 from segcore.graphs.laplacian import LaplacianFactor, factorise, substitute
 from segcore.graphs.surface_graph import SurfaceGraph
 

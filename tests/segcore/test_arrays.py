@@ -3,7 +3,8 @@ from fractions import Fraction
 import numpy as np
 import pytest
 
-from segcore.arrays import dot, transformed
+from segcore.array_kernels import dot
+from segcore.arrays import transformed
 
 
 @pytest.mark.parametrize("count", [*range(18), 20_001])
