@@ -16,7 +16,6 @@ from rq.serializers import JSONSerializer
 from rq.worker import WorkerStatus
 from rq.worker_registration import register
 
-import segcore
 from cleave.logs import about, configure_logging, rename_process
 from cleave.parent_death import die_with_parent
 from cleave.settings import Settings, load_settings
@@ -32,6 +31,7 @@ from worker.jobs.size_class import SizeClass
 from worker.jobs.store.opening import open_store
 from worker.jobs.store.store import JobStore, UnknownJob
 from worker.process.edit_runs import EditRuns
+from worker.process.kernels import WorkerKernels
 from worker.process.lease import LeaseKeeper
 from worker.process.ledger import Ledger
 from worker.process.perform import perform
@@ -57,7 +57,15 @@ class JobWorker(Worker):  # type: ignore[misc]  # rq is not analysed
 
     max_connection_wait_time = 2.0  # rq's longest pause between two attempts to reach Redis
 
-    def __init__(self, store: JobStore, queue: JobQueue, leases: JobQueue, settings: Settings, size: SizeClass) -> None:
+    def __init__(
+        self,
+        store: JobStore,
+        queue: JobQueue,
+        leases: JobQueue,
+        settings: Settings,
+        size: SizeClass,
+        kernels: WorkerKernels,
+    ) -> None:
         """``queue`` needs a connection that retries for minutes, ``leases`` one with a short timeout."""
         super().__init__(
             [queue.entries[size]],
@@ -72,6 +80,7 @@ class JobWorker(Worker):  # type: ignore[misc]  # rq is not analysed
         self._leases = leases
         self._counters = JobCounters(leases.connection)
         self._settings = settings
+        self._kernels = kernels
         self._staged: StagedJob | None = None  # the job that runs
         self._lease = LeaseKeeper(leases, self.name, settings.lease_s, partial(self.heartbeat, None))
         self._ledger = Ledger(store, queue, self._counters, settings, size, self.name)
@@ -89,6 +98,7 @@ class JobWorker(Worker):  # type: ignore[misc]  # rq is not analysed
         elif self._queue.take(job.id, self.name, self._settings.lease_s):
             self._run_or_hand_back(job, queue)
         self.set_state(WorkerStatus.IDLE)
+        self._kernels.load_others()
 
     def fork_work_horse(self, job: Entry, queue: Any) -> None:
         self._horse_exit, held_by_the_horse = os.pipe()
@@ -201,9 +211,9 @@ def main() -> None:
     settings = load_settings()
     configure_logging(settings.log_level, settings.log_format, "worker")
     assert settings.redis_url, "the parent process sets CLEAVE_REDIS_URL"
-    log.info("loading the kernels; at the first start they are compiled, which takes up to a minute")
-    segcore.warm_up()
-    log.info("ready for %s jobs", size)
     queue = JobQueue(connect_with_retries(settings.redis_url))
     leases = JobQueue(connect(settings.redis_url))
-    JobWorker(open_store(settings), queue, leases, settings, size).work(logging_level="WARNING")
+    kernels = WorkerKernels(leases.connection)
+    kernels.load_first()
+    log.info("ready for %s jobs", size)
+    JobWorker(open_store(settings), queue, leases, settings, size, kernels).work(logging_level="WARNING")

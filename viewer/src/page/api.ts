@@ -11,6 +11,8 @@ export interface Job {
   readonly stage: string | null;
   readonly progress: number;
   readonly queue_position: number | null;
+  /** What a waiting job waits for, such as "compiling, once: 14 of 52". */
+  readonly waits_for?: string | null;
   readonly created_at: string;
   readonly finished_at: string | null;
   readonly input: {
