@@ -10,7 +10,7 @@ RUN python -m venv /opt/cleave && /opt/cleave/bin/pip install --no-cache-dir ".[
 # The kernels are compiled here, so that containers do not compile them.
 ENV NUMBA_CACHE_DIR=/opt/cleave/kernels \
     NUMBA_CPU_NAME=generic
-RUN /opt/cleave/bin/python -P -c "import segcore; segcore.warm_up()"
+RUN /opt/cleave/bin/python -P -m segcore.kernels
 
 FROM python:3.13.16-slim-bookworm
 RUN groupadd --system --gid 10001 cleave \

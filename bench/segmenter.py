@@ -29,7 +29,7 @@ class CleaveSegmenter:
         self._parameters(seed=0)
 
     def warm_up(self) -> None:
-        from segcore.warm_up import warm_up
+        from segcore import warm_up
 
         warm_up()
 

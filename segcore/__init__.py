@@ -26,22 +26,48 @@ and the modules that define them, ``segcore.io`` (readers and writers), ``segcor
 ``build_surface`` and ``Guide``.
 """
 
+from typing import TYPE_CHECKING
+
 import segcore.kernel_cache  # noqa: F401  # before any kernel
+from segcore.lazy import lazy_names
 
-# isort: split
+if TYPE_CHECKING:
+    from segcore.clean.surface import Surface, build_surface
+    from segcore.edit.guide import Guide
+    from segcore.errors import CleaveError, InvalidMesh, InvalidParameters, LimitExceeded, PartLocked, UnsupportedFormat
+    from segcore.hierarchy import Hierarchy
+    from segcore.io import read_mesh
+    from segcore.kernels.tasks import warm_up
+    from segcore.levels import Fineness, keep_splits
+    from segcore.mesh import Mesh
+    from segcore.method import segment
+    from segcore.parameters import SegmentationParameters, parameters_schema
+    from segcore.partition import Part, Partition, partition_of
+    from segcore.report import MeshReport, mesh_report
 
-from segcore.clean.surface import Surface, build_surface
-from segcore.edit.guide import Guide
-from segcore.errors import CleaveError, InvalidMesh, InvalidParameters, LimitExceeded, PartLocked, UnsupportedFormat
-from segcore.hierarchy import Hierarchy
-from segcore.io import read_mesh
-from segcore.levels import Fineness, keep_splits
-from segcore.mesh import Mesh
-from segcore.method import segment
-from segcore.parameters import SegmentationParameters, parameters_schema
-from segcore.partition import Part, Partition, partition_of
-from segcore.report import MeshReport, mesh_report
-from segcore.warm_up import warm_up
+# Imported when a name is first used, as a process that reads a result, for example, needs no kernel.
+_MODULES = {
+    "clean.surface": ("Surface", "build_surface"),
+    "edit.guide": ("Guide",),
+    "errors": (
+        "CleaveError",
+        "InvalidMesh",
+        "InvalidParameters",
+        "LimitExceeded",
+        "PartLocked",
+        "UnsupportedFormat",
+    ),
+    "hierarchy": ("Hierarchy",),
+    "io": ("read_mesh",),
+    "levels": ("Fineness", "keep_splits"),
+    "mesh": ("Mesh",),
+    "method": ("segment",),
+    "parameters": ("SegmentationParameters", "parameters_schema"),
+    "partition": ("Part", "Partition", "partition_of"),
+    "report": ("MeshReport", "mesh_report"),
+    "kernels.tasks": ("warm_up",),
+}
+__getattr__ = lazy_names("segcore", _MODULES)
 
 __all__ = [
     "CleaveError",

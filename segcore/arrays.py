@@ -3,7 +3,6 @@
 from typing import TypeAlias
 
 import numpy as np
-from numba import njit
 from numpy.typing import NDArray
 
 FloatArray: TypeAlias = NDArray[np.float64]
@@ -13,8 +12,6 @@ BoolArray: TypeAlias = NDArray[np.bool_]
 
 
 _VANISHES = 1e-100  # squares of smaller numbers leave the range of float64
-_DENSE = 4  # indices for each pair, up to which pairs are counted by their smaller index; set by hand
-_FEW = 32  # pairs of one smaller index up to which they are sorted by insertion; set by hand
 
 
 def at_least(values: FloatArray, share: float) -> FloatArray:
@@ -33,127 +30,6 @@ def pair_keys(pairs: NDArray[np.integer], count: int) -> LongArray:
     """(P,) a number for every pair (P, 2) of numbers 0..count - 1, the same for both orders of the pair."""
     keys: LongArray = pairs.min(axis=1).astype(np.int64) * count + pairs.max(axis=1)
     return keys
-
-
-def distinct_pairs(pairs: NDArray[np.integer]) -> tuple[IntArray, LongArray]:
-    """The different ones (D, 2) of pairs (P, 2) of indices in any order, and (P,) which of them each is.
-
-    The smaller index of a pair comes first; the pairs are sorted.
-    """
-    count = int(pairs.max(initial=0)) + 1
-    if count <= _DENSE * len(pairs):
-        return _distinct_pairs(pairs, count)
-    keys, which = np.unique(pair_keys(pairs, count), return_inverse=True)
-    return np.stack([keys // count, keys % count], axis=1).astype(np.int32), which
-
-
-@njit(cache=True, nogil=True)
-def _distinct_pairs(pairs, count):  # type: ignore[no-untyped-def]
-    """Pairs sorted by counting their smaller indices, and by insertion or merging where these are equal."""
-    start = np.zeros(count + 1, np.int64)
-    for p in range(len(pairs)):
-        start[min(pairs[p, 0], pairs[p, 1]) + 1] += 1
-    for low in range(count):
-        start[low + 1] += start[low]
-    fill = start[:-1].copy()
-    high = np.empty(len(pairs), np.int32)
-    which = np.empty(len(pairs), np.int64)  # the pairs in their order, until their numbers are known
-    for p in range(len(pairs)):
-        low = min(pairs[p, 0], pairs[p, 1])
-        place = fill[low]
-        fill[low] += 1
-        high[place], which[place] = max(pairs[p, 0], pairs[p, 1]), p
-    distinct = np.empty((len(pairs), 2), np.int32)
-    number = np.empty(len(pairs), np.int64)
-    used = 0
-    for low in range(count):
-        begin, end = start[low], start[low + 1]
-        if end - begin > _FEW:
-            order = np.argsort(high[begin:end], kind="mergesort")
-            high[begin:end] = high[begin:end][order]
-            which[begin:end] = which[begin:end][order]
-        else:
-            for p in range(begin + 1, end):
-                far, pair, q = high[p], which[p], p
-                while q > begin and high[q - 1] > far:
-                    high[q], which[q] = high[q - 1], which[q - 1]
-                    q -= 1
-                high[q], which[q] = far, pair
-        for p in range(begin, end):
-            if p == begin or high[p] != high[p - 1]:
-                distinct[used, 0], distinct[used, 1] = low, high[p]
-                used += 1
-            number[which[p]] = used - 1
-    return distinct[:used].copy(), number
-
-
-@njit(cache=True)
-def ascending(values: FloatArray) -> IntArray:
-    """(N,) the order of finite numbers (N,), equal ones as they come: a stable sort by digits of 11 bits. O(N)."""
-    count = len(values)
-    sign = np.uint64(1) << np.uint64(63)
-    keys = (values + 0.0).view(np.uint64)  # 0.0 and -0.0 become equal
-    for i in range(count):
-        keys[i] = ~keys[i] if keys[i] & sign else keys[i] | sign
-    order = np.arange(count).astype(np.int32)
-    other_keys, other_order = np.empty_like(keys), np.empty_like(order)
-    for digit in range(6):
-        shift = np.uint64(11 * digit)
-        start = np.zeros(2049, dtype=np.int32)
-        for i in range(count):
-            start[((keys[i] >> shift) & np.uint64(2047)) + 1] += 1
-        if start.max() == count:
-            continue  # all have the same digit
-        for k in range(2048):
-            start[k + 1] += start[k]
-        for i in range(count):
-            k = (keys[i] >> shift) & np.uint64(2047)
-            other_keys[start[k]] = keys[i]
-            other_order[start[k]] = order[i]
-            start[k] += 1
-        keys, other_keys = other_keys, keys
-        order, other_order = other_order, order
-    return order
-
-
-@njit(cache=True, nogil=True)
-def members_by_group(group: IntArray, count: int) -> tuple[IntArray, LongArray]:
-    """(N,) the members of groups 0..count - 1, by group and ascending in each, and (count + 1,) where each begins."""
-    start = np.zeros(count + 1, dtype=np.int64)
-    for i in range(len(group)):
-        start[group[i] + 1] += 1
-    for k in range(count):
-        start[k + 1] += start[k]
-    free = start[:count].copy()
-    members = np.empty(len(group), dtype=np.int32)
-    for i in range(len(group)):
-        members[free[group[i]]] = i
-        free[group[i]] += 1
-    return members, start
-
-
-@njit(cache=True)
-def dot(x: FloatArray, y: FloatArray) -> float:
-    """The inner product of two vectors (N,), added in an order that depends on N alone.
-
-    ``numpy.dot`` and ``@`` leave the order to BLAS, whose result for more than 10,000 numbers depends on the number of
-    its threads. The eight sums are independent, so that they are added in parallel by vector instructions.
-    """
-    count = len(x)
-    whole = count - count % 8
-    a = b = c = d = e = f = g = h = 0.0
-    for i in range(0, whole, 8):
-        a += x[i] * y[i]
-        b += x[i + 1] * y[i + 1]
-        c += x[i + 2] * y[i + 2]
-        d += x[i + 3] * y[i + 3]
-        e += x[i + 4] * y[i + 4]
-        f += x[i + 5] * y[i + 5]
-        g += x[i + 6] * y[i + 6]
-        h += x[i + 7] * y[i + 7]
-    for i in range(whole, count):
-        a += x[i] * y[i]
-    return ((a + b) + (c + d)) + ((e + f) + (g + h))
 
 
 def transformed(points: FloatArray, matrix: FloatArray) -> FloatArray:

@@ -1,17 +1,18 @@
 """Report on a mesh: its size, its components and the defects that cleaning repairs."""
 
 from dataclasses import dataclass
+from typing import TYPE_CHECKING
 
 import numpy as np
 
 from segcore.arrays import FloatArray, IntArray
-from segcore.clean.surface import Surface, build_surface, distinct_faces
-from segcore.clean.topology import dual_edges
-from segcore.clean.welding import weld
-from segcore.coarsen.authored import MOST_AUTHORED, authored_parts
 from segcore.coordinates import Axis, Unit
 from segcore.mesh import Mesh
 from segcore.parameters import Structure
+
+# The stages are imported in functions: the report of a stored result is read without them.
+if TYPE_CHECKING:
+    from segcore.clean.surface import Surface
 
 _FOLLOWED: tuple[Structure, ...] = ("shells", "groups", "materials")
 
@@ -72,13 +73,17 @@ class MeshReport:
     notes: tuple[str, ...] = ()  # what the reader left out of the file or repaired, in sentences
 
 
-def mesh_report(mesh: Mesh, surface: Surface | None = None) -> MeshReport:
+def mesh_report(mesh: Mesh, surface: "Surface | None" = None) -> MeshReport:
     """Inspect a mesh.
 
     Parameters
     ----------
     surface : ``build_surface(mesh)``, if the caller has computed it already.
     """
+    from segcore.clean.surface import build_surface, distinct_faces
+    from segcore.clean.topology import dual_edges
+    from segcore.clean.welding import weld
+
     surface = surface or build_surface(mesh)
     corners = weld(mesh.vertices, mesh.faces)[mesh.faces]
     a, b, c = corners.T
@@ -123,13 +128,15 @@ def mesh_report(mesh: Mesh, surface: Surface | None = None) -> MeshReport:
     )
 
 
-def structure_counts(mesh: Mesh, surface: Surface) -> StructureCounts:
+def structure_counts(mesh: Mesh, surface: "Surface") -> StructureCounts:
     """Count the parts that the first levels of a hierarchy would follow, by the values of ``structure``.
 
     Parameters
     ----------
     surface : ``build_surface(mesh)``.
     """
+    from segcore.coarsen.authored import authored_parts
+
     shells, groups, materials = (authored_parts(surface, mesh, structure) for structure in _FOLLOWED)
     return StructureCounts(_count(shells), _count(groups), _count(materials))
 
@@ -141,6 +148,8 @@ def structure_note(counts: StructureCounts, structure: Structure, max_segments: 
     ----------
     structure, max_segments : the parameters of the segmentation.
     """
+    from segcore.coarsen.authored import MOST_AUTHORED
+
     if structure == "none":
         return None
     parts = counts.named()[structure]
@@ -167,11 +176,11 @@ def _polygons(mesh: Mesh) -> int:
     return len(mesh.faces) if mesh.source_polygon is None else len(np.unique(mesh.source_polygon))
 
 
-def _slivers(surface: Surface) -> int:
+def _slivers(surface: "Surface") -> int:
     return int((~surface.normals.any(axis=1)).sum())
 
 
-def _volume(surface: Surface) -> float:
+def _volume(surface: "Surface") -> float:
     """The enclosed volume in cubed units of the mesh, by the divergence theorem."""
     p, q, r = surface.vertices[surface.faces].transpose(1, 0, 2)
     return float(np.einsum("ij,ij->", p, np.cross(q, r)) / 6) * surface.unit**3

@@ -147,9 +147,17 @@ class Health(BaseModel):
     status: Literal["ok"] = "ok"
 
 
+class CompilationDocument(BaseModel):
+    done: int = Field(description="Number of kernels that are compiled.", examples=[14])
+    count: int = Field(description="Number of all that are needed for the first job.", examples=[52])
+
+
 class Readiness(BaseModel):
     ready: bool
     queue: bool = Field(description="The queue server answers.")
     store: bool = Field(description="The store is writable.")
     workers: int = Field(description="Number of live workers.")
     missing: list[str] = Field(description="Reasons why the service is not ready, one sentence each.")
+    compilation: CompilationDocument | None = Field(
+        description="The compilation that the workers wait for, at the first start of the service."
+    )

@@ -81,6 +81,10 @@ class _Job(BaseModel):
         examples=[12],
     )
     queue_position: int | None = Field(description="Position of a waiting job: 1 is next. Null if it is not known.")
+    waits_for: str | None = Field(
+        description="What a waiting job waits for, apart from the jobs before it: `compiling, once: 14 of 52` at the "
+        "first start of the service."
+    )
     created_at: datetime
     started_at: datetime | None = Field(description="Start of the latest attempt.")
     finished_at: datetime | None
@@ -193,14 +197,20 @@ def job_document(
         case Canceled(finished_at=finished_at):
             return CanceledJob(**fields | {"status": "canceled", "finished_at": finished_at})
     if not _is_running(attempts, activity):
-        position = activity.position if activity is not None else None
-        return QueuedJob(**fields | {"status": "queued", "queue_position": position})
+        return QueuedJob(**fields | {"status": "queued"} | _waiting_fields(activity))
     progress = activity.progress if activity is not None else None
     shown: dict[str, Any] = {} if progress is None else {"stage": progress.stage, "progress": progress.fraction}
     if progress is not None and attempts:
         elapsed_s = (now() - attempts[-1].started_at).total_seconds()
         shown["seconds_left"] = seconds_left(elapsed_s, progress.fraction)
     return RunningJob(**fields | {"status": "running"} | shown)
+
+
+def _waiting_fields(activity: Activity | None) -> dict[str, Any]:
+    if activity is None:
+        return {}
+    reason = activity.compilation
+    return {"queue_position": activity.position, "waits_for": None if reason is None else str(reason)}
 
 
 def _common_fields(job: Job, attempts: list[Attempt]) -> dict[str, Any]:

@@ -5,7 +5,6 @@ from collections.abc import Callable
 
 import numpy as np
 
-from segcore.io import write_mesh
 from segcore.mesh import Mesh
 from segcore.shapes import Shape, burr, dumbbell, joined, revolve
 
@@ -20,6 +19,8 @@ _PAWN = (  # (height, radius) of the corners of its outline, by part, from the f
 
 def sample_ply(name: str) -> bytes:
     """Return a sample as binary PLY; errors as in :func:`sample_shape`."""
+    from segcore.io import write_mesh
+
     mesh = sample_shape(name).mesh
     target = io.BytesIO()
     write_mesh(target, Mesh(mesh.vertices.astype(np.float32), mesh.faces), "ply")

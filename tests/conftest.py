@@ -65,11 +65,6 @@ _SLOW = (
     "worker/process/test_process.py",
     "worker/process/test_process_store.py",
 )
-# The second one compiles what the first one needs late, and what only some tests need.
-_COMPILERS = (
-    "import segcore; segcore.warm_up()",
-    "from bench.cheeger.measurements import warm_up; from segcore.solvers.solvers import SOLVERS as all; warm_up(all)",
-)
 _compiling: list[subprocess.Popen[bytes]] = []
 # Measured with --durations=0; the order only shortens the run.
 _LONGEST = (
@@ -135,10 +130,10 @@ def pytest_configure(config: pytest.Config) -> None:
 
 
 def pytest_sessionstart(session: pytest.Session) -> None:
-    """Begin to compile the kernels once, in two processes, while the processes of the tests collect the tests."""
+    """Begin to compile the kernels once, while the processes of the tests collect the tests."""
     if session.config.getoption("numprocesses", None):
-        root = session.config.rootpath
-        _compiling.extend(subprocess.Popen([sys.executable, "-c", program], cwd=root) for program in _COMPILERS)
+        command = [sys.executable, "-m", "segcore.kernels", "--quiet"]
+        _compiling.append(subprocess.Popen(command, cwd=session.config.rootpath))
 
 
 def pytest_xdist_node_collection_finished() -> None:

@@ -52,7 +52,7 @@ def run(arguments: argparse.Namespace) -> None:
 def _measure_segmentations(arguments: argparse.Namespace, constants: Sequence[Constant]) -> None:
     # Imported here so that listing commands does not load the compiled kernels.
     from bench.constants.evaluation import quality
-    from segcore.warm_up import warm_up
+    from segcore import warm_up
 
     models = read_models(arguments.data, arguments.limit)
     for constant in constants:

@@ -20,7 +20,7 @@ from bench.digests.record import record
 from bench.digests.selection import Subject, choices_of, models_of
 from bench.errors import BenchmarkError
 from bench.pool import map_in_processes
-from segcore.warm_up import warm_up
+from segcore import warm_up
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:

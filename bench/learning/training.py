@@ -16,13 +16,13 @@ from bench.learning.forests import grow_forest
 from bench.learning.rows import concatenated
 from bench.learning.splits import cut_rows, split_rows
 from bench.pool import map_in_processes
+from segcore import warm_up
 from segcore.affinity.boundary_features import FEATURES as EDGE_FEATURES
 from segcore.cut.features import FEATURES as CUT_FEATURES
 from segcore.cut.features import CutFeatures
 from segcore.cut.rules import SEVERAL_BODIES_FEATURES
 from segcore.learned.logistic import LogisticModel
 from segcore.learned.models import LearnedModels
-from segcore.warm_up import warm_up
 
 if TYPE_CHECKING:
     from bench.learning.examples import Example

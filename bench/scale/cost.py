@@ -46,8 +46,8 @@ def cost_of(name: str, make: Callable[[], Mesh], runs: int) -> Cost:
 
 
 def _measure(name: str, make: Callable[[], Mesh]) -> Cost:
+    from segcore import warm_up
     from segcore.method import segment
-    from segcore.warm_up import warm_up
 
     warm_up()
     mesh = make()

@@ -30,6 +30,7 @@ class Job:
     progress: float  # 0..1
     seconds_left: int | None  # an estimate; None if there is none
     queue_position: int | None
+    waits_for: str | None  # what a waiting job waits for, apart from the jobs before it
     created_at: datetime
     finished_at: datetime | None
     file_name: str | None
@@ -96,6 +97,7 @@ def job_from(document: Mapping[str, Any]) -> Job:
         progress=document["progress"],
         seconds_left=document.get("seconds_left"),  # servers of earlier versions do not send it
         queue_position=document["queue_position"],
+        waits_for=document.get("waits_for"),  # servers of earlier versions do not send it
         created_at=datetime.fromisoformat(document["created_at"]),
         finished_at=None if finished is None else datetime.fromisoformat(finished),
         file_name=document["input"]["file_name"],

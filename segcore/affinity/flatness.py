@@ -5,7 +5,8 @@ from typing import NamedTuple
 import numpy as np
 from numba import njit
 
-from segcore.arrays import BoolArray, FloatArray, IntArray, ascending, group_sums
+from segcore.array_kernels import ascending
+from segcore.arrays import BoolArray, FloatArray, IntArray, group_sums
 from segcore.clean.edge_geometry import dihedral_angles, edge_lengths
 from segcore.clean.surface import Surface
 from segcore.graphs.surface_graph import Rows, connected_components

@@ -15,7 +15,8 @@ from numba import njit
 from numpy.typing import NDArray
 
 from segcore.affinity.eight_boxes import WIDTH, enter_boxes
-from segcore.arrays import FloatArray, IntArray, LongArray, members_by_group
+from segcore.array_kernels import members_by_group
+from segcore.arrays import FloatArray, IntArray, LongArray
 from segcore.coarsen.grains import listed
 from segcore.mesh import face_centroids
 from segcore.threads import in_blocks

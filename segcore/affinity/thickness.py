@@ -15,7 +15,8 @@ from numba import njit
 from segcore.affinity.frames import tangent_vectors
 from segcore.affinity.patches import Patches
 from segcore.affinity.rays import VISITS_AT_FIRST, RayCaster, cast
-from segcore.arrays import FloatArray, IntArray, LongArray, at_least, members_by_group
+from segcore.array_kernels import members_by_group
+from segcore.arrays import FloatArray, IntArray, LongArray, at_least
 from segcore.clean.surface import Surface
 
 RAYS = 24  # per patch; with 8 or 12 1-Rand is 0.000 to 0.003 worse, see "What helped" in bench/RESULTS.md

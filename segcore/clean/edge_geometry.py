@@ -6,7 +6,8 @@ from typing import NamedTuple
 import numpy as np
 from numba import njit
 
-from segcore.arrays import FloatArray, IntArray, LongArray, at_least, dot
+from segcore.array_kernels import dot
+from segcore.arrays import FloatArray, IntArray, LongArray, at_least
 from segcore.clean.surface import Surface
 from segcore.threads import in_blocks
 

@@ -5,7 +5,8 @@ from dataclasses import dataclass, replace
 import numpy as np
 from numba import njit
 
-from segcore.arrays import BoolArray, FloatArray, IntArray, distinct_pairs, group_sums
+from segcore.array_kernels import distinct_pairs
+from segcore.arrays import BoolArray, FloatArray, IntArray, group_sums
 from segcore.clean.orientation import reliable_normals
 from segcore.clean.stitching import stitch
 from segcore.clean.surface import Surface

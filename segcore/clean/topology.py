@@ -111,10 +111,10 @@ def _half_edges(faces: IntArray, vertex_count: int) -> _HalfEdges:
     for v in range(vertex_count):
         begin, end = start[v], start[v + 1]
         if end - begin > _FEW:
-            order = np.argsort(far_end[begin:end], kind="mergesort")
-            far_end[begin:end] = far_end[begin:end][order]
-            owner[begin:end] = owner[begin:end][order]
-            forward[begin:end] = forward[begin:end][order]
+            order = begin + np.argsort(far_end[begin:end], kind="mergesort")
+            ends, owners, directions = far_end[order], owner[order], forward[order]
+            for k in range(end - begin):  # assignments to slices take seconds to compile
+                far_end[begin + k], owner[begin + k], forward[begin + k] = ends[k], owners[k], directions[k]
     return _HalfEdges(start, far_end, owner, forward)
 
 

@@ -13,7 +13,8 @@ from typing import NamedTuple
 import numpy as np
 from numba import njit
 
-from segcore.arrays import FloatArray, IntArray, distinct_pairs, group_sums
+from segcore.array_kernels import distinct_pairs
+from segcore.arrays import FloatArray, IntArray, group_sums
 from segcore.clean.surface import Surface
 
 POINTS = 32768  # samples of the whole surface; set by hand

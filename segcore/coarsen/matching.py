@@ -9,7 +9,8 @@ from typing import NamedTuple
 import numpy as np
 from numba import njit
 
-from segcore.arrays import FloatArray, IntArray, ascending, group_sums
+from segcore.array_kernels import ascending
+from segcore.arrays import FloatArray, IntArray, group_sums
 from segcore.coarsen.grains import merged_grains
 from segcore.graphs.surface_graph import SurfaceGraph
 

@@ -5,7 +5,8 @@ from dataclasses import dataclass
 import numpy as np
 
 from segcore.affinity.mesh_graphs import face_dual_graph
-from segcore.arrays import FloatArray, IntArray, at_least, distinct_pairs, group_sums
+from segcore.array_kernels import distinct_pairs
+from segcore.arrays import FloatArray, IntArray, at_least, group_sums
 from segcore.clean.edge_geometry import edge_lengths
 from segcore.clean.refinement import refine
 from segcore.clean.surface import Surface

@@ -7,7 +7,8 @@ from typing import Literal, NamedTuple, TypeAlias
 import numpy as np
 from numba import njit
 
-from segcore.arrays import BoolArray, FloatArray, IntArray, ascending
+from segcore.array_kernels import ascending
+from segcore.arrays import BoolArray, FloatArray, IntArray
 from segcore.graphs.surface_graph import SurfaceGraph
 
 _VALLEY = 0.03  # of the volume, to either side: half the least distance of two valleys; set by hand

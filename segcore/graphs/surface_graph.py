@@ -8,7 +8,8 @@ from numba import njit
 from numpy.typing import NDArray
 from scipy.sparse import csr_matrix
 
-from segcore.arrays import BoolArray, FloatArray, IntArray, LongArray, distinct_pairs, group_sums, pair_keys
+from segcore.array_kernels import distinct_pairs
+from segcore.arrays import BoolArray, FloatArray, IntArray, LongArray, group_sums, pair_keys
 
 IndexArray: TypeAlias = NDArray[np.uint32]  # unsigned: compiled loops then need no test for negative indices
 

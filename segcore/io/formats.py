@@ -5,12 +5,17 @@ import re
 import struct
 from dataclasses import dataclass
 from pathlib import Path
-from typing import BinaryIO
+from typing import BinaryIO, Literal, TypeAlias
 
 from segcore.coordinates import UNKNOWN, Coordinates
 from segcore.errors import UnsupportedFormat
 from segcore.io.source import GZIP_MAGIC
 from segcore.io.zip_members import ZIP_MAGIC
+
+# Choices in what is written: the nodes of GLB, the colours of PLY, and the files of parts in a ZIP archive.
+Layout: TypeAlias = Literal["tree", "flat"]
+PlyColors: TypeAlias = Literal["vertices", "faces"]
+PartFormat: TypeAlias = Literal["stl", "obj", "glb"]
 
 
 @dataclass(frozen=True, slots=True)

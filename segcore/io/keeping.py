@@ -5,13 +5,14 @@ import zipfile
 from collections.abc import Iterator
 from contextlib import contextmanager
 from dataclasses import dataclass, replace
-from typing import Any, BinaryIO, Literal, get_args
+from typing import Any, BinaryIO, get_args
 
 import numpy as np
 
 from segcore.errors import InvalidMesh, InvalidParameters
 from segcore.hierarchy import Hierarchy
 from segcore.io.archive import FAST, member
+from segcore.io.formats import PartFormat
 from segcore.io.gltf.document import read_document
 from segcore.io.gltf.kept.builder import Materials
 from segcore.io.gltf.kept.from_mesh import corner_tables, document_of_mesh
@@ -32,7 +33,6 @@ from segcore.mesh import Mesh
 from segcore.structure import NO_ENTRY
 
 _GLB_DEFAULTS: dict[str, object] = {"features": False, "layout": "tree"}  # of write_glb
-PartFormat = Literal["stl", "obj", "glb"]
 
 _NEAR = 1e-4  # of the size of the mesh: vertices of one file that two versions read agree far better
 

@@ -14,22 +14,18 @@ from segcore.coordinates import axis_named, unit_named
 from segcore.io.converting import with_coordinates
 from segcore.io.file_sets import Companions, FolderCompanions, NoCompanions, model_in_archive, model_in_folder
 from segcore.io.formats import FORMATS, declared_format, detect_format, is_plain_archive
-from segcore.io.gltf.reader import read_gltf
 from segcore.io.limits import ReadLimits
-from segcore.io.obj.reader import read_obj
-from segcore.io.off.reader import read_off
-from segcore.io.ply.reader import read_ply
 from segcore.io.source import read_source, without_utf_16
-from segcore.io.stl.reader import read_stl
-from segcore.io.threemf.reader import read_3mf
+from segcore.lazy import called_later
 from segcore.mesh import Mesh
 
+_read_gltf = called_later("segcore.io.gltf.reader:read_gltf")
 _READERS: dict[str, Callable[[bytes, ReadLimits, bool], Mesh]] = {
-    "off": read_off,
-    "stl": read_stl,
-    "ply": read_ply,
-    "obj": read_obj,
-    "3mf": read_3mf,
+    "off": called_later("segcore.io.off.reader:read_off"),
+    "stl": called_later("segcore.io.stl.reader:read_stl"),
+    "ply": called_later("segcore.io.ply.reader:read_ply"),
+    "obj": called_later("segcore.io.obj.reader:read_obj"),
+    "3mf": called_later("segcore.io.threemf.reader:read_3mf"),
 }
 
 
@@ -122,7 +118,7 @@ def open_model(
 
 def mesh_of_model(model: OpenedModel, limits: ReadLimits, *, appearance: bool) -> Mesh:
     """Return the mesh of an opened file; errors as of :func:`read_mesh`."""
-    reader = partial(read_gltf, companions=model.companions) if model.is_gltf else _READERS[model.format]
+    reader = partial(_read_gltf, companions=model.companions) if model.is_gltf else _READERS[model.format]
     with np.errstate(all="ignore"):  # Mesh refuses numbers that overflow, as not finite
         mesh = reader(model.data, limits, appearance)
     return replace(mesh, coordinates=FORMATS[model.format].coordinates)

@@ -6,13 +6,7 @@ from pathlib import PurePath
 from typing import Literal, TypeAlias
 
 from segcore.errors import UnsupportedFormat
-from segcore.io.keeping import write_glb_as, write_obj_archive_as, write_parts_as
-from segcore.io.labels import write_json, write_npy, write_seg
-from segcore.io.obj.materials_writer import write_mtl
-from segcore.io.obj.writer import write_obj
-from segcore.io.ply.writer import write_ply
-from segcore.io.result import write_result
-from segcore.io.threemf.writer import write_3mf
+from segcore.lazy import called_later
 
 WriteOption: TypeAlias = Literal[
     "names",
@@ -49,6 +43,13 @@ _COLORED: frozenset[WriteOption] = _MODEL | {"part_colors"}
 # Of formats whose coordinates have no unit and no axis of their own.
 _FREE: frozenset[WriteOption] = _MODEL | {"unit", "up"}
 
+# Imported when they are called, as most commands and requests need none of them, or one.
+_mtl = called_later("segcore.io.obj.materials_writer:write_mtl")
+_seg = called_later("segcore.io.labels:write_seg")
+_npy = called_later("segcore.io.labels:write_npy")
+_json = called_later("segcore.io.labels:write_json")
+_result = called_later("segcore.io.result:write_result")
+
 
 @dataclass(frozen=True, slots=True)
 class Writer:
@@ -73,58 +74,75 @@ WRITERS: dict[str, Writer] = {
         "GLB, a coloured node per segment",
         ".glb",
         "model/gltf-binary",
-        write_glb_as,
+        called_later("segcore.io.keeping:write_glb_as"),
         _COLORED | {"all_levels", "features", "layout", "keep"},
     ),
     "ply": Writer(
-        "PLY, coloured vertices and a label per face", ".ply", "model/ply", write_ply, _FREE | {"colors", "part_colors"}
+        "PLY, coloured vertices and a label per face",
+        ".ply",
+        "model/ply",
+        called_later("segcore.io.ply.writer:write_ply"),
+        _FREE | {"colors", "part_colors"},
     ),
-    "obj": Writer("OBJ, an object per segment", ".obj", "model/obj", write_obj, _FREE, companion="mtl"),
+    "obj": Writer(
+        "OBJ, an object per segment",
+        ".obj",
+        "model/obj",
+        called_later("segcore.io.obj.writer:write_obj"),
+        _FREE,
+        companion="mtl",
+    ),
     "mtl": Writer(
         "MTL, the colours for the OBJ file",
         ".mtl",
         "model/mtl",
-        lambda target, _, hierarchy, segments, **options: write_mtl(target, hierarchy, segments, **options),
+        lambda target, _, hierarchy, segments, **options: _mtl(target, hierarchy, segments, **options),
         _COLORED,
     ),
     "objzip": Writer(
         "OBJ with MTL, an object and a colour per segment as ZIP",
         ".obj.zip",
         "application/zip",
-        write_obj_archive_as,
+        called_later("segcore.io.keeping:write_obj_archive_as"),
         _FREE | {"keep", "part_colors"},
     ),
-    "3mf": Writer("3MF, a closed object per segment", ".3mf", "model/3mf", write_3mf, _COLORED | {"capped"}),
+    "3mf": Writer(
+        "3MF, a closed object per segment",
+        ".3mf",
+        "model/3mf",
+        called_later("segcore.io.threemf.writer:write_3mf"),
+        _COLORED | {"capped"},
+    ),
     "zip": Writer(
         "ZIP archive, a closed STL file per segment",
         ".zip",
         "application/zip",
-        write_parts_as,
+        called_later("segcore.io.keeping:write_parts_as"),
         _FREE | {"part_format", "capped", "keep"},
     ),
     "seg": Writer(
         "label of every face, one per line",
         ".seg",
         "text/plain",
-        lambda target, _, hierarchy, segments: write_seg(target, hierarchy.labels(segments)),
+        lambda target, _, hierarchy, segments: _seg(target, hierarchy.labels(segments)),
     ),
     "npy": Writer(
         "NumPy array of labels",
         ".npy",
         "application/octet-stream",
-        lambda target, _, hierarchy, segments: write_npy(target, hierarchy.labels(segments)),
+        lambda target, _, hierarchy, segments: _npy(target, hierarchy.labels(segments)),
     ),
     "json": Writer(
         "JSON, labels in run-length form and the hierarchy",
         ".json",
         "application/json",
-        lambda target, _, hierarchy, segments: write_json(target, hierarchy, segments),
+        lambda target, _, hierarchy, segments: _json(target, hierarchy, segments),
     ),
     "cleave": Writer(
         "mesh and hierarchy, to be opened again",
         ".cleave",
         "application/vnd.cleave",
-        lambda target, mesh, hierarchy, _, edited=None: write_result(target, mesh, hierarchy, edited),
+        lambda target, mesh, hierarchy, _, edited=None: _result(target, mesh, hierarchy, edited),
         frozenset({"edited"}),
     ),
 }

@@ -114,7 +114,10 @@ def _doubled(found):  # type: ignore[no-untyped-def]
     """The queue with arrays of twice the size."""
     count = len(found.faces)
     larger = _Queue(np.empty(2 * count, dtype=np.int32), np.empty((2 * count, 3)), np.empty(2 * count))
-    larger.faces[:count], larger.source[:count], larger.distance[:count] = found.faces, found.source, found.distance
+    for k in range(count):  # assignments to slices take seconds to compile
+        larger.faces[k], larger.distance[k] = found.faces[k], found.distance[k]
+        for axis in range(3):
+            larger.source[k, axis] = found.source[k, axis]
     return larger
 
 

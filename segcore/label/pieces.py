@@ -4,7 +4,8 @@ from dataclasses import replace
 
 import numpy as np
 
-from segcore.arrays import at_least, distinct_pairs, group_sums
+from segcore.array_kernels import distinct_pairs
+from segcore.arrays import at_least, group_sums
 from segcore.clean.edge_geometry import edge_lengths
 from segcore.clean.refinement import Refinement
 from segcore.clean.surface import Surface

@@ -6,7 +6,8 @@ from math import frexp, sqrt
 import numpy as np
 from numba import njit
 
-from segcore.arrays import FloatArray, dot
+from segcore.array_kernels import dot
+from segcore.arrays import FloatArray
 from segcore.graphs.laplacian import LaplacianFactor, factorise, substitute
 from segcore.graphs.surface_graph import SurfaceGraph
 from segcore.solvers.tridiagonal import diagonalise

@@ -6,7 +6,8 @@ from typing import NamedTuple
 import numpy as np
 from numba import njit
 
-from segcore.arrays import FloatArray, dot
+from segcore.array_kernels import dot
+from segcore.arrays import FloatArray
 from segcore.graphs.laplacian import LaplacianFactor, factorise
 from segcore.graphs.surface_graph import IndexArray, SurfaceGraph
 

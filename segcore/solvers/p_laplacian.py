@@ -6,7 +6,8 @@ from collections.abc import Iterator
 import numpy as np
 from numba import njit
 
-from segcore.arrays import FloatArray, dot
+from segcore.array_kernels import dot
+from segcore.arrays import FloatArray
 from segcore.errors import InvalidParameters
 from segcore.graphs.cheeger import Cut, sweep
 from segcore.graphs.laplacian import LaplacianFactor, factorise, factorise_edges

@@ -4,7 +4,8 @@ from collections.abc import Iterator
 
 import numpy as np
 
-from segcore.arrays import FloatArray, dot
+from segcore.array_kernels import dot
+from segcore.arrays import FloatArray
 from segcore.graphs.laplacian import LaplacianFactor
 from segcore.graphs.surface_graph import SurfaceGraph
 from segcore.solvers.fiedler import eigenvectors

@@ -3,7 +3,7 @@
 from collections.abc import Callable, Mapping
 from typing import Any, BinaryIO
 
-from segcore.io import Writer, draw, write_png
+from segcore.io import Writer
 from service.answer.level import ChosenCut
 from service.answer.model_formats import MODELS, model_file
 from service.answer.originals import stored_original
@@ -56,6 +56,8 @@ def preview_rendition(cache: ResultCache, cut: ChosenCut, size: int) -> Renditio
     """Return a picture of ``size`` x ``size`` pixels with a transparent background."""
 
     def write(target: BinaryIO) -> None:
+        from segcore.io import draw, write_png
+
         colors = None if cut.partition is None else cut.partition.colors
         write_png(target, draw(cut.result.mesh, cut.labels, size, part_colors=colors))
 

@@ -1,7 +1,6 @@
 """Run the command `cleave` as ``python -m service.commands``."""
 
-import sys
+from service.commands.main import command
 
-from service.commands.main import main
-
-sys.exit(main())
+if __name__ == "__main__":
+    command()

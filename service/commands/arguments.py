@@ -4,14 +4,14 @@ import argparse
 from collections.abc import Callable
 from contextlib import suppress
 from pathlib import Path
-from typing import get_args
+from typing import TYPE_CHECKING, get_args
 
-from pydantic.fields import FieldInfo
-
-from cleave.settings import Settings
 from segcore.coordinates import Axis, Unit, unit_named
 from segcore.errors import InvalidParameters
 from segcore.parameters import Structure
+
+if TYPE_CHECKING:
+    from pydantic.fields import FieldInfo
 
 
 def add_level(parser: argparse.ArgumentParser, default: str) -> None:
@@ -80,6 +80,8 @@ def add_workers(parser: argparse.ArgumentParser, least: int) -> None:
 
 def add_settings_help(parser: argparse.ArgumentParser) -> None:
     """List the settings below the arguments in the help of a command."""
+    from cleave.settings import Settings
+
     rows = [
         (f"CLEAVE_{name.upper()}", f"{field.description} Default: {_default_of(field)}.")
         for name, field in Settings.model_fields.items()
@@ -88,7 +90,7 @@ def add_settings_help(parser: argparse.ArgumentParser) -> None:
     parser.epilog = "settings from the environment:\n" + "\n".join(f"  {name:<27} {text}" for name, text in rows)
 
 
-def _default_of(field: FieldInfo) -> str:
+def _default_of(field: "FieldInfo") -> str:
     if field.default_factory is not None:
         return "a folder of the user"
     if field.default in (None, ""):

@@ -6,17 +6,19 @@ import sys
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
-from typing import BinaryIO, get_args
+from typing import TYPE_CHECKING, BinaryIO, get_args
 
 from segcore.errors import InvalidParameters
 from segcore.hierarchy import Hierarchy
-from segcore.io import Layout, Original, PartFormat, Segmentation
-from segcore.io.ply.writer import PlyColors
+from segcore.io.formats import Layout, PartFormat, PlyColors
 from segcore.io.writing import WRITERS, Writer, writer_for
 from segcore.mesh import Mesh
 from service.commands.console import forget_output, say, say_beside
 from service.commands.inputs import STANDARD
 from worker.jobs.objects.durable import replace_file
+
+if TYPE_CHECKING:
+    from segcore.io import Original, Segmentation
 
 _EXTENSIONS = [writer.extension for writer in WRITERS.values()]
 
@@ -82,7 +84,7 @@ class OutputOptions:
     """The options of the formats that were given on the command line."""
 
     values: dict[str, object]  # by their names in ``Writer.options``
-    original: Original | None  # the file that the mesh was read from, if it is known
+    source: Path | None  # the file that the mesh was read from, if it is known
     keeps_all: bool
     standard_format: str | None = None  # of the standard output
 
@@ -105,8 +107,13 @@ class OutputOptions:
         chosen: dict[str, object] = {name: value for name, value in self.values.items() if name in writer.options}
         if "keep" in writer.options and chosen.get("part_format", "glb") == "glb":
             wants = self.keeps_all or "part_format" in chosen
-            chosen["keep"] = self.original if wants else None
+            chosen["keep"] = self._original() if wants else None
         return chosen
+
+    def _original(self) -> "Original | None":
+        from segcore.io import Original
+
+        return Original(self.source, neighbours=True) if self.source else None
 
 
 def output_options(choices: argparse.Namespace, source: Path | None) -> OutputOptions:
@@ -135,8 +142,7 @@ def output_options(choices: argparse.Namespace, source: Path | None) -> OutputOp
     }
     if STANDARD in choices.output and choices.to is None:
         raise InvalidParameters("The standard output has no extension: name its format, such as --to glb.")
-    original = Original(source, neighbours=True) if source else None
-    return OutputOptions(values, original, choices.keep == "all", choices.to)
+    return OutputOptions(values, source, choices.keep == "all", choices.to)
 
 
 def check_outputs(paths: Sequence[Path]) -> Callable[[str], None]:
@@ -190,7 +196,7 @@ def write_model(
     return tuple(notes)
 
 
-def write_edited(path: Path, result: Segmentation, options: OutputOptions) -> tuple[str, ...]:
+def write_edited(path: Path, result: "Segmentation", options: OutputOptions) -> tuple[str, ...]:
     """Write the edited parts of a result, with their names and colours; a .cleave file keeps the hierarchy as well.
 
     Results and errors are those of :func:`write_model`.

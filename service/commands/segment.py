@@ -11,6 +11,7 @@ from typing import BinaryIO
 import segcore
 from segcore.io.labels import hierarchy_document, write_seg
 from segcore.io.result import write_result
+from segcore.kernels import FIRST, compile_kernels, must_compile
 from segcore.levels import Fineness
 from segcore.report import StructureCounts, structure_counts, structure_note
 from service.commands.arguments import add_level, add_parameters, add_structure
@@ -26,7 +27,6 @@ from service.commands.outputs import (
     write_model,
 )
 from service.commands.summary import level_lines, part_lines
-from service.host.kernel_cache import compiled_kernels
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
@@ -64,13 +64,10 @@ def run(choices: argparse.Namespace) -> None:
     outputs = [*choices.output, *filter(None, (choices.labels, choices.hierarchy, choices.result))]
     tell = check_outputs(outputs)
     options = output_options(choices, None if choices.mesh == STANDARD else choices.mesh)
-    if not compiled_kernels()[0]:
-        say_beside("Compiling the kernels, which takes up to a minute and is done once.")
     with ProgressBar(sys.stderr) as bar:
-        bar("load the kernels", 0.0)
-        segcore.warm_up()
         bar("read", 0.0)
         mesh = read_input(choices)
+        _compile_kernels(bar)
         surface = segcore.build_surface(mesh)
         hierarchy = segcore.segment(mesh, parameters, bar, surface, choices.threads)
         segments = fineness.segments_of(hierarchy)
@@ -83,6 +80,15 @@ def run(choices: argparse.Namespace) -> None:
     for line in _structure_lines(structure_counts(mesh, surface), parameters):
         tell(line)
     tell_written(tell, outputs)
+
+
+def _compile_kernels(bar: ProgressBar) -> None:
+    """Compile what every segmentation needs, at the first use; without a terminal one line says so."""
+    if not must_compile([FIRST]):
+        return
+    if not sys.stderr.isatty():
+        say_beside("Compiling the kernels, which takes up to half a minute and is done once.")
+    compile_kernels([FIRST], lambda progress: bar(str(progress), progress.done / progress.count))
 
 
 def _parameters(choices: argparse.Namespace) -> segcore.SegmentationParameters:

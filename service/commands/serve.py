@@ -13,6 +13,7 @@ from service.host.announcement import announcement, warn_of_unknown_variables
 from service.host.listening import listen
 from service.host.programs import api_program, queue_server_program, worker_counts, worker_programs
 from service.host.queue_server import QueueServer, check_queue_server, embedded_queue_server, stop_orphan
+from service.host.start_signal import StartSignal
 from service.host.supervisor import Supervisor, lock_data
 from worker.jobs.store.opening import open_store
 
@@ -44,8 +45,9 @@ def run(choices: argparse.Namespace) -> None:
         if server is not None:
             settings = settings.model_copy(update={"redis_url": server.url})
         queue = [] if server is None else [queue_server_program(server)]
-        programs = [*queue, api_program(settings, listening.fileno()), *worker_programs(settings, counts)]
-        supervisor = Supervisor(programs)
+        started = StartSignal()
+        api = api_program(settings, listening.fileno(), started)
+        supervisor = Supervisor([*queue, api, *worker_programs(settings, counts, started.has_come)])
         say(announcement(settings, counts, listening, own_queue=server is not None))
         supervisor.run()
 

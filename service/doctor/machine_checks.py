@@ -93,8 +93,8 @@ def _kernels() -> Iterator[Finding]:
     else:
         yield warning(
             "kernels",
-            "none is compiled: the first start takes up to a minute.",
-            'Start the service once, or run python -c "import segcore; segcore.warm_up()"',
+            "none is compiled: the first job waits up to half a minute.",
+            "Start the service once, or run python -m segcore.kernels",
         )
 
 

@@ -3,13 +3,14 @@
 import os
 import sys
 import sysconfig
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from functools import partial
 from pathlib import Path
 
 from cleave.settings import Settings
 from service.host.queue_files import set_aside_unreadable
 from service.host.queue_server import QueueServer
+from service.host.start_signal import StartSignal
 from service.host.supervisor import Program
 from worker.jobs.size_class import SizeClass
 
@@ -28,26 +29,35 @@ def queue_server_program(server: QueueServer) -> Program:
     return Program("queue server", server.command, is_support=True, on_end=on_end)
 
 
-def api_program(settings: Settings, listening: int) -> Program:
+def api_program(settings: Settings, listening: int, started: StartSignal) -> Program:
     """Return the program of the HTTP server on a socket, which is given by its file descriptor."""
-    command = _python("service.host.http_server", str(listening))
-    return Program("service", command, _environment(settings), descriptors=(listening,))
+    command = _python("service.host.http_server", str(listening), str(started.descriptor))
+    return Program("service", command, _environment(settings), descriptors=(listening, started.descriptor))
 
 
-def worker_programs(settings: Settings, counts: Mapping[SizeClass, int]) -> list[Program]:
+def worker_programs(
+    settings: Settings, counts: Mapping[SizeClass, int], starts_after: Callable[[], bool] | None = None
+) -> list[Program]:
     """Return the workers of each queue, the janitor, which recovers lost jobs, and the sender of webhooks."""
     environment = _environment(settings)
     threads = {name: os.environ.get(name, value) for name, value in (_ONE_THREAD | _ONE_HEAP).items()}
     grace_s = settings.shutdown_grace_s + _STOP_MARGIN_S
     workers = [
         Program(
-            f"worker {number} for {size} jobs", _python("worker.process", size), environment | threads, grace_s=grace_s
+            f"worker {number} for {size} jobs",
+            _python("worker.process", size),
+            environment | threads,
+            grace_s=grace_s,
+            starts_after=starts_after,
         )
         for size, count in counts.items()
         for number in range(1, count + 1)
     ]
-    janitor = Program("janitor", _python("worker.janitor"), environment)
-    return [*workers, janitor, Program("webhook sender", _python("worker.webhooks"), environment)]
+    others = {"janitor": "worker.janitor", "webhook sender": "worker.webhooks"}
+    return [
+        *workers,
+        *(Program(name, _python(module), environment, starts_after=starts_after) for name, module in others.items()),
+    ]
 
 
 def worker_counts(total: int | None, only: SizeClass | None = None) -> dict[SizeClass, int]:

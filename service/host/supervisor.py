@@ -39,6 +39,7 @@ class Program:
     descriptors: tuple[int, ...] = ()  # open files that it inherits
     grace_s: float = 5.0  # from SIGTERM to SIGKILL; set by hand
     is_support: bool = False  # stopped after the others, which need it while they stop
+    starts_after: Callable[[], bool] | None = None  # started once this returns True; at once if it is None
     on_end: Callable[[int], None] | None = None  # called with the exit status before a restart, if it ended by itself
 
 
@@ -99,8 +100,11 @@ class _Child:
     def keep_running(self) -> None:
         if self._process is not None and self._process.poll() is not None:
             self._schedule_restart(self._process.returncode)
-        if self._process is None and time.monotonic() >= self._start_at:
+        if self._process is None and time.monotonic() >= self._start_at and self._may_start():
             self._start()
+
+    def _may_start(self) -> bool:
+        return self.program.starts_after is None or self.program.starts_after()
 
     def is_running(self) -> bool:
         return self._process is not None and self._process.poll() is None

@@ -5,9 +5,10 @@ from prometheus_client.exposition import CONTENT_TYPE_PLAIN_1_0_0, generate_late
 from starlette.responses import Response
 
 from service.context import Context, ContextOf
-from service.documents import Health, Readiness
+from service.documents import CompilationDocument, Health, Readiness
 from service.guard.callers import CallerOf
 from service.problems import documented
+from worker.jobs.queue.compilation import Compilation, current_compilation
 from worker.jobs.queue.connection import QueueError
 from worker.jobs.queue.workers import worker_counts
 from worker.jobs.size_class import SizeClass
@@ -49,6 +50,7 @@ def get_metrics(context: ContextOf, caller: CallerOf) -> Response:  # noqa: ARG0
 
 def _readiness(context: Context) -> Readiness:
     workers = _worker_counts(context)
+    compilation = _compilation(context) if workers is not None else None
     store = _is_writable(context)
     sentences = {
         "The queue server does not answer.": workers is None,
@@ -57,7 +59,25 @@ def _readiness(context: Context) -> Readiness:
     }
     missing = [sentence for sentence, applies in sentences.items() if applies]
     count = sum((workers or {}).values())
-    return Readiness(ready=not missing, queue=workers is not None, store=store, workers=count, missing=missing)
+    if missing and compilation is not None:
+        missing.append(f"The workers are {compilation}.")
+    return Readiness(
+        ready=not missing,
+        queue=workers is not None,
+        store=store,
+        workers=count,
+        missing=missing,
+        compilation=None
+        if compilation is None
+        else CompilationDocument(done=compilation.done, count=compilation.count),
+    )
+
+
+def _compilation(context: Context) -> Compilation | None:
+    try:
+        return current_compilation(context.queue.connection)
+    except QueueError:
+        return None
 
 
 def _worker_counts(context: Context) -> dict[SizeClass, int] | None:

@@ -17,6 +17,7 @@ from redis import Redis
 
 from helpers.processes import children_of, horses_of
 from helpers.waiting import wait_until
+from segcore.kernels import compile_kernels
 
 _STARTED = re.compile(r"listening on +(http://\S+)")
 START_S = 120.0  # kernels may have to be compiled on a busy machine; set by hand
@@ -58,6 +59,7 @@ class Installation:
         )
 
     def start(self) -> None:
+        compile_kernels()  # so that the work-horses are the only children of a worker
         self.process = self.command("serve", "--port", "0", "--workers", str(self.workers))
         assert self.process.stdout is not None
         announcement = self._announcement()

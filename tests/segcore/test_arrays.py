@@ -3,7 +3,8 @@ from fractions import Fraction
 import numpy as np
 import pytest
 
-from segcore.arrays import distinct_pairs, dot, transformed
+from segcore.array_kernels import distinct_pairs, dot
+from segcore.arrays import transformed
 
 
 @pytest.mark.parametrize("count", [*range(18), 20_001])

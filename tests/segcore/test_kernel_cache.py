@@ -12,7 +12,7 @@ import segcore
 
 SCRIPT = """
 import numba, numpy, segcore
-from segcore.arrays import dot
+from segcore.array_kernels import dot
 print(dot(numpy.ones(80), numpy.ones(80)), numba.config.CACHE_DIR)
 """
 

@@ -12,6 +12,7 @@ from redis import Redis
 from helpers.buckets import below
 from helpers.jobs import SMALL
 from helpers.processes import StartWorker
+from segcore.kernels import compile_kernels
 from worker.jobs.job import new_job_id
 from worker.jobs.size_class import SizeClass
 from worker.jobs.store.opening import open_folder, open_url
@@ -36,6 +37,7 @@ def any_store(request: pytest.FixtureRequest, tmp_path: Path) -> Iterator[JobSto
 def start_worker(tmp_path: Path, queue_url: str, connection: Redis) -> Iterator[StartWorker]:
     """Start worker processes with given settings; they are killed after the test."""
     del connection  # an empty queue
+    compile_kernels()  # so that the work-horses are the only children of a worker
     started: list[subprocess.Popen[bytes]] = []
 
     def start(

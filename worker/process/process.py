@@ -20,7 +20,6 @@ from rq.serializers import JSONSerializer
 from rq.worker import WorkerStatus
 from rq.worker_registration import register
 
-import segcore
 from cleave.logs import about, configure_logging, current_traceparent, rename_process
 from cleave.parent_death import die_with_parent
 from cleave.settings import Settings, load_settings
@@ -36,6 +35,7 @@ from worker.jobs.size_class import SizeClass
 from worker.jobs.store.opening import open_store
 from worker.jobs.store.store import JobStore, UnknownJob
 from worker.process.edit_runs import EditRuns
+from worker.process.kernels import WorkerKernels
 from worker.process.lease import LeaseKeeper
 from worker.process.ledger import Ledger
 from worker.process.perform import perform
@@ -63,7 +63,15 @@ class JobWorker(Worker):  # type: ignore[misc]  # rq is not analysed
 
     max_connection_wait_time = 2.0  # rq's longest pause between two attempts to reach Redis
 
-    def __init__(self, store: JobStore, queue: JobQueue, leases: JobQueue, settings: Settings, size: SizeClass) -> None:
+    def __init__(
+        self,
+        store: JobStore,
+        queue: JobQueue,
+        leases: JobQueue,
+        settings: Settings,
+        size: SizeClass,
+        kernels: WorkerKernels,
+    ) -> None:
         """``queue`` needs a connection that retries for minutes, ``leases`` one with a short timeout."""
         super().__init__(
             [queue.entries[size]],
@@ -78,6 +86,7 @@ class JobWorker(Worker):  # type: ignore[misc]  # rq is not analysed
         self._leases = leases
         self._counters = JobCounters(leases.connection)
         self._settings = settings
+        self._kernels = kernels
         self._lease = LeaseKeeper(leases, self.name, settings.lease_s, partial(self.heartbeat, None))
         self._ledger = Ledger(store, queue, self._counters, settings, size, self.name)
         self._watch = Watch(settings)
@@ -94,6 +103,8 @@ class JobWorker(Worker):  # type: ignore[misc]  # rq is not analysed
             self._queue.forget(job.id)
         elif self._queue.take(job.id, self.name, self._settings.lease_s):
             self._run_or_hand_back(job.id)
+            if self._kernels.load_others():
+                self._spare.dismiss()
             self._spare.fork_ahead()
         self.set_state(WorkerStatus.IDLE)
 
@@ -226,9 +237,9 @@ def main() -> None:
     settings = load_settings()
     configure_logging(settings.log_level, settings.log_format, "worker")
     assert settings.redis_url, "the parent process sets CLEAVE_REDIS_URL"
-    log.info("loading the kernels; at the first start they are compiled, which takes up to a minute")
-    segcore.warm_up()
-    log.info("ready for %s jobs", size)
     queue = JobQueue(connect_with_retries(settings.redis_url))
     leases = JobQueue(connect(settings.redis_url))
-    JobWorker(open_store(settings), queue, leases, settings, size).work(logging_level="WARNING")
+    kernels = WorkerKernels(leases.connection)
+    kernels.load_first()
+    log.info("ready for %s jobs", size)
+    JobWorker(open_store(settings), queue, leases, settings, size, kernels).work(logging_level="WARNING")

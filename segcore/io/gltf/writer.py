@@ -1,10 +1,11 @@
 """The GLB writer: a mesh as named, nested, coloured parts that ordinary viewers show."""
 
-from typing import BinaryIO, Literal, TypeAlias, get_args
+from typing import BinaryIO, get_args
 
 from segcore.appearance import Appearance
 from segcore.errors import InvalidParameters
 from segcore.hierarchy import Hierarchy
+from segcore.io.formats import Layout
 from segcore.io.gltf.glb_file import GlbFile
 from segcore.io.gltf.writer_appearance import add_attributes, name_groups
 from segcore.io.gltf.writer_features import add_features
@@ -14,8 +15,6 @@ from segcore.io.names import SegmentNames, segment_names
 from segcore.io.palette import SegmentColors
 from segcore.io.slices import group
 from segcore.mesh import Mesh
-
-Layout: TypeAlias = Literal["tree", "flat"]
 
 
 def write_glb(

@@ -2,7 +2,8 @@
 
 import numpy as np
 
-from segcore.arrays import BoolArray, IntArray, distinct_pairs
+from segcore.array_kernels import distinct_pairs
+from segcore.arrays import BoolArray, IntArray
 
 
 def border_loops(faces: IntArray) -> list[IntArray]:

@@ -1,7 +1,7 @@
 """The PLY writer, binary: plain meshes, and segmented ones with colours and labels of faces and vertices."""
 
 from collections.abc import Iterator, Sequence
-from typing import Any, BinaryIO, Literal, NamedTuple, get_args
+from typing import Any, BinaryIO, NamedTuple, get_args
 
 import numpy as np
 from numpy.typing import NDArray
@@ -11,12 +11,11 @@ from segcore.arrays import IntArray
 from segcore.errors import InvalidParameters
 from segcore.hierarchy import Hierarchy
 from segcore.io.converting import requested
+from segcore.io.formats import PlyColors
 from segcore.io.names import SegmentNames, segment_names
 from segcore.io.palette import SegmentColors, color_bytes
 from segcore.io.ply.divided import UNUSED, DividedVertices, divide
 from segcore.mesh import Mesh
-
-PlyColors = Literal["vertices", "faces"]
 
 _ROWS = 2**16  # vertices or faces in a piece, about 1 MB
 _NAMES = {"<f4": "float", "<f8": "double", "<i4": "int", "u1": "uchar"}

@@ -100,10 +100,17 @@ def test_only_the_given_command_is_imported() -> None:
     }
     modules = {name: set(text.splitlines()[-1].split()) for name, text in loaded.items()}
     heavy = {"numpy", "numba", "redis", "httpx", "fastapi"}
-    assert not heavy & modules["help"]
+    assert not (heavy | {"pydantic"}) & modules["help"]
     assert not heavy & modules["key"]
     assert {"numpy", "service.commands.segment"} <= modules["segment"]
     assert "service.commands.serve" not in modules["segment"]
+
+
+@pytest.mark.parametrize("module", ["service.host.http_server", "service.commands.serve", "worker.janitor.janitor"])
+def test_a_process_that_computes_nothing_starts_without_kernels(module: str) -> None:
+    script = f"import sys, {module}; print(*sys.modules)"
+    done = subprocess.run([sys.executable, "-c", script], capture_output=True, text=True, check=True)
+    assert {"numba", "scipy", "segcore.method"}.isdisjoint(done.stdout.split())
 
 
 def test_the_kernel_cache_is_in_the_data_folder_that_is_given(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:

@@ -5,6 +5,7 @@ import json
 import os
 import subprocess
 import sys
+from collections.abc import Callable
 from pathlib import Path
 
 import pytest
@@ -12,6 +13,7 @@ import pytest
 import segcore
 from helpers.files.samples import TWO_SQUARES
 from segcore.io.result import read_result, write_result
+from segcore.kernels import CompilationProgress
 from service.commands.main import main
 
 
@@ -129,11 +131,21 @@ def test_a_pipe_that_is_closed_early_is_no_error(mesh: Path, tmp_path: Path) -> 
     assert output.stat().st_size > 0
 
 
-def test_kernels_that_must_be_compiled_first_are_announced(
-    mesh: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+def test_a_compilation_is_announced_by_a_line_or_shown_on_a_terminal(
+    mesh: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
+    def compile_kernels(_: list[str], on_progress: Callable[[CompilationProgress], object]) -> None:
+        on_progress(CompilationProgress(14, 52))
+
+    monkeypatch.setattr("service.commands.segment.must_compile", lambda _: False)
     assert main(["segment", str(mesh)]) == 0
-    assert "Compiling" not in capsys.readouterr().err
-    monkeypatch.setenv("NUMBA_CACHE_DIR", str(tmp_path))
+    assert capsys.readouterr().err == ""
+    monkeypatch.setattr("service.commands.segment.must_compile", lambda _: True)
+    monkeypatch.setattr("service.commands.segment.compile_kernels", compile_kernels)
     assert main(["segment", str(mesh)]) == 0
-    assert "Compiling the kernels, which takes up to a minute" in capsys.readouterr().err
+    assert capsys.readouterr().err == "Compiling the kernels, which takes up to half a minute and is done once.\n"
+    monkeypatch.setattr(sys.stderr, "isatty", lambda: True)
+    assert main(["segment", str(mesh)]) == 0
+    errors = capsys.readouterr().err
+    assert "compiling, once: 14 of 52" in errors
+    assert "half a minute" not in errors

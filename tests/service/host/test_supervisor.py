@@ -69,3 +69,26 @@ def test_a_data_folder_is_locked_by_one_process_at_a_time(tmp_path: Path) -> Non
         lock_data(data_dir)
     with lock_data(data_dir):
         pass
+
+
+def test_a_program_waits_for_the_signal_of_another_one(tmp_path: Path) -> None:
+    started = tmp_path / "started"
+    script = f"""
+        import sys
+        from service.host.start_signal import StartSignal
+        from service.host.supervisor import Program, Supervisor
+        signal = StartSignal()
+        first = f"import os, time; time.sleep(1); os.write({{signal.descriptor}}, b'1'); time.sleep(1000)"
+        second = "import time; open({str(started)!r}, 'w').close(); time.sleep(1000)"
+        Supervisor([
+            Program("second", [sys.executable, "-c", second], starts_after=signal.has_come),
+            Program("first", [sys.executable, "-c", first], descriptors=(signal.descriptor,)),
+        ]).run()
+    """
+    with subprocess.Popen([sys.executable, "-c", textwrap.dedent(script)], stderr=subprocess.DEVNULL) as supervisor:
+        wait_until(lambda: len(children_of(supervisor.pid)) == 1)
+        assert not started.exists()
+        wait_until(started.exists)
+        assert len(children_of(supervisor.pid)) == 2
+        supervisor.terminate()
+        assert supervisor.wait(30) == 0

@@ -13,6 +13,8 @@ export interface Job {
   /** An estimate; null if there is none, missing in documents of earlier versions. */
   readonly seconds_left?: number | null;
   readonly queue_position: number | null;
+  /** What a waiting job waits for, such as "compiling, once: 14 of 52". */
+  readonly waits_for?: string | null;
   readonly created_at: string;
   readonly finished_at: string | null;
   readonly input: {

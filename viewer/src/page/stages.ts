@@ -10,7 +10,7 @@ const UPLOAD = 0.1; // share of the bar; set by hand: most uploads are much shor
 const MINUTES_FROM_S = 100; // from which minutes are shown, as the command line does
 const ASKED_MS = 2000; // between two questions whether workers are ready
 const STARTING =
-  "No worker is ready yet: the server is starting. The first start compiles the numerical kernels, which takes up to a minute.";
+  "No worker is ready yet: the server is starting. The first start compiles the numerical kernels, which takes up to half a minute.";
 
 /** Titles of the stages of a job, in order. */
 const STAGES: readonly [stage: string, title: string][] = [
@@ -62,9 +62,11 @@ export function showStage(stage: string, done: number): void {
 
 export function showProgress(job: Job): void {
   showStage(stageOf(job), job.progress);
+  const isQueued = job.status === "queued";
+  const place = isQueued && (job.queue_position ?? 0) > 1 ? `, ${job.queue_position! - 1} ahead of it` : "";
+  const reason = isQueued && job.waits_for ? ` (${job.waits_for})` : "";
   byId("progress-left").textContent = left(job.seconds_left ?? null);
-  const place = job.status === "queued" && (job.queue_position ?? 0) > 1 ? `, ${job.queue_position! - 1} ahead of it` : "";
-  byId("stages").querySelector("[data-stage=queued] span")!.textContent = `Waiting for a worker${place}`;
+  byId("stages").querySelector("[data-stage=queued] span")!.textContent = `Waiting for a worker${place}${reason}`;
 }
 
 /** Return how long a job still takes, in words; empty if that is not known. */

@@ -19,6 +19,8 @@ from rq.intermediate_queue import IntermediateQueue
 from rq.job import Job as Entry
 from rq.serializers import JSONSerializer
 
+from worker.jobs.queue.compilation import KEY as COMPILATION_KEY
+from worker.jobs.queue.compilation import Compilation, compilation_from
 from worker.jobs.queue.connection import milliseconds, text_of
 from worker.jobs.queue.entries import FUNCTION_NAME
 from worker.jobs.size_class import SizeClass
@@ -43,6 +45,7 @@ class Activity:
     running: bool
     progress: Progress | None
     position: int | None = None  # 1 is next; None if it does not wait in the queue
+    compilation: Compilation | None = None  # for which the job waits, at the first start of an installation
 
 
 class JobQueue:
@@ -137,15 +140,15 @@ class JobQueue:
         ids = list(job_ids)
         with self.connection.pipeline(transaction=False) as pipeline:
             for job_id in ids:
-                pipeline.mget(_lease_key(job_id), _progress_key(job_id))
+                pipeline.mget(_lease_key(job_id), _progress_key(job_id), COMPILATION_KEY)
                 for key in self._waiting_keys:
                     pipeline.lpos(key, job_id)
             replies = pipeline.execute()
         each = 1 + len(self._waiting_keys)
         indices = zip(*(replies[1 + number :: each] for number in range(each - 1)), strict=True)
         return {
-            job_id: _activity(lease, document, found)
-            for job_id, (lease, document), found in zip(ids, replies[::each], indices, strict=True)
+            job_id: _activity(lease, document, found, compilation)
+            for job_id, (lease, document, compilation), found in zip(ids, replies[::each], indices, strict=True)
         }
 
     def activity(self, job_id: str) -> Activity:
@@ -181,10 +184,13 @@ def _progress_key(job_id: str) -> str:
     return f"cleave:progress:{job_id}"
 
 
-def _activity(lease: bytes | None, document: bytes | None, indices: tuple[int | None, ...]) -> Activity:
-    progress = _progress(document) if lease and document else None
-    position = None if lease else next((index + 1 for index in indices if index is not None), None)
-    return Activity(running=lease is not None, progress=progress, position=position)
+def _activity(
+    lease: bytes | None, document: bytes | None, indices: tuple[int | None, ...], compilation: bytes | None
+) -> Activity:
+    if lease:
+        return Activity(running=True, progress=_progress(document) if document else None)
+    position = next((index + 1 for index in indices if index is not None), None)
+    return Activity(running=False, progress=None, position=position, compilation=compilation_from(compilation))
 
 
 def _progress(document: bytes) -> Progress:
