@@ -1,0 +1,1 @@
+"""How long commands and the service take to start, with and without compiled kernels."""
