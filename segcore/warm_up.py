@@ -2,7 +2,6 @@
 
 import numpy as np
 
-from segcore.affinity.rays import RayCaster
 from segcore.clean.surface import build_surface
 from segcore.coarsen.grains import grown_grains, merged_grains
 from segcore.io.limits import ReadLimits
@@ -30,11 +29,8 @@ def warm_up() -> None:
 
 def _begin_fine(mesh: Mesh) -> None:
     """Carry out the steps that only fine meshes need."""
-    surface = build_surface(mesh)
-    graph = surface.face_graph()
-    grain = grown_grains(graph)
-    merged_grains(graph, grain)
-    RayCaster.of(surface.vertices, surface.faces, grain)
+    graph = build_surface(mesh).face_graph()
+    merged_grains(graph, grown_grains(graph))
 
 
 def _bodies() -> Mesh:

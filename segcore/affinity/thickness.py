@@ -53,9 +53,7 @@ def patch_thickness(surface: Surface, patches: Patches) -> Thickness:
     if len(chosen) == 0:
         return Thickness(*np.zeros((2, len(patches.area))))
     rays = _rays(surface, patches, chosen, size)
-    distance = RayCaster.of(surface.vertices, surface.faces, patches.grain).inner_distances(
-        rays.origins, rays.directions
-    )
+    distance = RayCaster.of(surface.vertices, surface.faces).inner_distances(rays.origins, rays.directions)
     value, confidence = np.zeros((2, len(patches.area)))
     value[chosen], confidence[chosen] = _typical(distance.reshape(-1, RAYS), rays.cosines.reshape(-1, RAYS))
     known = value > 0

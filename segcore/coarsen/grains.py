@@ -51,38 +51,6 @@ def merged_grains(graph: SurfaceGraph, grain: IntArray) -> tuple[SurfaceGraph, I
     return SurfaceGraph.with_sums(pairs, graph.weight[edge], volume, graph.length[edge]), grain
 
 
-def members_of(grain: IntArray) -> tuple[IntArray, IntArray]:
-    """(N,) the nodes by their grains, and (G + 1,) the first place of every grain among them."""
-    return _members(grain, int(grain.max()) + 1)
-
-
-@njit(cache=True, nogil=True)
-def _members(grain, count):  # type: ignore[no-untyped-def]
-    first = np.zeros(count + 1, np.int32)
-    for i in range(len(grain)):
-        first[grain[i] + 1] += 1
-    for g in range(count):
-        first[g + 1] += first[g]
-    fill = first[:-1].copy()
-    members = np.empty(len(grain), np.int32)
-    for i in range(len(grain)):
-        members[fill[grain[i]]] = i
-        fill[grain[i]] += 1
-    return members, first
-
-
-@njit(cache=True, nogil=True)
-def listed(grains, members, first):  # type: ignore[no-untyped-def]
-    """(N,) the members of grains in an order of these (G,); see ``members_of``."""
-    nodes = np.empty(len(members), np.int64)
-    used = 0
-    for g in grains:
-        for p in range(first[g], first[g + 1]):
-            nodes[used] = members[p]
-            used += 1
-    return nodes
-
-
 @njit(cache=True, nogil=True)
 def _grown(start, neighbour, edge, weight, length, volume, most, largest):  # type: ignore[no-untyped-def]
     grain = np.full(len(volume), -1, np.int32)
