@@ -51,7 +51,7 @@ _CONFIDENCE = FEATURES.index("confidence")
 
 _PLAIN = (_THICKNESS, _EXCESS_NEAR, _EXCESS_FAR, _CONFIDENCE)  # that are no logarithms of numbers of any size
 
-# The first entries of the fields in a row of all of them, see ``_packed``.
+# The first entries of the fields in ``PatchFields.rows``.
 _SCALES = len(TENSOR_RADII)
 _MEANS = 6 * _SCALES
 _GRADIENTS = _MEANS + _SCALES
@@ -86,7 +86,7 @@ def boundary_probability(surface: Surface, measured: Measurements, on_part: OnPa
     on_part : called with the fraction of the stage "affinity" that is done.
     """
     model = learned_models().boundary.arrays()
-    inputs, fields = _inputs(surface, measured), _packed(patch_fields(surface, measured))
+    inputs, fields = _inputs(surface, measured), patch_fields(surface, measured).rows
     probability = np.empty(len(surface.edge_faces))
     in_blocks(_write_boundary_probabilities, len(probability), inputs, fields, model, probability)
     on_part(_PREDICTED)
@@ -123,7 +123,7 @@ def edge_features(
     """
     edges = np.arange(len(surface.edge_faces))[chosen]
     columns = np.empty((len(FEATURES), len(edges)))
-    _write_features(edges, _inputs(surface, measured), _packed(fields), columns, np.empty((2, len(edges))))
+    _write_features(edges, _inputs(surface, measured), fields.rows, columns, np.empty((2, len(edges))))
     return np.ascontiguousarray(columns.T)
 
 
@@ -134,11 +134,6 @@ def _write_boundary_probabilities(start, end, inputs, fields, model, probability
         edges = np.arange(first, min(first + _AT_ONCE, end))
         _write_features(edges, inputs, fields, columns, work)
         write_probabilities(columns, model, probability[first : first + len(edges)])
-
-
-def _packed(fields: PatchFields) -> FloatArray:
-    """(P, 50) all fields of every patch in a row, in the order of ``PatchFields``."""
-    return np.concatenate([field.reshape(len(fields.confidence), -1) for field in fields], axis=1)
 
 
 @njit(cache=True, nogil=True, error_model="numpy")
@@ -165,7 +160,7 @@ def _write_numbers(i, e, inputs, mean, columns):  # type: ignore[no-untyped-def]
 
     Parameters
     ----------
-    mean : (50,) the mean of the fields of the patches at its sides, see ``_packed``.
+    mean : (50,) the mean of the fields of the patches at its sides, as in ``PatchFields.rows``.
     """
     arrays = inputs.arrays
     a, b = arrays.ends[e, 0], arrays.ends[e, 1]

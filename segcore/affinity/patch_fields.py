@@ -31,6 +31,17 @@ class PatchFields(NamedTuple):
     thickness: FloatArray  # (P, T) logarithms
     thickness_gradient: FloatArray  # (P, T, 3)
     confidence: FloatArray  # (P,)
+    rows: FloatArray  # (P, 50) all of these, those of a patch in a row; the other arrays are views of it
+
+    @classmethod
+    def empty(cls, count: int) -> "PatchFields":
+        """Room for the fields of some patches."""
+        scales, radii = len(TENSOR_RADII), len(THICKNESS_RADII)
+        shapes = (scales, 6), (scales,), (scales - 1, 3), (radii,), (radii, 3), ()
+        end = np.cumsum([int(np.prod(shape)) for shape in shapes]).tolist()
+        rows = np.empty((count, end[-1]))
+        parts = np.split(rows, end[:-1], axis=1)
+        return cls._make([*(part.reshape(count, *shape) for part, shape in zip(parts, shapes, strict=True)), rows])
 
 
 def patch_fields(surface: Surface, measured: Measurements) -> PatchFields:
@@ -38,16 +49,19 @@ def patch_fields(surface: Surface, measured: Measurements) -> PatchFields:
     patches = measured.patches
     size = float(np.sqrt(patches.area.sum()))
     raw = _tensors(surface, measured) * size / patches.area[:, None]
-    tensors = [raw if r == 0 else patches.smoothed(raw, r * size, patches.area) for r in TENSOR_RADII]
-    tensor = np.stack(tensors, axis=1)
-    mean = 0.5 * tensor[:, :, :3].sum(axis=2)
-    mean_gradient = np.stack([size * patches.gradients(column) for column in mean[:, 1:].T], axis=1)
-    logs = [
-        measured.log_thickness if r == THICKNESS_RADIUS else smooth_logarithm(measured.thickness, patches, r * size)
-        for r in THICKNESS_RADII
-    ]
-    gradient = np.stack([size * patches.gradients(log) for log in logs], axis=1)
-    return PatchFields(tensor, mean, mean_gradient, np.stack(logs, axis=1), gradient, measured.thickness.confidence)
+    fields = PatchFields.empty(len(raw))
+    for s, r in enumerate(TENSOR_RADII):
+        fields.tensor[:, s] = raw if r == 0 else patches.smoothed(raw, r * size, patches.area)
+    fields.mean[:] = 0.5 * fields.tensor[:, :, :3].sum(axis=2)
+    for s, column in enumerate(fields.mean[:, 1:].T):
+        fields.mean_gradient[:, s] = size * patches.gradients(column)
+    for s, r in enumerate(THICKNESS_RADII):
+        is_known = r == THICKNESS_RADIUS
+        log = measured.log_thickness if is_known else smooth_logarithm(measured.thickness, patches, r * size)
+        fields.thickness[:, s] = log
+        fields.thickness_gradient[:, s] = size * patches.gradients(log)
+    fields.confidence[:] = measured.thickness.confidence
+    return fields
 
 
 def _tensors(surface: Surface, measured: Measurements) -> FloatArray:

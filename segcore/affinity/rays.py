@@ -15,9 +15,7 @@ from numba import njit
 from numpy.typing import NDArray
 
 from segcore.affinity.eight_boxes import WIDTH, enter_boxes
-from segcore.array_kernels import members_by_group
 from segcore.arrays import FloatArray, IntArray, LongArray
-from segcore.coarsen.grains import listed
 from segcore.mesh import face_centroids
 from segcore.threads import in_blocks
 
@@ -41,19 +39,10 @@ class RayCaster(NamedTuple):
     sides: NDArray[np.float32]  # (F, 6) the vectors from there to the two other corners
 
     @classmethod
-    def of(cls, vertices: FloatArray, faces: IntArray, grain: IntArray | None = None) -> "RayCaster":
-        """Arrange faces (F, 3) over vertices (V, 3), F >= 1. O(F log F).
-
-        Parameters
-        ----------
-        grain : (F,) groups of faces that stay together in the order of the leaves, if there are some: the tree is then
-            made in less time, and about as good.
-        """
+    def of(cls, vertices: FloatArray, faces: IntArray) -> "RayCaster":
+        """Arrange faces (F, 3) over vertices (V, 3), F >= 1. O(F log F)."""
         leaves = 1 << max(0, int(np.ceil(np.log2(len(faces) / _LEAF))))
-        if grain is None:
-            order = _arranged(face_centroids(vertices, faces).astype(np.float32), leaves)
-        else:
-            order = _arranged_grains(vertices, faces, grain)
+        order = _arranged(face_centroids(vertices, faces).astype(np.float32), leaves)
         shapes = (2 * leaves, 6), (len(faces), 3), (len(faces), 6)
         boxes, corner, sides = (np.empty(shape, np.float32) for shape in shapes)
         in_blocks(_pack, leaves, vertices, faces, order, boxes, corner, sides)
@@ -156,14 +145,6 @@ def _halve(centres, order, low, high, middle, axis):  # type: ignore[no-untyped-
             low = i
         else:
             return
-
-
-def _arranged_grains(vertices: FloatArray, faces: IntArray, grain: IntArray) -> IntArray:
-    """(F,) the faces in the order of their grains, whose first faces are arranged as the faces of small meshes are."""
-    members, first = members_by_group(grain, int(grain.max()) + 1)
-    middles = face_centroids(vertices, faces[members[first[:-1]]])
-    order = _arranged(middles.astype(np.float32), 1 << max(0, int(np.ceil(np.log2(len(middles))))))
-    return listed(order, members, first)
 
 
 @njit(cache=True, nogil=True)

@@ -117,7 +117,7 @@ def _distances(surface: Surface, patches: Patches, chosen: LongArray, size: floa
     members, first = members_by_group(patches.of_face, len(patches.area))
     faces = _Faces(surface.faces, surface.vertices, surface.normals, at_least(surface.areas, _SMALLEST_FACE))
     samples = _Samples(members, first, chosen, patches.normal, _START * size)
-    return _cast(RayCaster.of(surface.vertices, surface.faces, patches.grain), faces, samples, _disc())
+    return _cast(RayCaster.of(surface.vertices, surface.faces), faces, samples, _disc())
 
 
 @njit(cache=True, error_model="numpy")

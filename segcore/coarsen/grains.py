@@ -52,18 +52,6 @@ def merged_grains(graph: SurfaceGraph, grain: IntArray) -> tuple[SurfaceGraph, I
 
 
 @njit(cache=True, nogil=True)
-def listed(grains, members, first):  # type: ignore[no-untyped-def]
-    """(N,) the members of grains in an order of these (G,); see ``segcore.arrays.members_by_group``."""
-    nodes = np.empty(len(members), np.int64)
-    used = 0
-    for g in grains:
-        for p in range(first[g], first[g + 1]):
-            nodes[used] = members[p]
-            used += 1
-    return nodes
-
-
-@njit(cache=True, nogil=True)
 def _grown(start, neighbour, edge, weight, length, volume, most, largest):  # type: ignore[no-untyped-def]
     grain = np.full(len(volume), -1, np.int32)
     members = np.empty(most, np.int32)

@@ -6,7 +6,6 @@ from typing import get_args
 
 import numpy as np
 
-from segcore.affinity.rays import RayCaster
 from segcore.clean.surface import build_surface
 from segcore.coarsen.grains import grown_grains, merged_grains
 from segcore.edit.guide import Guide
@@ -64,12 +63,8 @@ def _cracked(mesh: Mesh) -> Mesh:
 
 def _fine() -> None:
     """Carry out the steps that only fine meshes need."""
-    mesh = burr(subdivisions=3).mesh
-    surface = build_surface(mesh)
-    graph = surface.face_graph()
-    grain = grown_grains(graph)
-    merged_grains(graph, grain)
-    RayCaster.of(surface.vertices, surface.faces, grain)
+    graph = build_surface(burr(subdivisions=3).mesh).face_graph()
+    merged_grains(graph, grown_grains(graph))
 
 
 def _draw() -> None:

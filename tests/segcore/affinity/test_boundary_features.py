@@ -33,7 +33,7 @@ def expected_features(surface, measured, fields):
     along = ends[:, 1] - ends[:, 0]
     along = along / np.linalg.norm(along, axis=1, keepdims=True)
     tensor, mean, mean_gradient, thickness, thickness_gradient, confidence = (
-        field[sides].mean(axis=1) for field in fields
+        field[sides].mean(axis=1) for field in fields[:-1]
     )
     xx, yy, zz, xy, xz, yz = np.moveaxis(tensor, 2, 0)
     matrix = np.moveaxis(np.array([[xx, xy, xz], [xy, yy, yz], [xz, yz, zz]]), (0, 1), (2, 3))
@@ -99,3 +99,10 @@ def test_the_probability_is_that_of_the_model_for_the_features():
     features = edge_features(surface, measured, fields, slice(None))
     expected = learned_models().boundary.probability(features)
     np.testing.assert_array_equal(boundary_probability(surface, measured), expected)
+
+
+def test_the_fields_are_views_of_their_rows():
+    _, _, fields = measured_fields(shapes.icosphere(3))
+    assert all(np.shares_memory(field, fields.rows) for field in fields)
+    flat = np.concatenate([field.reshape(len(fields.rows), -1) for field in fields[:-1]], axis=1)
+    np.testing.assert_array_equal(flat, fields.rows)

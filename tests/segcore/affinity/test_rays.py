@@ -6,8 +6,6 @@ from hypothesis import strategies as st
 from bench.scale.hard_shapes import torus_of_random_places
 from segcore import shapes
 from segcore.affinity.rays import RayCaster
-from segcore.clean.surface import build_surface
-from segcore.coarsen.grains import grown_grains
 
 
 def nearest_exit(vertices, faces, origin, direction):
@@ -69,13 +67,3 @@ def test_no_ray_is_given_up_in_a_body():
     directions = np.random.default_rng(1).normal(size=(50_000, 3))
     directions /= np.linalg.norm(directions, axis=1, keepdims=True)
     assert np.isfinite(RayCaster.of(mesh.vertices, mesh.faces).inner_distances(inside, directions)).all()
-
-
-def test_distances_do_not_depend_on_the_order_of_the_faces_in_the_tree():
-    surface = build_surface(shapes.dumbbell(rings=40, around=24).mesh)
-    origins = surface.vertices[surface.faces].mean(axis=1) - 1e-4 * surface.normals
-    grain = grown_grains(surface.face_graph())
-    plain, grained = (RayCaster.of(surface.vertices, surface.faces, order) for order in (None, grain))
-    distances = plain.inner_distances(origins, -surface.normals)
-    assert np.isfinite(distances).mean() > 0.99
-    np.testing.assert_array_equal(grained.inner_distances(origins, -surface.normals), distances)
