@@ -4,7 +4,6 @@ from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
-from numba import njit
 from numpy.typing import ArrayLike
 
 from segcore.appearance import Appearance
@@ -12,7 +11,6 @@ from segcore.arrays import BoolArray, FloatArray, IntArray
 from segcore.coordinates import UNKNOWN, Coordinates
 from segcore.errors import InvalidMesh
 from segcore.structure import FileStructure
-from segcore.threads import in_blocks
 
 _LARGEST_COORDINATE = 1e100  # areas and volumes of larger meshes leave the range of float64
 
@@ -100,21 +98,6 @@ def face_normals_and_areas(corners: FloatArray) -> tuple[FloatArray, FloatArray]
     double_area = np.linalg.norm(cross, axis=1)
     normals = np.divide(cross, double_area[:, None], out=np.zeros_like(cross), where=double_area[:, None] > 0)
     return normals, 0.5 * double_area
-
-
-def face_centroids(vertices: FloatArray, faces: IntArray) -> FloatArray:
-    """(F, 3) the mean of the three corners of every face."""
-    centroids = np.empty((len(faces), 3))
-    in_blocks(_write_centroids, len(faces), vertices, faces, centroids)
-    return centroids
-
-
-@njit(cache=True, nogil=True)
-def _write_centroids(start, end, vertices, faces, centroids):  # type: ignore[no-untyped-def]
-    for f in range(start, end):
-        a, b, c = vertices[faces[f, 0]], vertices[faces[f, 1]], vertices[faces[f, 2]]
-        for axis in range(3):
-            centroids[f, axis] = (a[axis] + b[axis] + c[axis]) / 3.0
 
 
 def _checked_vertices(values: ArrayLike) -> FloatArray:

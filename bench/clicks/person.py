@@ -12,9 +12,9 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from segcore.arrays import group_sums
+from segcore.centroids import face_centroids
 from segcore.edit.distances import distances_from_border
 from segcore.graphs.surface_graph import Rows, connected_components, rows_of
-from segcore.mesh import face_centroids
 
 if TYPE_CHECKING:
     from segcore.arrays import BoolArray, FloatArray, IntArray, LongArray

@@ -5,13 +5,13 @@ import numpy as np
 from segcore.affinity.affinities import FACE_AFFINITIES, VERTEX_AFFINITIES
 from segcore.affinity.flatness import cohesive_weights, smooth_edges
 from segcore.arrays import BoolArray, IntArray, at_least
+from segcore.centroids import face_centroids
 from segcore.clean.edge_geometry import edge_lengths
 from segcore.clean.surface import Surface
 from segcore.clean.topology import mesh_edges
 from segcore.coarsen.authored import part_of_component
 from segcore.graphs.mesh_graph import MeshGraph
 from segcore.graphs.surface_graph import SurfaceGraph, connected_components, weighted_degrees
-from segcore.mesh import face_centroids
 from segcore.parameters import SegmentationParameters
 from segcore.progress import OnPart, report_nothing
 from segcore.threads import meanwhile

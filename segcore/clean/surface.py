@@ -11,12 +11,13 @@ import numpy as np
 from scipy.spatial import KDTree
 
 from segcore.arrays import BoolArray, FloatArray, IntArray, group_sums
+from segcore.centroids import face_centroids
 from segcore.clean.orientation import flipped, patch_volumes, reliable_normals
 from segcore.clean.stitching import stitch
 from segcore.clean.topology import DualEdges, consistent_orientation, dual_edges, first_equal_row, sorted_rows
 from segcore.clean.welding import weld
 from segcore.graphs.surface_graph import SurfaceGraph, rows_of
-from segcore.mesh import Mesh, face_centroids
+from segcore.mesh import Mesh
 
 # An open patch is flipped if its enclosed volume over area**1.5 is below minus this; a ball has 0.094. Set by hand: an
 # open sheet encloses next to nothing and keeps the orientation of the file.

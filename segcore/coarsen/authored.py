@@ -5,11 +5,12 @@ from dataclasses import replace
 import numpy as np
 
 from segcore.arrays import BoolArray, FloatArray, IntArray, group_sums
+from segcore.centroids import face_centroids
 from segcore.clean.surface import Surface
 from segcore.coarsen.components import group_by_nearness, largest, nearest_hosts
 from segcore.errors import InvalidParameters
 from segcore.graphs.surface_graph import connected_components
-from segcore.mesh import Mesh, face_centroids, face_normals_and_areas
+from segcore.mesh import Mesh, face_normals_and_areas
 from segcore.parameters import Structure
 from segcore.structure import FileStructure
 

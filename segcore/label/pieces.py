@@ -6,6 +6,7 @@ import numpy as np
 
 from segcore.array_kernels import distinct_pairs
 from segcore.arrays import at_least, group_sums
+from segcore.centroids import face_centroids
 from segcore.clean.edge_geometry import edge_lengths
 from segcore.clean.refinement import Refinement
 from segcore.clean.surface import Surface
@@ -16,7 +17,6 @@ from segcore.graphs.surface_graph import SurfaceGraph
 from segcore.graphs.tree import Tree
 from segcore.label.boundary import draw_boundaries
 from segcore.label.projection import Votes, project
-from segcore.mesh import face_centroids
 from segcore.symmetry.images import MirrorImage, mirror_image
 
 _SHORTEST_EDGE = 1e-2  # least length of an edge in mean lengths, as in affinity/mesh_graphs.py

@@ -6,10 +6,10 @@ import numpy as np
 from scipy.spatial import KDTree
 
 from segcore.arrays import BoolArray, FloatArray, IntArray, group_sums
+from segcore.centroids import face_centroids
 from segcore.clean.surface import Surface
 from segcore.coarsen.assembly import NEGLIGIBLE
 from segcore.graphs.surface_graph import connected_components
-from segcore.mesh import face_centroids
 from segcore.symmetry.close_images import Halves, close_images, coinciding_area
 from segcore.symmetry.reflection import Reflection, find_reflection
 from segcore.threads import sums_of_blocks
