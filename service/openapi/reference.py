@@ -94,8 +94,7 @@ def _about_parameter(parameter: dict[str, Any]) -> tuple[str, str]:
     described = {"description": parameter.get("description", "")}
     if schema.get("default") is not None:
         described["default"] = schema["default"]
-    # Parameters that need not be sent are null in the code of the service, but no client sends a null.
-    return type_of(schema).removesuffix(" or null"), description_of(described)
+    return type_of(schema), description_of(described)
 
 
 def _content_rows(content: dict[str, Any]) -> list[tuple[str, str]]:

@@ -29,7 +29,8 @@ def complaints(folder: Path, name: str) -> str:
 def generated(folder: Path) -> Path:
     """The folder with the generated types, cleave.d.ts."""
     generator = folder / "node_modules/openapi-typescript/bin/cli.js"
-    programs.run(generator, [str(DOCS / "openapi.json"), "-o", str(folder / "cleave.d.ts")])
+    arguments = [str(DOCS / "openapi.json"), "--default-non-nullable=false", "-o", str(folder / "cleave.d.ts")]
+    programs.run(generator, arguments)
     return folder
 
 
