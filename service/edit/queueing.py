@@ -11,7 +11,8 @@ from service.edit.result_documents import revision_document
 from service.edit.revising import Edit
 from service.guard.callers import Caller
 from service.mount import public_path
-from service.problems import Problem, RevisionDocument
+from service.problems import STATUS, Problem, RevisionDocument
+from worker.jobs.attempts import FAILURE_CODES
 from worker.jobs.job import Job, new_job_id, now
 from worker.jobs.queue.connection import QueueError
 from worker.jobs.queued_edit import QueuedEdit
@@ -24,7 +25,10 @@ log = logging.getLogger("cleave.service")
 class EditError(BaseModel):
     """Why an edit failed."""
 
-    code: str = Field(description="That of a problem, or the cause of a lost run; stable, for programs.")
+    code: str = Field(
+        description="That of a problem, or the cause of a lost run; stable, for programs.",
+        json_schema_extra={"enum": list(dict.fromkeys((*STATUS, *FAILURE_CODES)))},
+    )
     message: str = Field(description="One sentence for people.")
 
 

@@ -1,24 +1,19 @@
-"""Corrections of the OpenAPI document, so that types made from it are exact: models of Python say less than is sent."""
+"""Corrections of the OpenAPI document, so that types made from it are exact."""
 
 from typing import Any
 
 # Their fields with defaults are read from results of earlier versions, but always sent.
 _COMPLETE = ("MeshReport", "Health")
-# Fields with defaults that are left out of responses in place of the default.
-_LEFT_OUT = {"LabelsDocument": ("parts", "classes"), "RunsDocument": ("parts", "classes")}
 
 
 def make_exact(document: dict[str, Any]) -> None:
-    """Correct which fields are always there, and remove null from the values of parameters."""
+    """Say which fields are always sent, and remove null from the values of parameters."""
     schemas = document["components"]["schemas"]
     for name in _COMPLETE:
         fields = schemas[name]["properties"]
         schemas[name]["required"] = list(fields)
         for field in fields.values():
             field.pop("default", None)
-    for name, left_out in _LEFT_OUT.items():
-        for field in left_out:
-            schemas[name]["properties"][field].pop("default")
     for operations in document["paths"].values():
         for operation in operations.values():
             for parameter in operation.get("parameters", ()):

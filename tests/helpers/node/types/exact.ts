@@ -55,3 +55,4 @@ same<Query["segments"], number | undefined>();
 same<Query["unit"], "micron" | "millimeter" | "centimeter" | "inch" | "foot" | "meter" | undefined>();
 // Only what differs from the defaults need be sent.
 await client.POST("/v1/jobs/{job_id}/rerun", { ...path, body: { max_segments: 32 } });
+same<Extract<Schemas["EditError"]["code"], "part_locked" | "worker_lost" | "no_such_code">, "part_locked" | "worker_lost">();
