@@ -12,6 +12,7 @@ from service.answer.renditions import PARTIAL_CONTENT
 from service.documents import BatchJobs, HierarchyDocument, LabelsDocument, RunsDocument
 from service.edit.label_uploads import UploadedLabels, UploadedRuns
 from service.openapi.exactness import make_exact
+from service.openapi.examples import add_examples
 from service.problems import MEDIA_TYPE, ProblemDocument, documented
 from worker.edits.operation_documents import EditDocument
 
@@ -76,6 +77,7 @@ def _completed(document: dict[str, Any], keys_required: bool) -> dict[str, Any]:
             if path.startswith(_STORE_PATHS):
                 _add_problem(operation, "store_unavailable")
     make_exact(document)
+    add_examples(document)
     if not keys_required:
         document["components"].pop("securitySchemes", None)
     return document
