@@ -12,9 +12,11 @@ import pytest
 from helpers.browser.meshes import small_burr
 from helpers.browser.other_site import OtherSite
 from helpers.browser.visit import NewVisit, Visit
+from helpers.documents import blocks, read
 from helpers.installation import Installation
 from helpers.node.packages import bundled
 
+GUIDE = Path("docs/how-to/frontend.md")
 _HTML = '<!doctype html><html lang="en"><title>App</title><style>cleave-viewer { width: 300px; height: 300px }</style>'
 _NOBODY = "http://127.0.0.1:9/"  # that the story asks in vain
 _LOADED = '<script type="module" src="/app.js"></script>'
@@ -23,7 +25,9 @@ _BYTES = "Uint8Array.from(atob(bytes), (c) => c.charCodeAt(0))"
 
 @pytest.fixture(scope="package")
 def compiled(app: Path) -> Path:
-    """The folder with the programs as the newest TypeScript has compiled them."""
+    """The folder with the programs, and the example of the guide, as the newest TypeScript has compiled them."""
+    (example,) = (block for block in blocks(read(GUIDE), "ts") if "cleave-client" in block)
+    (app / "guide.ts").write_text(example)
     command = ["node", "node_modules/typescript/bin/tsc", "--project", "."]
     done = subprocess.run(command, cwd=app, capture_output=True, text=True, timeout=120, check=False)
     assert done.stdout == ""

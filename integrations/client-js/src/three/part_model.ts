@@ -47,6 +47,8 @@ export class PartModel {
   readonly tree: PartTree;
   /** The number of parts that Cleave chooses. */
   readonly automaticSegments: number;
+  /** Whether the file has no normals, so that materials need `flatShading: true`. */
+  readonly isFlat: boolean;
   readonly #pieces = new Map<Object3D, Piece>();
   readonly #materials: readonly Material[]; // of the labels
   #paint: Paint = () => null;
@@ -66,7 +68,8 @@ export class PartModel {
       const piece = isMesh(object) ? pieceOf(object) : null;
       if (piece !== null) this.#pieces.set(object, piece);
     });
-    this.#materials = materialsOf(gltf.parser.json as GltfJson);
+    this.isFlat = [...this.#pieces.keys()].every((object) => !(object as Mesh).geometry.hasAttribute("normal"));
+    this.#materials = materialsOf(gltf.parser.json as GltfJson, this.isFlat);
     this.segments = Number(segments);
   }
 
@@ -145,9 +148,9 @@ function pieceOf({ geometry, userData, material }: Mesh): Piece | null {
 }
 
 /** Return the materials of the labels, in the colours of the file. */
-function materialsOf({ materials = [] }: GltfJson): Material[] {
+function materialsOf({ materials = [] }: GltfJson, flatShading: boolean): Material[] {
   return materials.map(({ pbrMetallicRoughness }) => {
     const [red = 1, green = 1, blue = 1] = pbrMetallicRoughness?.baseColorFactor ?? [];
-    return new MeshStandardMaterial({ color: new Color().setRGB(red, green, blue), roughness: 0.8, side: DoubleSide });
+    return new MeshStandardMaterial({ color: new Color().setRGB(red, green, blue), roughness: 0.8, side: DoubleSide, flatShading });
   });
 }
