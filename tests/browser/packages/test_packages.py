@@ -99,6 +99,17 @@ def test_parts_by_face_are_the_same_in_files_and_labels(
     assert facts["red"] == facts["ones"] == sum(labels)
     before, after, expected = facts["painted"]
     assert before == after == expected
+    assert facts["refused"] == [
+        "RangeError: The number of",
+        "RangeError: The number of",
+        "RangeError: Faces of an",
+        "RangeError: The geometry has",
+        "TypeError: The file was",
+        "RangeError: Split 1 cuts",
+    ]
+    assert facts["still"]  # what is refused changes nothing
+    assert facts["named"] == [5, 5, "arm"]
+    assert facts["materials"] == [5, 1]  # a colour for each part; the material of the file
     closed(visit, other_site)
 
 

@@ -31,7 +31,29 @@ async function compare(server: string, job: string, mesh: Uint8Array<ArrayBuffer
   colorFaces(plain, parts.at(2), (label) => (label === 0 ? "white" : "red"));
   const green = plain.getAttribute("color");
   const red = parts.labels.filter((_, face) => green.getY(3 * face) === 0).length;
-  return { shown, levels, red, ones: parts.at(2).filter((label) => label === 1).length, painted: painted(model) };
+  const refused = [
+    refusal(() => (model.segments = 0)),
+    refusal(() => (model.segments = tree.maxSegments + 1)),
+    refusal(() => colorFaces(geometry, parts.at(2), () => "red")),
+    refusal(() => colorFaces(plain, parts.at(2).slice(1), () => "red")),
+    refusal(() => new PartModel({ scene: own, parser: { json: {} } })),
+    refusal(() => new PartTree([0, 7])),
+  ];
+  const still = model.parts.length === model.segments;
+  const one = new PartModel(await new GLTFLoader().loadAsync(cleave.modelUrl(job, "model.glb", { segments: 5, name: ["3:arm"] })));
+  const named = [one.tree.maxSegments, one.segments, one.parts[3]?.name];
+  const materials = [one, kept].map(({ parts }) => new Set(parts.flatMap(({ meshes }) => meshes.map(({ material }) => material))).size);
+  return { shown, levels, red, ones: parts.at(2).filter((label) => label === 1).length, painted: painted(model), refused, still, named, materials };
+}
+
+/** Return the name of the error that a call throws, and the beginning of its message. */
+function refusal(call: () => unknown): string {
+  try {
+    call();
+  } catch (error) {
+    return String(error).split(" ", 4).join(" ");
+  }
+  return "none";
 }
 
 const rootOf = (model: PartModel): Object3D => {
