@@ -56,3 +56,7 @@ same<Query["unit"], "micron" | "millimeter" | "centimeter" | "inch" | "foot" | "
 // Only what differs from the defaults need be sent.
 await client.POST("/v1/jobs/{job_id}/rerun", { ...path, body: { max_segments: 32 } });
 same<Extract<Schemas["EditError"]["code"], "part_locked" | "worker_lost" | "no_such_code">, "part_locked" | "worker_lost">();
+
+const { data: edit } = await client.GET("/v1/jobs/{job_id}/edits/{edit_id}", { params: { path: { ...path.params.path, edit_id: "1" } } });
+if (edit?.status === "failed") same<typeof edit.error, Schemas["EditError"]>();
+if (edit?.status === "succeeded") same<typeof edit.revision, Schemas["RevisionDocument"]>();
