@@ -6,7 +6,7 @@ from typing import Literal
 from pydantic import BaseModel, Field
 
 from service.job_documents import Status
-from service.problems import JobError
+from service.problems import JobError, drop_default
 
 
 class BatchJobs(BaseModel):
@@ -50,10 +50,14 @@ class SaidPart(BaseModel):
 
 class _SaidOfLabels(BaseModel):
     parts: list[SaidPart] = Field(
-        default=[], description="Of a revision: what is said about the part of each label. Absent at a level."
+        default=[],
+        description="Of a revision: what is said about the part of each label. Absent at a level.",
+        json_schema_extra=drop_default,
     )
     classes: list[str] = Field(
-        default=[], description="With by=class: the name of each number; 0 is for parts without a class. Else absent."
+        default=[],
+        description="With by=class: the name of each number; 0 is for parts without a class. Else absent.",
+        json_schema_extra=drop_default,
     )
 
 

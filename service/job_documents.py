@@ -228,7 +228,7 @@ def _common_fields(job: Job, attempts: list[Attempt]) -> dict[str, Any]:
         "parameters": job.parameters,
         "revision": 0,
         "notes": [],
-        "links": _links(public_path(f"/v1/jobs/{job.id}")),
+        "links": job_links(public_path(f"/v1/jobs/{job.id}")),
     }
 
 
@@ -261,7 +261,7 @@ def _notes(job: Job, outcome: Succeeded, mesh: MeshSummary) -> list[str]:
     return [note for note in notes if note is not None]
 
 
-def _links(path: str) -> JobLinks:
+def job_links(path: str) -> JobLinks:
     return JobLinks(
         self=path,
         events=f"{path}/events",

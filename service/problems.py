@@ -112,7 +112,8 @@ class JobError(BaseModel):
     message: str = Field(description="One sentence for people.")
 
 
-def _drop_default(schema: JsonDict) -> None:
+def drop_default(schema: JsonDict) -> None:
+    """Correct the schema of a field that is left out in place of its default."""
     del schema["default"]  # generators of types would take the field for one that is always there
 
 
@@ -138,12 +139,12 @@ class ProblemDocument(BaseModel):
     error: JobError | SkipJsonSchema[None] = Field(
         default=None,
         description="With code job_failed: why the job failed. Otherwise absent.",
-        json_schema_extra=_drop_default,
+        json_schema_extra=drop_default,
     )
     revision: RevisionDocument | SkipJsonSchema[None] = Field(
         default=None,
         description="With code revision_conflict or precondition_failed: the newest revision. Otherwise absent.",
-        json_schema_extra=_drop_default,
+        json_schema_extra=drop_default,
     )
 
 

@@ -2,16 +2,18 @@
 
 import logging
 from datetime import datetime
-from typing import Literal
+from typing import Annotated, Any, Literal
 
 from pydantic import BaseModel, Field
+from typing_extensions import TypeAliasType
 
 from service.context import Context
 from service.edit.result_documents import revision_document
 from service.edit.revising import Edit
 from service.guard.callers import Caller
 from service.mount import public_path
-from service.problems import Problem, RevisionDocument
+from service.problems import STATUS, Problem, RevisionDocument
+from worker.jobs.attempts import FAILURE_CODES
 from worker.jobs.job import Job, new_job_id, now
 from worker.jobs.queue.connection import QueueError
 from worker.jobs.queued_edit import QueuedEdit
@@ -24,13 +26,14 @@ log = logging.getLogger("cleave.service")
 class EditError(BaseModel):
     """Why an edit failed."""
 
-    code: str = Field(description="That of a problem, or the cause of a lost run; stable, for programs.")
+    code: str = Field(
+        description="That of a problem, or the cause of a lost run; stable, for programs.",
+        json_schema_extra={"enum": list(dict.fromkeys((*STATUS, *FAILURE_CODES)))},
+    )
     message: str = Field(description="One sentence for people.")
 
 
-class QueuedEditDocument(BaseModel):
-    """An edit that waits in the queue, or has waited there."""
-
+class _Edit(BaseModel):
     id: str
     status: Literal["queued", "succeeded", "failed"]
     accepted_at: datetime
@@ -38,6 +41,33 @@ class QueuedEditDocument(BaseModel):
     revision: RevisionDocument | None = Field(description="The revision that it has made.")
     error: EditError | None = Field(description="Why it has failed; null if it has not.")
     self: str = Field(description="The path of the edit.")
+
+
+class WaitingEdit(_Edit):
+    """An edit that waits in the queue."""
+
+    status: Literal["queued"]
+
+
+class SucceededEdit(_Edit):
+    """An edit that has made a revision."""
+
+    status: Literal["succeeded"]
+    ended_at: datetime
+    revision: RevisionDocument = Field(description="The revision that it has made.")
+
+
+class FailedEdit(_Edit):
+    """An edit that has made no revision."""
+
+    status: Literal["failed"]
+    ended_at: datetime
+    error: EditError = Field(description="Why it has failed.")
+
+
+QueuedEditDocument = TypeAliasType(
+    "QueuedEditDocument", Annotated[WaitingEdit | SucceededEdit | FailedEdit, Field(discriminator="status")]
+)
 
 
 def edit_id_of(edit: Edit) -> str:
@@ -99,20 +129,21 @@ def describe_edit(context: Context, job: Job, edit_id: str) -> QueuedEditDocumen
     if edit is None:
         raise Problem("edit_not_found")
     outcome = context.store.queued_edits.outcome(job.id, edit_id)
-    error = revision = None
-    if outcome is not None and outcome.code is not None:
-        error = EditError(code=outcome.code, message=outcome.message or "")
-    if outcome is not None and outcome.revision is not None:
-        revision = revision_document(context.store.revisions.revision(job.id, outcome.revision))
-    return QueuedEditDocument(
-        id=edit.id,
-        status="queued" if outcome is None else "failed" if error else "succeeded",
-        accepted_at=edit.accepted_at,
-        ended_at=None if outcome is None else outcome.ended_at,
-        revision=revision,
-        error=error,
-        self=public_path(f"/v1/jobs/{job.id}/edits/{edit.id}"),
-    )
+    fields: dict[str, Any] = {
+        "id": edit.id,
+        "accepted_at": edit.accepted_at,
+        "ended_at": None if outcome is None else outcome.ended_at,
+        "revision": None,
+        "error": None,
+        "self": public_path(f"/v1/jobs/{job.id}/edits/{edit.id}"),
+    }
+    if outcome is None:
+        return WaitingEdit(status="queued", **fields)
+    if outcome.revision is None:
+        error = EditError(code=outcome.code or "internal_error", message=outcome.message or "")
+        return FailedEdit(status="failed", **fields | {"error": error})
+    revision = revision_document(context.store.revisions.revision(job.id, outcome.revision))
+    return SucceededEdit(status="succeeded", **fields | {"revision": revision})
 
 
 def edit_has_ended(context: Context, job: Job, edit_id: str) -> bool:

@@ -11,6 +11,8 @@ from segcore.parameters import parameters_schema
 from service.answer.renditions import PARTIAL_CONTENT
 from service.documents import BatchJobs, HierarchyDocument, LabelsDocument, RunsDocument
 from service.edit.label_uploads import UploadedLabels, UploadedRuns
+from service.openapi.exactness import make_exact
+from service.openapi.examples import add_examples
 from service.problems import MEDIA_TYPE, ProblemDocument, documented
 from worker.edits.operation_documents import EditDocument
 
@@ -74,6 +76,8 @@ def _completed(document: dict[str, Any], keys_required: bool) -> dict[str, Any]:
                 _add_problem(operation, "invalid_request")
             if path.startswith(_STORE_PATHS):
                 _add_problem(operation, "store_unavailable")
+    make_exact(document)
+    add_examples(document)
     if not keys_required:
         document["components"].pop("securitySchemes", None)
     return document

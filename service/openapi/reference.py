@@ -5,6 +5,8 @@ from itertools import groupby
 from operator import itemgetter
 from typing import Any, TypeAlias
 
+from service.openapi.curl import command
+from service.openapi.examples import example_text
 from service.openapi.schema_tables import (
     Schema,
     description_of,
@@ -35,6 +37,7 @@ def _lines(document: dict[str, Any]) -> Iterator[str]:
         for _, method, path, operation in operations:
             yield from ("", f"### `{method.upper()} {path}`", "")
             yield from _operation(operation)
+            yield from _block("sh", command(method, path, operation, document["components"]["schemas"]))
     yield from ("", "## Documents", "", "The JSON bodies of requests and responses.")
     yield from _documents(document["components"]["schemas"])
     yield from (
@@ -94,8 +97,7 @@ def _about_parameter(parameter: dict[str, Any]) -> tuple[str, str]:
     described = {"description": parameter.get("description", "")}
     if schema.get("default") is not None:
         described["default"] = schema["default"]
-    # Parameters that need not be sent are null in the code of the service, but no client sends a null.
-    return type_of(schema).removesuffix(" or null"), description_of(described)
+    return type_of(schema), description_of(described)
 
 
 def _content_rows(content: dict[str, Any]) -> list[tuple[str, str]]:
@@ -123,3 +125,9 @@ def _documents(schemas: dict[str, Schema]) -> Iterator[str]:
             yield from union_fields(schema, schemas)
         else:
             yield from fields_of(schema)
+        if "examples" in schema:
+            yield from _block("json", example_text(schema["examples"][0]))
+
+
+def _block(language: str, text: str) -> Iterator[str]:
+    yield from ("", f"```{language}", text, "```")

@@ -10,9 +10,10 @@ from markdown_it.token import Token
 
 _PAGE = """<!doctype html>
 <html lang="en"><head><meta charset="utf-8"><title>Cleave API</title>
-<meta name="viewport" content="width=device-width"><link rel="stylesheet" href="docs.css"></head>
-<body><nav aria-label="Contents"><details open><summary>Contents</summary>{contents}</details></nav>
-<main>{body}</main></body></html>
+<meta name="viewport" content="width=device-width"><link rel="stylesheet" href="docs.css">
+<link rel="icon" href="viewer/icon.svg"></head>
+<body><nav id="contents" aria-label="Contents"><details open><summary>Contents</summary>{contents}</details></nav>
+<main>{body}</main><a class="back" href="#contents">Contents</a></body></html>
 """
 
 

@@ -26,19 +26,26 @@ h2 { margin-top: 3rem; border-bottom: 1px solid var(--line); }
 h3 { margin-top: 2.5rem; overflow-wrap: anywhere; }
 code { font: .9em ui-monospace, monospace; background: var(--code); border-radius: 3px; padding: .1em .25em; }
 code { overflow-wrap: anywhere; }
+pre { background: var(--code); border-radius: 3px; padding: .5rem .75rem; }
+pre code { background: none; padding: 0; white-space: pre-wrap; font-size: .8125rem; }
+.back { display: none; }
 table { border-collapse: collapse; width: 100%; margin: 1rem 0; }
 td, th { text-align: left; vertical-align: top; padding: .3rem .75rem .3rem 0; border-bottom: 1px solid var(--line); }
 td:first-child code { white-space: nowrap; }
 @media (max-width: 50rem) {
   body { display: block; }
-  nav { position: static; height: auto; max-height: 45vh; border: 0; border-bottom: 1px solid var(--line); }
+  nav { position: static; height: auto; max-height: 60vh; border: 0; border-bottom: 1px solid var(--line); }
+  nav li a { padding: .4rem 0; }
+  .back { display: block; position: fixed; right: .75rem; bottom: .75rem; padding: .6rem 1rem; border-radius: 2rem; }
+  .back { background: Canvas; border: 1px solid var(--line); text-decoration: none; }
   main { padding: 1rem; }
-  table, tbody, tr, td { display: block; width: 100%; }
+  table, tbody, tr { display: block; width: 100%; }
   thead { display: none; }
   tr { padding: .4rem 0; border-bottom: 1px solid var(--line); }
-  td { border: 0; padding: .1rem 0; overflow-wrap: anywhere; }
+  td { display: inline; border: 0; padding: 0 .75rem 0 0; overflow-wrap: anywhere; }
   td:first-child { font-weight: 600; }
   td:first-child code { white-space: normal; }
+  td:nth-child(n + 3):last-child { display: block; padding: .1rem 0; }
   td:empty { display: none; }
 }
 """

@@ -59,3 +59,16 @@ def test_isolated_parts_fill_the_view_until_all_are_shown(visit: Visit, job: str
     visit.settle()
     after = visit.viewer("v.view")
     assert abs(after["distance"] - before["distance"]) < 0.01
+
+
+def test_the_api_reference_is_readable_on_a_phone(new_visit: NewVisit) -> None:
+    visit = new_visit(**PHONE)
+    visit.open("docs")
+    assert visit.page.evaluate("document.documentElement.scrollWidth <= innerWidth")
+    visit.page.click("nav >> text=JobDocument")
+    assert -1 < box(visit, "#jobdocument")["top"] < 50
+    example = visit.page.locator("#jobdocument ~ pre").first
+    assert '"status": "succeeded"' in example.inner_text()
+    assert example.evaluate("(pre) => pre.scrollWidth <= pre.clientWidth")
+    visit.page.click("text=Contents >> visible=true >> nth=-1")
+    assert box(visit, "#contents")["top"] == 0

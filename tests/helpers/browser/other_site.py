@@ -1,23 +1,27 @@
 """A page on a server of its own, so that the service is another origin for it."""
 
 import threading
+from collections.abc import Mapping
 from http.server import BaseHTTPRequestHandler, ThreadingHTTPServer
+from types import MappingProxyType
 
 
 class OtherSite:
-    """Answers every request with ``html``, under two origins of which the service of the tests allows one."""
+    """Answers requests with ``html`` or a script, under two origins of which the service of the tests allows one."""
 
     html = ""
+    scripts: Mapping[str, str] = MappingProxyType({})  # by their paths
 
     def __enter__(self) -> "OtherSite":
         site = self
 
         class Handler(BaseHTTPRequestHandler):
             def do_GET(self) -> None:
+                script = site.scripts.get(self.path)
                 self.send_response(200)
-                self.send_header("Content-Type", "text/html; charset=utf-8")
+                self.send_header("Content-Type", f"text/{'html' if script is None else 'javascript'}; charset=utf-8")
                 self.end_headers()
-                self.wfile.write(site.html.encode())
+                self.wfile.write((site.html if script is None else script).encode())
 
             def log_message(self, *_: object) -> None:
                 pass

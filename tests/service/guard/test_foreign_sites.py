@@ -50,3 +50,12 @@ def test_a_slash_at_the_end_of_an_allowed_origin_does_not_matter(settings: Setti
     with serving(settings.model_copy(update={"cors_origins": "https://other.example/"})) as client:
         answer = client.get("/v1/formats", headers={"Origin": "https://other.example"})
         assert answer.headers["Access-Control-Allow-Origin"] == "https://other.example"
+
+
+def test_a_star_allows_pages_of_every_origin(settings: Settings) -> None:
+    foreign = {"Sec-Fetch-Site": "cross-site", "Origin": "https://any.example"}
+    with serving(settings.model_copy(update={"cors_origins": "*"})) as client:
+        answer = client.post("/v1/jobs", content=b"abc", headers=foreign)
+        assert (answer.status_code, answer.headers["Access-Control-Allow-Origin"]) == (202, "*")
+        refusal = client.get("/v1/jobs/" + "0" * 32, headers=foreign)
+        assert (refusal.status_code, refusal.headers["Access-Control-Allow-Origin"]) == (404, "*")

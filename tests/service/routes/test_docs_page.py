@@ -42,7 +42,7 @@ def test_the_reference_loads_nothing_from_other_servers(client: httpx.Client) ->
     assert "default-src 'self'" in page.headers["Content-Security-Policy"]
     assert "<script" not in page.text
     addresses = [address for address in re.findall(r'(?:src|href)="([^"]*)"', page.text) if address[0] != "#"]
-    assert set(addresses) == {"docs.css", "openapi.json"}
+    assert set(addresses) == {"docs.css", "openapi.json", "viewer/icon.svg"}
     for address in addresses:
         assert client.get(address).status_code == 200
 

@@ -61,7 +61,10 @@ const PAUSE_MS = 12; // of work on a model before control returns to the event l
 /** The server did not send the model; the message says why. */
 class NotLoaded extends Error {}
 
-export class CleaveViewer extends HTMLElement implements Declared {
+/** Servers that render pages import the module as well, but have no elements. */
+const Element = globalThis.HTMLElement ?? (class {} as typeof HTMLElement);
+
+export class CleaveViewer extends Element implements Declared {
   static readonly observedAttributes = [
     "src",
     "segments",
@@ -681,4 +684,5 @@ function eventLoopYielder(): () => Promise<void> {
   };
 }
 
-customElements.define("cleave-viewer", CleaveViewer);
+// The package and the file of a service may be on one page; the first one that is loaded defines the element.
+if (globalThis.customElements?.get("cleave-viewer") === undefined) globalThis.customElements?.define("cleave-viewer", CleaveViewer);

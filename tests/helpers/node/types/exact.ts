@@ -23,6 +23,9 @@ type JsonTypes = "application/json" | "application/problem+json";
 const labels = await createClient<paths, JsonTypes>().GET("/v1/jobs/{job_id}/labels", path);
 if (labels.error !== undefined) same<typeof labels.error, Schemas["ProblemDocument"]>();
 else same<typeof labels.data, Schemas["LabelsDocument"]>();
+same<Schemas["LabelsDocument"]["parts"], Schemas["SaidPart"][] | undefined>();
+same<Schemas["MeshReport"]["structure"], Schemas["StructureCounts"] | null>();
+same<Schemas["MeshReport"]["notes"], string[]>();
 
 const { data: job } = await client.GET("/v1/jobs/{job_id}", path);
 if (job === undefined) throw new Error("no job");
@@ -46,3 +49,14 @@ type Submission = paths["/v1/jobs"]["post"]["responses"];
 same<Submission[202]["content"]["application/json"]["status"], "queued" | "running">();
 same<Submission[200]["content"]["application/json"]["status"], "succeeded" | "failed" | "canceled">();
 same<Extract<Submission[200]["content"]["application/json"], { status: "succeeded" }>["labels"], number[] | null>();
+
+type Query = NonNullable<paths["/v1/jobs"]["post"]["parameters"]["query"]>;
+same<Query["segments"], number | undefined>();
+same<Query["unit"], "micron" | "millimeter" | "centimeter" | "inch" | "foot" | "meter" | undefined>();
+// Only what differs from the defaults need be sent.
+await client.POST("/v1/jobs/{job_id}/rerun", { ...path, body: { max_segments: 32 } });
+same<Extract<Schemas["EditError"]["code"], "part_locked" | "worker_lost" | "no_such_code">, "part_locked" | "worker_lost">();
+
+const { data: edit } = await client.GET("/v1/jobs/{job_id}/edits/{edit_id}", { params: { path: { ...path.params.path, edit_id: "1" } } });
+if (edit?.status === "failed") same<typeof edit.error, Schemas["EditError"]>();
+if (edit?.status === "succeeded") same<typeof edit.revision, Schemas["RevisionDocument"]>();

@@ -1,0 +1,1 @@
+"""Tests of the edits of parts on the page, in the browser."""
