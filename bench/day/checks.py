@@ -1,6 +1,7 @@
 """What must be true in the evening, as numbers that must be 0, and how much there was of it."""
 
 import hashlib
+import time
 from collections import Counter
 from collections.abc import Iterator, Sequence
 from datetime import datetime
@@ -19,6 +20,7 @@ from bench.day.site import Site
 _RESULTS = ("", "/labels", "/hierarchy", "/model.glb", "/events", "/result.cleave")
 
 _NOTES = {"deleted", "gone"}  # folders of the present version and of earlier ones
+_REMOVED_WITHIN_S = 20.0  # enough on a busy machine
 
 
 def examine(
@@ -98,8 +100,18 @@ def _strangers(members: Sequence[Member]) -> Iterator[Finding]:
 def _remains(site: Site, members: Sequence[Member], upgraded_at: datetime) -> list[str]:
     """Return the files of deleted jobs, except for the note that they were deleted.
 
-    Versions before the present one left the message of a deleted job in the outbox for ten minutes.
+    A job that ran when it was deleted may have files until its work-horse has ended. Versions before the present one
+    left the message of a deleted job in the outbox for ten minutes.
     """
+    latest = time.monotonic() + _REMOVED_WITHIN_S
+    while True:
+        left = _present_remains(site, members, upgraded_at)
+        if not left or time.monotonic() > latest:
+            return left
+        time.sleep(0.5)
+
+
+def _present_remains(site: Site, members: Sequence[Member], upgraded_at: datetime) -> list[str]:
     deleted = {job.id: job.deleted_at for member in members for job in member.jobs if job.deleted_at}
     left = [path for path in site.data_dir.rglob("*") if path.is_file() and not _NOTES & {*path.parts}]
     return [
