@@ -5,6 +5,7 @@ from numba import njit
 from numpy.typing import NDArray
 
 from segcore.arrays import FloatArray, IntArray, LongArray, pair_keys
+from segcore.threads import in_blocks
 
 _DENSE = 4  # indices for each pair, up to which pairs are counted by their smaller index; set by hand
 _FEW = 32  # pairs of one smaller index up to which they are sorted by insertion; set by hand
@@ -129,3 +130,18 @@ def dot(x: FloatArray, y: FloatArray) -> float:
     for i in range(whole, count):
         a += x[i] * y[i]
     return ((a + b) + (c + d)) + ((e + f) + (g + h))
+
+
+def face_centroids(vertices: FloatArray, faces: IntArray) -> FloatArray:
+    """(F, 3) the mean of the three corners of every face."""
+    centroids = np.empty((len(faces), 3))
+    in_blocks(_write_centroids, len(faces), vertices, faces, centroids)
+    return centroids
+
+
+@njit(cache=True, nogil=True)
+def _write_centroids(start, end, vertices, faces, centroids):  # type: ignore[no-untyped-def]
+    for f in range(start, end):
+        a, b, c = vertices[faces[f, 0]], vertices[faces[f, 1]], vertices[faces[f, 2]]
+        for axis in range(3):
+            centroids[f, axis] = (a[axis] + b[axis] + c[axis]) / 3.0

@@ -11,8 +11,8 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from segcore.array_kernels import face_centroids
 from segcore.arrays import group_sums
-from segcore.centroids import face_centroids
 from segcore.edit.distances import distances_from_border
 from segcore.graphs.surface_graph import Rows, connected_components, rows_of
 

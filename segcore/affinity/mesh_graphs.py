@@ -4,8 +4,8 @@ import numpy as np
 
 from segcore.affinity.affinities import FACE_AFFINITIES, VERTEX_AFFINITIES
 from segcore.affinity.flatness import cohesive_weights, smooth_edges
+from segcore.array_kernels import face_centroids
 from segcore.arrays import BoolArray, IntArray, at_least
-from segcore.centroids import face_centroids
 from segcore.clean.edge_geometry import edge_lengths
 from segcore.clean.surface import Surface
 from segcore.clean.topology import mesh_edges

@@ -15,8 +15,8 @@ from numba import njit
 from numpy.typing import NDArray
 
 from segcore.affinity.eight_boxes import WIDTH, enter_boxes
+from segcore.array_kernels import face_centroids
 from segcore.arrays import FloatArray, IntArray, LongArray
-from segcore.centroids import face_centroids
 from segcore.threads import in_blocks
 
 _LEAF = 4  # faces in a leaf, at most; set by hand

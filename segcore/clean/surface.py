@@ -10,8 +10,8 @@ from dataclasses import dataclass
 import numpy as np
 from scipy.spatial import KDTree
 
+from segcore.array_kernels import face_centroids
 from segcore.arrays import BoolArray, FloatArray, IntArray, group_sums
-from segcore.centroids import face_centroids
 from segcore.clean.orientation import flipped, patch_volumes, reliable_normals
 from segcore.clean.stitching import stitch
 from segcore.clean.topology import DualEdges, consistent_orientation, dual_edges, first_equal_row, sorted_rows

@@ -4,8 +4,8 @@ from dataclasses import replace
 
 import numpy as np
 
+from segcore.array_kernels import face_centroids
 from segcore.arrays import BoolArray, FloatArray, IntArray, group_sums
-from segcore.centroids import face_centroids
 from segcore.clean.surface import Surface
 from segcore.coarsen.components import group_by_nearness, largest, nearest_hosts
 from segcore.errors import InvalidParameters

@@ -4,9 +4,8 @@ from dataclasses import replace
 
 import numpy as np
 
-from segcore.array_kernels import distinct_pairs
+from segcore.array_kernels import distinct_pairs, face_centroids
 from segcore.arrays import at_least, group_sums
-from segcore.centroids import face_centroids
 from segcore.clean.edge_geometry import edge_lengths
 from segcore.clean.refinement import Refinement
 from segcore.clean.surface import Surface

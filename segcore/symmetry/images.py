@@ -5,8 +5,8 @@ from dataclasses import dataclass
 import numpy as np
 from scipy.spatial import KDTree
 
+from segcore.array_kernels import face_centroids
 from segcore.arrays import BoolArray, FloatArray, IntArray, group_sums
-from segcore.centroids import face_centroids
 from segcore.clean.surface import Surface
 from segcore.coarsen.assembly import NEGLIGIBLE
 from segcore.graphs.surface_graph import connected_components

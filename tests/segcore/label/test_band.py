@@ -4,7 +4,7 @@ from hypothesis import strategies as st
 
 from helpers.placements import FACES, GRAPH, SURFACE, Case, neighbours, side_of
 from segcore import shapes
-from segcore.centroids import face_centroids
+from segcore.array_kernels import face_centroids
 from segcore.clean.surface import build_surface
 from segcore.label.band import Band, Geometry, band_network, free_faces, grow_band
 from segcore.label.leaves import Bounds, FaceGraph

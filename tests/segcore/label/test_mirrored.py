@@ -4,7 +4,7 @@ import pytest
 from helpers.creatures import creature, limb_of_face
 from helpers.meshes import rotation
 from helpers.trees import grown_tree
-from segcore.centroids import face_centroids
+from segcore.array_kernels import face_centroids
 from segcore.clean.surface import build_surface
 from segcore.graphs.surface_graph import connected_components
 from segcore.label.mirrored import mirrored_places

@@ -4,7 +4,7 @@ import pytest
 from helpers.creatures import creature
 from helpers.meshes import moved, rotation
 from segcore import shapes
-from segcore.centroids import face_centroids
+from segcore.array_kernels import face_centroids
 from segcore.clean.surface import build_surface
 from segcore.symmetry.images import image_under, mirror_image
 from segcore.symmetry.reflection import Reflection
