@@ -13,6 +13,7 @@ Public are the names of this package:
 - ``read_mesh``, ``Mesh``: the input
 - ``segment``, ``SegmentationParameters``, ``parameters_schema``, ``warm_up``: the method and its choices
 - ``Partition``, ``Part``, ``partition_of``: any labels of the faces, with names, colours and classes of the parts
+- ``parts``, ``PartList``, ``MeasuredPart``: what can be measured of the parts, and which are copies of each other
 - ``Hierarchy``, ``Fineness``, ``keep_splits``: the result at any number of segments
 - ``Guide``: corrections by hand, the part around marked faces and borders between parts
 - ``mesh_report``, ``MeshReport``, ``build_surface``, ``Surface``: the cleaned mesh and the defects that were found
@@ -20,10 +21,10 @@ Public are the names of this package:
   ``LimitExceeded``: the errors
 
 and the modules that define them, ``segcore.io`` (readers and writers), ``segcore.edit.operations`` and
-``segcore.edit.tools``, ``segcore.appearance``, ``segcore.structure``, ``segcore.progress`` and ``segcore.shapes``
-(procedural meshes). The packages of the stages (``clean``, ``affinity``, ``coarsen``, ``symmetry``, ``cut``,
-``label``), the rest of ``edit``, and ``solvers``, ``graphs`` and ``learned`` are internal, except for ``Surface``,
-``build_surface`` and ``Guide``.
+``segcore.edit.tools``, ``segcore.part_list``, ``segcore.appearance``, ``segcore.structure``, ``segcore.progress`` and
+``segcore.shapes`` (procedural meshes). The packages of the stages (``clean``, ``affinity``, ``coarsen``, ``symmetry``,
+``cut``, ``label``), the rest of ``edit``, and ``solvers``, ``graphs`` and ``learned`` are internal, except for
+``Surface``, ``build_surface`` and ``Guide``.
 """
 
 from typing import TYPE_CHECKING
@@ -42,6 +43,7 @@ if TYPE_CHECKING:
     from segcore.mesh import Mesh
     from segcore.method import segment
     from segcore.parameters import SegmentationParameters, parameters_schema
+    from segcore.part_list.listing import MeasuredPart, PartList, parts
     from segcore.partition import Part, Partition, partition_of
     from segcore.report import MeshReport, mesh_report
 
@@ -63,6 +65,7 @@ _MODULES = {
     "mesh": ("Mesh",),
     "method": ("segment",),
     "parameters": ("SegmentationParameters", "parameters_schema"),
+    "part_list.listing": ("MeasuredPart", "PartList", "parts"),
     "partition": ("Part", "Partition", "partition_of"),
     "report": ("MeshReport", "mesh_report"),
     "kernels.tasks": ("warm_up",),
@@ -77,9 +80,11 @@ __all__ = [
     "InvalidMesh",
     "InvalidParameters",
     "LimitExceeded",
+    "MeasuredPart",
     "Mesh",
     "MeshReport",
     "Part",
+    "PartList",
     "PartLocked",
     "Partition",
     "SegmentationParameters",
@@ -90,6 +95,7 @@ __all__ = [
     "mesh_report",
     "parameters_schema",
     "partition_of",
+    "parts",
     "read_mesh",
     "segment",
     "warm_up",

@@ -34,7 +34,7 @@ if TYPE_CHECKING:
     from segcore.io.names import DEFAULT_SEGMENT_NAME, SegmentNames
     from segcore.io.obj.materials_writer import write_mtl, write_obj_archive
     from segcore.io.obj.writer import write_obj
-    from segcore.io.palette import SegmentColors, segment_color_names
+    from segcore.io.palette import SegmentColors, related_colors, segment_color_names
     from segcore.io.parts.writer import write_parts
     from segcore.io.picture import draw, write_png
     from segcore.io.ply.writer import write_ply
@@ -97,6 +97,7 @@ _MODULES = {
     "obj.writer": ("write_obj",),
     "palette": (
         "SegmentColors",
+        "related_colors",
         "segment_color_names",
     ),
     "parts.writer": ("write_parts",),
@@ -159,6 +160,7 @@ __all__ = [
     "read_mesh",
     "read_result",
     "referenced_files",
+    "related_colors",
     "runs_document",
     "runs_of",
     "segment_color_names",

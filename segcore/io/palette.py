@@ -16,6 +16,7 @@ _FIRST = ("56b4e9", "e69f00", "009e73", "cc79a7", "f0e442", "0072b2", "d55e00")
 # The next three are set by hand.
 _DISTINCT = 256  # colours before the sequence repeats
 _STEPS = 17  # candidates per channel, every 16th value of a byte
+_SHADES = 6  # related colours before they repeat; more could hardly be told apart. Set by hand
 _LIGHTNESS = (0.45, 0.93)  # of the candidates in OKLab: visible on black and on white
 
 # Linear RGB as seen with full colour vision, protanopia, deuteranopia and tritanopia.
@@ -70,6 +71,31 @@ def segment_color_names(n: int) -> list[str]:
     return [f"#{bytes(color).hex()}" for color in color_bytes(n)]
 
 
+def related_colors(color: str, n: int) -> list[str]:
+    """Return ``n`` colours of one hue: the given one, ``#rrggbb``, then lighter and darker ones.
+
+    The first six are as far apart in lightness as is possible, so that they differ with any kind of colour vision; then
+    they repeat.
+    """
+    lab = _to_oklab(linear_rgb(np.array([list(bytes.fromhex(color.removeprefix("#")))]) / 255))[0]
+    steps = np.linspace(*_LIGHTNESS, 2 * _DISTINCT)
+    chosen = [float(lab[0])]
+    while len(chosen) < min(n, _SHADES):
+        gap = np.abs(steps[:, None] - np.array(chosen)).min(axis=1)
+        chosen.append(float(steps[np.argmax(gap)]))
+    shades = [color.lower(), *(_shade(lab, lightness) for lightness in chosen[1:])]
+    return [shades[i % _SHADES] for i in range(n)]
+
+
+def _shade(lab: FloatArray, lightness: float) -> str:
+    """The most colourful colour with a lightness and the hue of another one, and at most as colourful as that."""
+    chroma = np.linspace(1.0, 0.0, _DISTINCT)
+    tried = np.column_stack([np.full(_DISTINCT, lightness), *(chroma[:, None] * lab[1:]).T])
+    light = (tried @ np.linalg.inv(_LMS_TO_OKLAB).T) ** 3 @ np.linalg.inv(_RGB_TO_LMS).T
+    is_possible = ((light >= 0.0) & (light <= 1.0)).all(axis=1)
+    return f"#{bytes(np.round(255 * srgb(light[np.argmax(is_possible)])).astype(np.uint8)).hex()}"
+
+
 def linear_rgb(srgb: FloatArray) -> FloatArray:
     """Linear light from sRGB, both in 0..1 (IEC 61966-2-1), as glTF stores its colour factors."""
     return np.where(srgb <= 0.04045, srgb / 12.92, ((srgb + 0.055) / 1.055) ** 2.4)
@@ -107,6 +133,11 @@ def _candidates() -> FloatArray:
 def _appearance(srgb: FloatArray) -> FloatArray:
     """(4, N, 3) OKLab coordinates of the colours for each kind of colour vision."""
     light = np.clip(np.einsum("vij,nj->vni", _VISIONS, linear_rgb(srgb)), 0, 1)
-    lms = np.cbrt(np.einsum("vni,ji->vnj", light, _RGB_TO_LMS))
-    oklab: FloatArray = np.einsum("vni,ji->vnj", lms, _LMS_TO_OKLAB)
+    return _to_oklab(light)
+
+
+def _to_oklab(light: FloatArray) -> FloatArray:
+    """(..., 3) OKLab coordinates of linear light (..., 3)."""
+    lms = np.cbrt(np.einsum("...i,ji->...j", light, _RGB_TO_LMS))
+    oklab: FloatArray = np.einsum("...i,ji->...j", lms, _LMS_TO_OKLAB)
     return oklab

@@ -1,30 +1,47 @@
-"""`cleave inspect`: report what a mesh file contains."""
+"""`cleave inspect`: report what a mesh file contains, or list the parts of a segmentation."""
 
 import argparse
 import json
 from dataclasses import asdict
 
+from segcore.errors import InvalidParameters
+from segcore.levels import Fineness
 from segcore.report import MeshReport, mesh_report
+from service.commands.arguments import add_level
 from service.commands.console import say
 from service.commands.inputs import add_mesh, input_name, read_input
+from service.commands.part_listing import print_parts
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
-    parser.description = "Report what a mesh file contains: components, borders, and defects that segmentation repairs."
+    parser.description = (
+        "Report what a mesh file contains: components, borders, and defects that segmentation repairs. With --parts, "
+        "list the parts of a .cleave file, or of a mesh, which is segmented first."
+    )
     add_mesh(parser)
     parser.add_argument("--json", action="store_true", help="print the report as JSON")
+    parser.add_argument(
+        "--parts",
+        action="store_true",
+        help="list the parts instead: area, volume, box, neighbours, and which are copies of each other",
+    )
+    add_level(parser, "with --parts: the edited parts, else the automatic number")
 
 
 def run(choices: argparse.Namespace) -> None:
-    """Print the report of a mesh file.
+    """Print the report of a mesh file, or its parts.
 
     Raises
     ------
     CleaveError
-        If the file cannot be used.
+        If the file cannot be used, or a level is given without ``--parts``.
     OSError
         If the file cannot be read.
     """
+    if choices.parts:
+        return print_parts(choices)
+    if not Fineness(choices.segments, choices.granularity).is_automatic:
+        raise InvalidParameters("A level has parts: add --parts.")
     report = mesh_report(read_input(choices))
     if choices.json:
         say(json.dumps(asdict(report), indent=2, allow_nan=False))

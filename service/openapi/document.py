@@ -8,6 +8,7 @@ from pydantic import BaseModel
 from pydantic.json_schema import models_json_schema
 
 from segcore.parameters import parameters_schema
+from service.answer.part_list import PartsDocument
 from service.answer.renditions import PARTIAL_CONTENT
 from service.documents import BatchJobs, HierarchyDocument, LabelsDocument, RunsDocument
 from service.edit.label_uploads import UploadedLabels, UploadedRuns
@@ -22,6 +23,7 @@ _HIDDEN_MODELS: tuple[type[BaseModel], ...] = (
     LabelsDocument,
     RunsDocument,
     HierarchyDocument,
+    PartsDocument,
     BatchJobs,
     EditDocument,
     UploadedLabels,

@@ -1,4 +1,4 @@
-"""Labels and the hierarchy, read from the stored result of a job without recomputation."""
+"""Labels, the hierarchy and the list of parts, read from the stored result of a job without recomputation."""
 
 from typing import Annotated, Any
 
@@ -6,7 +6,9 @@ from fastapi import APIRouter, Header, Query, Request
 from starlette.responses import Response
 
 from segcore.levels import Level
+from segcore.part_list.repeats import LARGEST_TOLERANCE, TOLERANCE
 from service.answer.label_formats import LABELS, LabelsFormat, LabelsOf, hierarchy_json, labels_rendition
+from service.answer.part_list import PartsDocument, parts_rendition
 from service.answer.renditions import LEVEL_PROBLEMS, Rendition, answer_rendition, rendition_responses
 from service.answer.result_request import ResultRequestOf
 from service.answer.revision import REVISION_PROBLEMS, RevisionOf, chosen_cut
@@ -83,3 +85,30 @@ def get_hierarchy(
             may_change=cut.is_newest,
         ),
     )
+
+
+@router.get(
+    "/parts",
+    response_class=Response,
+    responses=rendition_responses(
+        {_JSON: {"schema": ref(PartsDocument)}}, "The list of parts.", *LEVEL_PROBLEMS, *REVISION_PROBLEMS
+    ),
+)
+def get_parts(
+    wanted: ResultRequestOf,
+    tolerance: Annotated[
+        float,
+        Query(
+            gt=0,
+            le=LARGEST_TOLERANCE,
+            description="The largest deviation of congruent parts from each other, in diagonals of the box of the "
+            "first one.",
+        ),
+    ] = TOLERANCE,
+) -> Response:
+    """What can be measured of every part, what it borders on, and which parts are copies of each other.
+
+    Coordinates and lengths are those of the mesh. Copies are found whatever their place, direction and meshing, and
+    whether they are mirrored.
+    """
+    return answer_rendition(wanted.request, parts_rendition(wanted.context.results, wanted.cut(), tolerance))

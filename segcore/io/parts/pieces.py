@@ -50,7 +50,12 @@ def segment_parts(mesh: Mesh, hierarchy: Hierarchy, segments: int | None = None)
     InvalidParameters
         If ``segments`` is not in 1..max_segments.
     """
-    yield from _parts(mesh.vertices, mesh.faces, segment_slices(hierarchy, segments))
+    yield from open_groups(mesh, segment_slices(hierarchy, segments))
+
+
+def open_groups(mesh: Mesh, slices: Slices) -> Iterator[Part]:
+    """Yield each group of input faces, in input order, degenerate ones too."""
+    yield from _parts(mesh.vertices, mesh.faces, slices)
 
 
 def closed_parts(mesh: Mesh, hierarchy: Hierarchy, segments: int | None = None) -> Iterator[Part]:
@@ -64,17 +69,31 @@ def closed_parts(mesh: Mesh, hierarchy: Hierarchy, segments: int | None = None) 
     InvalidParameters
         If ``segments`` is not in 1..max_segments.
     """
-    labels = hierarchy.labels(segments)
-    count = len(hierarchy.segment_nodes(segments))
+    labels, count = hierarchy.labels(segments), len(hierarchy.segment_nodes(segments))
     surface = build_surface(mesh)
-    vertices = _positions(mesh, surface)
-    label_of_face = np.zeros(len(surface.faces), dtype=np.int32)
-    label_of_face[surface.face_of_input[::-1]] = labels[::-1]  # if they differ, that of the first input face
-    is_inside = InsideTest(vertices, surface.faces)
-    a, b, c = surface.faces.T
+    yield from closed_groups(positions(mesh, surface), surface.faces, labels_on(surface, labels), count)
+
+
+def closed_groups(vertices: FloatArray, faces: IntArray, labels: IntArray, count: int) -> Iterator[Part]:
+    """Yield the faces of every label 0..count - 1 closed by caps, as :func:`closed_parts` does for segments.
+
+    Parameters
+    ----------
+    vertices, faces : those of a surface; the vertices at their positions in the file.
+    labels : (F,) of the faces of the surface.
+    """
+    is_inside = InsideTest(vertices, faces)
+    a, b, c = faces.T
     distinct = (a != b) & (b != c) & (c != a)  # all, unless all faces of the mesh are degenerate
-    for part in _parts(vertices, surface.faces[distinct], group(label_of_face[distinct], count)):
+    for part in _parts(vertices, faces[distinct], group(labels[distinct], count)):
         yield _solid(part, is_inside)
+
+
+def labels_on(surface: Surface, labels: IntArray) -> IntArray:
+    """(F,) the labels of the faces of a surface: that of the first input face that each represents."""
+    label_of_face = np.zeros(len(surface.faces), dtype=np.int32)
+    label_of_face[surface.face_of_input[::-1]] = labels[::-1]
+    return label_of_face
 
 
 def _solid(part: Part, is_inside: Inside) -> Part:
@@ -84,7 +103,7 @@ def _solid(part: Part, is_inside: Inside) -> Part:
     return Part(part.label, vertices, outward(vertices, faces, is_cap), is_manifold(faces))
 
 
-def _positions(mesh: Mesh, surface: Surface) -> FloatArray:
+def positions(mesh: Mesh, surface: Surface) -> FloatArray:
     """(V, 3) the positions of the vertices of the surface in the file, without rounding errors."""
     low, high = mesh.bounds
     positions = surface.vertices * surface.unit + (0.5 * low + 0.5 * high)  # the surface is centred on the box
