@@ -1,8 +1,9 @@
 """The colours of segments."""
 
 import numpy as np
+import pytest
 
-from segcore.io.palette import linear_rgb, segment_colors
+from segcore.io.palette import linear_rgb, related_colors, segment_colors
 
 # Simulated colour vision deficiencies: Vienot, Brettel and Mollon 1999, another model than that of the palette.
 _TO_LMS = np.array([[17.8824, 43.5161, 4.11935], [3.45565, 27.1554, 3.86714], [0.0299566, 0.184309, 1.46709]])
@@ -43,3 +44,17 @@ def test_colours_are_farther_apart_than_random_ones() -> None:
 def test_linear_light_is_that_of_the_standard() -> None:
     assert linear_rgb(np.array([0.0, 1.0])).tolist() == [0.0, 1.0]
     np.testing.assert_allclose(linear_rgb(np.array([0.04, 0.5])), [0.04 / 12.92, 0.21404114], rtol=1e-7)
+
+
+@pytest.mark.parametrize("color", ["#56b4e9", "#f0e442", "#d55e00", "#808080", "#000000"])
+def test_related_colours_have_the_hue_of_the_first_one_and_differ_in_lightness(color: str) -> None:
+    related = related_colors(color, 9)
+    assert related[0] == color
+    assert related[6:] == related[:3]
+    light = linear_rgb(np.array([list(bytes.fromhex(name[1:])) for name in related[:6]]) / 255)
+    for blindness in (_TO_LMS, _DEUTERANOPE @ _TO_LMS, _PROTANOPE @ _TO_LMS):
+        seen = np.cbrt(np.clip(light @ (np.linalg.inv(_TO_LMS) @ blindness).T, 0, 1))
+        assert closest(seen[:4]) > 0.08
+    channels = np.array([list(bytes.fromhex(name[1:])) for name in related])
+    first = np.argsort(channels[0], kind="stable")
+    assert (np.diff(channels[:, first], axis=1) >= -8).all()  # the order of red, green and blue, which is the hue

@@ -8,6 +8,10 @@ import pytest
 
 import segcore
 from helpers.files.samples import TWO_SQUARES
+from helpers.meshes import refined
+from segcore import shapes
+from segcore.io import read_result, write_mesh
+from segcore.part_list.document import part_list_document
 from segcore.report import mesh_report
 from service.commands.main import main
 
@@ -79,3 +83,50 @@ def test_the_size_has_its_unit_and_the_axis_that_points_up(ball: Path, capsys: p
     with pytest.raises(SystemExit, match="2"):
         main(["inspect", str(ball / "ball.off"), "--unit", "milimeter"])
     assert "as in 'millimeter'" in capsys.readouterr().err
+
+
+@pytest.fixture(scope="module")
+def table(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """A mesh of a top and four legs that stand below it, table.ply, and its result, table.cleave."""
+    folder = tmp_path_factory.mktemp("table")
+    legs = [shapes.box((0.3, 0.3, 2.0), (x, y, -1.2)) for x in (-1.7, 1.7) for y in (-1.2, 1.2)]
+    mesh = refined(shapes.joined(shapes.box((4.0, 3.0, 0.2)), *legs).mesh, 2)
+    write_mesh(folder / "table.ply", mesh)
+    assert main(["segment", str(folder / "table.ply"), "--result", str(folder / "table.cleave")]) == 0
+    return folder
+
+
+@pytest.mark.parametrize("name", ["table.ply", "table.cleave"])
+def test_the_list_of_parts_names_the_copies(table: Path, name: str, capsys: pytest.CaptureFixture[str]) -> None:
+    assert main(["inspect", "--parts", str(table / name), "--segments", "5"]) == 0
+    lines = capsys.readouterr().out.splitlines()
+    assert lines[0] == f"{name}: 5 parts"
+    assert lines[1] == "  part 0: 192 faces, area 26.8, volume 2.4, box 4 x 3 x 0.2"
+    assert lines[2] == "  part 1: 192 faces, area 2.58, volume 0.18, box 2 x 0.3 x 0.3"
+    assert lines[6].startswith("equal: 4 parts, 1, 2, 3, 4; they deviate by up to ")
+
+
+def test_the_list_of_parts_as_json_is_that_of_the_server(table: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    assert main(["inspect", "--parts", "--json", str(table / "table.cleave"), "--segments", "2"]) == 0
+    document = json.loads(capsys.readouterr().out)
+    result = read_result(table / "table.cleave")
+    assert document == part_list_document(segcore.parts(result.mesh, result.hierarchy.labels(2)))
+
+
+def test_edited_parts_are_listed_with_their_names(
+    table: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    operations = [{"op": "name", "part": part, "name": "leg"} for part in (1, 2, 3, 4)]
+    edits, edited = tmp_path / "edits.json", tmp_path / "edited.cleave"
+    edits.write_text(json.dumps({"level": {"segments": 5}, "operations": operations}))
+    assert main(["edit", str(table / "table.cleave"), "--operations", str(edits), "-o", str(edited)]) == 0
+    capsys.readouterr()
+    assert main(["inspect", "--parts", str(edited)]) == 0
+    assert capsys.readouterr().out.count("'leg'") == 4
+
+
+def test_a_level_without_parts_is_refused(ball: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    assert main(["inspect", str(ball / "ball.off"), "--segments", "4"]) == 2
+    assert "add --parts" in capsys.readouterr().err
+    assert main(["inspect", "--parts", str(ball / "ball.cleave"), "--segments", "4000"]) == 2
+    assert "from 1 to" in capsys.readouterr().err

@@ -1,12 +1,15 @@
-"""Labels and the hierarchy of a job."""
+"""Labels, the hierarchy and the list of parts of a job."""
 
 from collections.abc import Callable
 
 import httpx
 import pytest
 
+import segcore
 from helpers.api import FACES, UNKNOWN, problem, submit
 from segcore.io.result import read_result
+from segcore.part_list.document import part_list_document
+from service.answer.part_list import PartsDocument
 from worker.jobs.store.store import JobStore
 
 
@@ -58,7 +61,43 @@ def test_the_curve_has_a_point_for_every_cut(client: httpx.Client, finished_job:
     assert [point["step"] for point in document["curve"]] == document["steps"]
 
 
-@pytest.mark.parametrize("result", ["labels", "hierarchy", "model.glb"])
+def test_the_list_of_parts_is_that_of_the_labels_at_every_level(
+    client: httpx.Client, store: JobStore, finished_job: Callable[..., str]
+) -> None:
+    path = finished_job()
+    with store.results.open(path.rpartition("/")[2]) as file:
+        result = read_result(file)
+    for query, segments in (({"segments": 3}, 3), ({"granularity": 0}, 1), ({"splits": "0"}, 2)):
+        document = client.get(f"{path}/parts", params=query).json()
+        listed = segcore.parts(result.mesh, result.hierarchy.labels(segments))
+        assert document == part_list_document(listed)
+        PartsDocument.model_validate(document, strict=True, extra="forbid")
+    assert sum(part["faces"] for part in document["parts"]) == FACES
+
+
+def test_the_list_of_parts_of_a_revision_has_its_names_and_colours(
+    client: httpx.Client, finished_job: Callable[..., str]
+) -> None:
+    path = finished_job()
+    operations = [{"op": "name", "part": 1, "name": "nose"}, {"op": "color", "part": 1, "color": "#112233"}]
+    edit = {"base": 0, "level": {"segments": 2}, "operations": operations}
+    assert client.post(f"{path}/edits", json=edit).status_code == 201
+    for revision in ("1", "latest"):
+        answer = client.get(f"{path}/parts", params={"revision": revision})
+        assert [(part["name"], part["color"]) for part in answer.json()["parts"]][1] == ("nose", "#112233")
+        assert ("immutable" in answer.headers["Cache-Control"]) == (revision == "1")
+    assert client.get(f"{path}/parts", params={"segments": 2}).json()["parts"][1]["name"] == ""
+
+
+@pytest.mark.parametrize("tolerance", ["0", "-1", "0.2", "nan", "x"])
+def test_a_tolerance_outside_its_range_is_refused(
+    client: httpx.Client, finished_job: Callable[..., str], tolerance: str
+) -> None:
+    path = finished_job()
+    problem(client.get(f"{path}/parts", params={"tolerance": tolerance}), 422, "invalid_request")
+
+
+@pytest.mark.parametrize("result", ["labels", "hierarchy", "parts", "model.glb"])
 def test_results_of_a_job_without_one_are_a_conflict(
     client: httpx.Client, finished_job: Callable[..., str], result: str
 ) -> None:
