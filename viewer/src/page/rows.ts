@@ -13,12 +13,14 @@ export function partCells(viewer: CleaveViewer, session: Session, id: number): (
   const { tree, work } = session;
   const isHidden = work.hidden.has(id);
   const part = tree.node(id).area / tree.totalArea;
+  const copies = session.copiesOf(id).length;
   const swatch = h("span", { className: "swatch" });
   swatch.style.background = viewer.colorOf(id);
   return [
     swatch,
     h("span", { className: "name" }, session.nameOf(id)),
     work.names.has(id) ? h("span", { className: "number", title: "Number of the part" }, String(session.numberOf(id))) : null,
+    copies > 0 ? h("span", { className: "flag", title: `${copies} equal parts` }, `×${copies}`) : null,
     part < TINY ? h("span", { className: "flag", title: "Less than a thousandth of the area" }, "tiny") : null,
     isHidden ? h("span", { className: "flag" }, "hidden") : null,
     h("span", { className: "share" }, share(part)),

@@ -4,6 +4,12 @@ import { byId } from "./dom";
 import type { Session } from "./session";
 import { count, figure, plural, share } from "./text";
 
+/** Return the name that all selected parts have; empty if they have several. */
+export function sharedName(session: Session): string {
+  const names = new Set(session.modes.selected.map((id) => session.nameOf(id)));
+  return names.size === 1 ? [...names][0]! : "";
+}
+
 /** Show the facts about the selected parts. */
 export function describeSelection(session: Session): void {
   const { tree, work, modes } = session;
@@ -14,10 +20,10 @@ export function describeSelection(session: Session): void {
   const one = nodes.length === 1 ? nodes[0]! : null;
   const sum = (of: (node: (typeof nodes)[number]) => number) => nodes.reduce((total, node) => total + of(node), 0);
   const name = byId<HTMLInputElement>("part-name");
-  name.hidden = one === null;
+  name.placeholder = one === null ? `Name all ${selected.length}` : "";
   byId("many-parts").hidden = one !== null;
   byId("many-parts").textContent = `${plural(selected.length, "part")} selected`;
-  if (one !== null && document.activeElement !== name) name.value = session.nameOf(one.id);
+  if (document.activeElement !== name) name.value = sharedName(session);
   byId("detail-area").textContent = share(sum((node) => node.area) / tree.totalArea);
   byId("detail-faces").textContent = count(sum((node) => node.faces));
   byId("detail-made").textContent = one === null || one.parent < 0 ? "–" : figure(tree.node(one.parent).cutValue);

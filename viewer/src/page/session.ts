@@ -57,6 +57,8 @@ export class Session {
   #modes: Modes;
   readonly #history = new History<Work>();
   #slidingFrom: Work | null = null;
+  /** For the parts of a cut that are equal to others, all of these. */
+  #copies: { readonly cut: Cut; readonly byNode: ReadonlyMap<number, readonly number[]> } | null = null;
   #numbers: { cut: Cut; byNode: ReadonlyMap<number, number> } | null = null;
 
   /** ``onChange`` is called after each change, with a sentence for screen readers if the control itself says nothing. */
@@ -104,6 +106,25 @@ export class Session {
   /** Return the numbers of parts; groups are left out. */
   numbersOf(ids: readonly number[]): number[] {
     return ids.map((id) => this.numberOf(id)).filter((part) => part !== null);
+  }
+
+  /** Keep which parts of the present cut are equal, as groups of their numbers. */
+  showCopies(groups: readonly (readonly number[])[]): void {
+    const { parts } = this;
+    const groupsOfNodes = groups.map((numbers) => numbers.map((number) => parts[number]!));
+    const byNode = new Map(groupsOfNodes.flatMap((ids) => ids.map((id) => [id, ids] as const)));
+    this.#copies = { cut: this.#work.cut, byNode };
+    this.#onChange();
+  }
+
+  /** Return the parts that are equal to a part, with itself; none if there are none or they are not known. */
+  copiesOf(id: number): readonly number[] {
+    return this.knowsCopies ? (this.#copies!.byNode.get(id) ?? []) : [];
+  }
+
+  /** Whether showCopies() was called for the present cut. */
+  get knowsCopies(): boolean {
+    return this.#copies?.cut === this.#work.cut;
   }
 
   /** Return the name of a node: the given one, or that of the files. */
@@ -216,10 +237,13 @@ export class Session {
     if (this.#work.hidden.size > 0) this.#hide(new Set());
   }
 
-  rename(id: number, name: string): void {
+  /** Give some parts one name; without one they get their usual names back. */
+  rename(ids: readonly number[], name: string): void {
     const names = new Map(this.#work.names);
-    if (name.trim() === "" || name.trim() === this.usualName(id)) names.delete(id);
-    else names.set(id, name.trim());
+    for (const id of ids) {
+      if (name.trim() === "" || name.trim() === this.usualName(id)) names.delete(id);
+      else names.set(id, name.trim());
+    }
     this.#change(() => (this.#work = { ...this.#work, names }));
   }
 

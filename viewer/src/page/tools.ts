@@ -3,6 +3,7 @@
 import type { CleaveViewer, Look, View } from "../component/element";
 import { announce, byId, openDialog, toast } from "./dom";
 import { toggleHidden } from "./rows";
+import { sharedName } from "./selection";
 import { LOOKS, type Modes, type Session } from "./session";
 
 type Toggle = "wireframe" | "concavity" | "lines";
@@ -127,9 +128,8 @@ export class Tools {
     const name = byId<HTMLInputElement>("part-name");
     const rename = () =>
       this.#with((now) => {
-        const [id] = now.modes.selected;
-        if (id === undefined || name.value === now.nameOf(id)) return;
-        now.rename(id, name.value);
+        const { selected } = now.modes;
+        if (selected.length > 0 && name.value !== sharedName(now)) now.rename(selected, name.value);
       });
     name.addEventListener("change", rename);
     name.addEventListener("keydown", (event) => {

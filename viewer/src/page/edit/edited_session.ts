@@ -4,7 +4,7 @@ import type { PartTree } from "../../component/element";
 import { announce } from "../dom";
 import { Session, type Modes } from "../session";
 import type { Editor, Parts } from "./editor";
-import type { Part } from "./revisions";
+import type { Operation, Part } from "./revisions";
 
 export class EditedSession extends Session {
   /** The session of the automatic result. */
@@ -55,12 +55,15 @@ export class EditedSession extends Session {
     void this.#editor.redo();
   }
 
-  override rename(id: number, name: string): void {
-    const part = this.numberOf(id);
-    if (part === null) return;
+  override rename(ids: readonly number[], name: string): void {
     const text = name.trim();
-    const isNone = text === "" || text === this.usualName(id);
-    void this.#editor.edit([isNone ? { op: "delete_name", part } : { op: "name", part, name: text }], isNone ? "Name deleted" : `Named ${text}`);
+    const operations = ids.flatMap((id): Operation[] => {
+      const part = this.numberOf(id);
+      if (part === null) return [];
+      return [text === "" || text === this.usualName(id) ? { op: "delete_name", part } : { op: "name", part, name: text }];
+    });
+    const isNone = operations.every(({ op }) => op === "delete_name");
+    if (operations.length > 0) void this.#editor.edit(operations, isNone ? "Name deleted" : `Named ${text}`);
   }
 
   override mergeBelow(): void {

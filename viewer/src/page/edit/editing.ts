@@ -3,6 +3,7 @@
 import type { Job } from "../api";
 import type { Session } from "../session";
 import { Batch, type BatchModel } from "./batch";
+import { Copies } from "./copies";
 import { Described } from "./described";
 import { EditedSession } from "./edited_session";
 import { Editor, type EditorHost } from "./editor";
@@ -15,6 +16,7 @@ export class Editing {
   readonly #editor: Editor;
   readonly #toolbox: Toolbox;
   readonly #described: Described;
+  readonly #copies: Copies;
   readonly #card: RevisionCard;
   readonly #batch: Batch;
 
@@ -25,6 +27,7 @@ export class Editing {
     this.#editor = new Editor(host);
     this.#toolbox = new Toolbox(host.viewer, this.#editor, session);
     this.#described = new Described(host.viewer, this.#editor, session);
+    this.#copies = new Copies(host, this.#editor);
     this.#card = new RevisionCard(this.#editor, () => this.#toolbox.reset());
     this.#batch = new Batch(onOpen);
     new LabelsDialog(() => host.job(), this.#editor, () => this.#described.update());
@@ -46,6 +49,7 @@ export class Editing {
   /** Update the controls after the session has changed. */
   update(): void {
     this.#described.update();
+    this.#copies.update();
     this.#toolbox.update();
   }
 
