@@ -1,0 +1,1 @@
+"""The list of parts: its time, and whether copies are found."""
