@@ -33,7 +33,7 @@ _NEAR = 3.0  # times the limit: larger deviations of some points are not refined
 _CONVERGED = 1e-10  # step, in sizes
 _TURN = 0.005  # deviation in sizes that weighs as much as half a turn, so that parts are turned as little as possible
 _DIGITS = 6  # of deviations in sizes: of equal fits the one that turns less is taken
-_ABOUT, _ALL = 180, 1000  # rotations about an axis, by 2 degrees, and in all directions, by about 20
+_ABOUT, _ALL = 120, 1000  # rotations about an axis, by 3 degrees, and in all directions, by about 20
 _IDENTITY = np.eye(3)
 
 
@@ -119,7 +119,9 @@ def _candidates(first: PartShape, other: PartShape, is_mirrored: bool) -> Iterat
         yield spread_rotations(_ALL) * (-1.0 if is_mirrored else 1.0)
     elif is_low_free or is_high_free:
         axis = first.axes[2 if is_low_free else 0]
-        start = _of_kind(np.array(principal), is_mirrored)
+        starts = _of_kind(np.array(principal), is_mirrored)
+        ahead = starts @ axis @ (starts[0] @ axis) > 0.0  # two of each: half a turn about the axis apart
+        start = np.stack([starts[ahead][0], starts[~ahead][0]])
         yield np.einsum("aij,bjk->abik", start, about_axis(axis, _ABOUT)).reshape(-1, 3, 3)
 
 
@@ -140,15 +142,15 @@ def _best(first: PartShape, other: PartShape, candidates: FloatArray, limit: flo
         return round(float(away.max()) / first.size, _DIGITS)
 
     motions = sorted(((rotation, np.zeros(3)) for rotation in chosen), key=deviation)
-    fit = _measured(first, other, motions[0])
-    if fit.largest <= _EXACT * first.size:
-        return fit
+    if deviation(motions[0]) <= _EXACT:
+        return _measured(first, other, motions[0])
     rough = [_refined(first, other, motion, _STEPS, is_exact=False) for motion in motions[:_REFINED]]
     near = min([motions[0], *rough], key=deviation)
     if deviation(near) * first.size > _NEAR * limit:
         return None
-    refined = _measured(first, other, _refined(first, other, near, _STEPS, is_exact=True))
-    return min(fit, refined, key=lambda fit: round(fit.largest / first.size, _DIGITS))  # the first of equal ones
+    exact = _refined(first, other, near, _STEPS, is_exact=True)
+    fits = [_measured(first, other, motion) for motion in (motions[0], exact)]
+    return min(fits, key=lambda fit: round(fit.largest / first.size, _DIGITS))  # the first of equal ones
 
 
 def _turns(rotations: FloatArray) -> FloatArray:
