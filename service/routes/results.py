@@ -94,7 +94,7 @@ def get_hierarchy(
         {_JSON: {"schema": ref(PartsDocument)}}, "The list of parts.", *LEVEL_PROBLEMS, *REVISION_PROBLEMS
     ),
 )
-def get_parts(
+def list_parts(
     wanted: ResultRequestOf,
     tolerance: Annotated[
         float,

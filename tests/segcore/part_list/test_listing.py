@@ -7,7 +7,7 @@ import pytest
 import trimesh
 
 import segcore
-from helpers.copies import copy_of
+from helpers.part_list.copies import copy_of
 from segcore import shapes
 from segcore.mesh import Mesh
 from segcore.part_list.document import part_list_document

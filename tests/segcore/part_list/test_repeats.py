@@ -8,8 +8,8 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 import segcore
-from helpers.copies import copy_of, gear, hand, placed
 from helpers.meshes import rotation
+from helpers.part_list.copies import copy_of, gear, hand, placed
 from segcore import shapes
 from segcore.mesh import Mesh
 from segcore.part_list import repeats as module

@@ -3,7 +3,7 @@
 import numpy as np
 import trimesh
 
-from helpers.copies import hand
+from helpers.part_list.copies import hand
 from segcore.mesh import Mesh
 from segcore.part_list.surface_distance import SurfaceDistance, distances_from_triangles
 
