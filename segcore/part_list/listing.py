@@ -21,6 +21,7 @@ from segcore.partition import partition_of
 # Normals of the hull that are tried for a box: fewer if there are many parts. Set by hand; see bench/RESULTS.md.
 _MOST_NORMALS, _LEAST_NORMALS, _NORMALS_OF_ALL = 24, 4, 4096
 
+_LARGEST = 1e70  # coordinate; squares of areas of larger meshes, and of those smaller than 1 / this, are not in float64
 _NO_AREA = 1e-12  # of the square of the size: rounding error
 _NOTHING_LEFT = "All of its faces are degenerate or repeat faces of other parts."
 _NOT_MANIFOLD = "Closed by caps, it has edges with more than two faces, or with two in contradicting directions."
@@ -68,8 +69,11 @@ def parts(
     Raises
     ------
     InvalidParameters
-        If there is not one label for each face, a label is left out, or the tolerance is outside its range.
+        If there is not one label for each face, a label is left out, the tolerance is outside its range, or the
+        mesh is larger than 1e70 or smaller than 1e-70.
     """
+    if np.abs(mesh.bounds).max() > _LARGEST or 0.0 < np.ptp(mesh.bounds, axis=0).max() < 1.0 / _LARGEST:
+        raise InvalidParameters("The mesh is too large or too small for areas and volumes: use another unit of length.")
     partition, known = partition_of(labels, len(mesh.faces))
     if known != list(range(len(known))):
         missing = next(label for label, number in enumerate(known) if label != number)

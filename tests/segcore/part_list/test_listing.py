@@ -66,6 +66,20 @@ def test_labels_that_are_none_are_refused(labels: list[float]) -> None:
         segcore.parts(shapes.box(), labels)
 
 
+@pytest.mark.parametrize("scale", [1e-69, 1e-6, 1e6, 1e69])
+def test_bodies_of_any_size_are_measured(scale: float) -> None:
+    two = shapes.joined(shapes.box(), shapes.box(centre=(3.0, 0.0, 0.0)))
+    listed = segcore.parts(Mesh(scale * two.mesh.vertices, two.mesh.faces), two.parts)
+    assert [part.volume for part in listed.parts] == pytest.approx([scale**3] * 2, rel=1e-9)
+    assert [repeat.parts for repeat in listed.repeats.groups] == [(0, 1)]
+
+
+def test_coordinates_whose_areas_cannot_be_computed_are_refused() -> None:
+    for scale in (1e-80, 1e80):
+        with pytest.raises(segcore.InvalidParameters, match="another unit"):
+            segcore.parts(Mesh(scale * shapes.box().vertices, shapes.box().faces), [0] * 12)
+
+
 def test_the_document_is_json_and_refers_to_the_groups() -> None:
     shape = shapes.burr(4)
     document = part_list_document(segcore.parts(shape.mesh, shape.parts, {0: "ball"}), "millimeter", {1: "#112233"})
