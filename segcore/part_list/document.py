@@ -1,13 +1,17 @@
 """The list of parts as JSON values."""
 
+from __future__ import annotations
+
 from collections.abc import Mapping
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from segcore.coordinates import Unit
 from segcore.io.palette import related_colors, segment_color_names
-from segcore.part_list.listing import MeasuredPart, PartList
-from segcore.part_list.neighbours import Neighbour
-from segcore.part_list.repeats import Copy, Repeat
+
+if TYPE_CHECKING:  # a server that returns a document from its cache needs no kernel
+    from segcore.part_list.listing import MeasuredPart, PartList
+    from segcore.part_list.neighbours import Neighbour
+    from segcore.part_list.repeats import Copy, Repeat
 
 
 def part_list_document(

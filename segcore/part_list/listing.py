@@ -15,7 +15,8 @@ from segcore.mesh import Mesh, face_normals_and_areas
 from segcore.part_list.boxes import OrientedBox, oriented_box
 from segcore.part_list.neighbours import Neighbour, neighbours_of_parts
 from segcore.part_list.part_shape import PartShape
-from segcore.part_list.repeats import TOLERANCE, Repeats, find_repeats
+from segcore.part_list.repeats import Repeats, find_repeats
+from segcore.part_list.tolerance import TOLERANCE
 from segcore.partition import partition_of
 
 # Normals of the hull that are tried for a box: fewer if there are many parts. Set by hand; see bench/RESULTS.md.

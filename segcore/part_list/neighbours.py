@@ -4,7 +4,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from segcore.arrays import FloatArray, IntArray, LongArray, distinct_pairs, group_sums
+from segcore.array_kernels import distinct_pairs
+from segcore.arrays import FloatArray, IntArray, LongArray, group_sums
 from segcore.clean.surface import Surface
 
 _STRAIGHT = 1e-6  # extent of a border beside its line, over that along it, which is rounding error

@@ -9,11 +9,8 @@ from segcore.arrays import FloatArray
 from segcore.errors import InvalidParameters
 from segcore.part_list.congruence import Fit, congruence, in_order
 from segcore.part_list.part_shape import PartShape
+from segcore.part_list.tolerance import LARGEST_TOLERANCE, TOLERANCE
 
-# Of the diagonal of the box of a part. Set by hand: a sphere of 320 faces deviates by 0.004 from one of 5,120, and a
-# leg that is longer by 2 % by 0.01.
-TOLERANCE = 0.01
-LARGEST_TOLERANCE = 0.1
 _MOST_COMPARED = 1000  # parts, those with the largest area; set by hand
 # Pairs of parts that are aligned, 0.04 s each; pairs that look alike and are not equal take five times as long. Set by
 # hand, so that no list takes minutes.

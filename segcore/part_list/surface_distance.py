@@ -6,7 +6,8 @@ import numpy as np
 from scipy.spatial import KDTree
 
 from segcore.arrays import FloatArray, IntArray, LongArray
-from segcore.mesh import face_centroids, face_normals_and_areas
+from segcore.centroids import face_centroids
+from segcore.mesh import face_normals_and_areas
 
 # All set by hand.
 _SPREAD = 4096  # points, evenly over the area, by which large faces are found

@@ -1,20 +1,26 @@
 """The list of parts of `cleave inspect --parts`."""
 
+from __future__ import annotations
+
 import argparse
 import json
 import sys
 import zipfile
 from dataclasses import dataclass, replace
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 import segcore
 from segcore.io import read_result
 from segcore.levels import Fineness
 from segcore.part_list.document import part_list_document
-from segcore.part_list.listing import MeasuredPart
-from segcore.part_list.repeats import Repeat
 from service.commands.console import ProgressBar, say
 from service.commands.inputs import STANDARD, input_name, read_input, standard_input
+from service.commands.segment import compile_first_kernels
+
+if TYPE_CHECKING:
+    from segcore.part_list.listing import MeasuredPart
+    from segcore.part_list.repeats import Repeat
 
 _HEADER = "header.json"  # a member of .cleave files
 
@@ -72,9 +78,8 @@ def _segmented(choices: argparse.Namespace, fineness: Fineness) -> _Chosen:
     if (choices.segments or 0) > parameters.segment_limit:
         parameters = replace(parameters, max_segments=choices.segments)
     with ProgressBar(sys.stderr) as bar:
-        bar("load the kernels", 0.0)
-        segcore.warm_up()
         mesh = read_input(choices)
+        compile_first_kernels(bar)
         hierarchy = segcore.segment(mesh, parameters, bar)
     return _Chosen(mesh, segcore.Partition(hierarchy.labels(fineness.segments_of(hierarchy))))
 

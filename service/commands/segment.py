@@ -67,7 +67,7 @@ def run(choices: argparse.Namespace) -> None:
     with ProgressBar(sys.stderr) as bar:
         bar("read", 0.0)
         mesh = read_input(choices)
-        _compile_kernels(bar)
+        compile_first_kernels(bar)
         surface = segcore.build_surface(mesh)
         hierarchy = segcore.segment(mesh, parameters, bar, surface, choices.threads)
         segments = fineness.segments_of(hierarchy)
@@ -82,7 +82,7 @@ def run(choices: argparse.Namespace) -> None:
     tell_written(tell, outputs)
 
 
-def _compile_kernels(bar: ProgressBar) -> None:
+def compile_first_kernels(bar: ProgressBar) -> None:
     """Compile what every segmentation needs, at the first use; without a terminal one line says so."""
     if not must_compile([FIRST]):
         return

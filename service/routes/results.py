@@ -6,7 +6,7 @@ from fastapi import APIRouter, Header, Query, Request
 from starlette.responses import Response
 
 from segcore.levels import Level
-from segcore.part_list.repeats import LARGEST_TOLERANCE, TOLERANCE
+from segcore.part_list.tolerance import LARGEST_TOLERANCE, TOLERANCE
 from service.answer.label_formats import LABELS, LabelsFormat, LabelsOf, hierarchy_json, labels_rendition
 from service.answer.part_list import PartsDocument, parts_rendition
 from service.answer.renditions import LEVEL_PROBLEMS, Rendition, answer_rendition, rendition_responses

@@ -14,6 +14,7 @@ from segcore import shapes
 from segcore.mesh import Mesh
 from segcore.part_list import repeats as module
 from segcore.part_list.repeats import Repeats
+from segcore.part_list.tolerance import TOLERANCE
 
 CUBE, BRICK = shapes.box(), shapes.box((1.0, 2.0, 3.0))
 TETRAHEDRON = Mesh([[1, 1, 1], [1, -1, -1], [-1, 1, -1], [-1, -1, 1]], [[0, 1, 2], [0, 2, 3], [0, 3, 1], [1, 3, 2]])
@@ -26,12 +27,12 @@ BODIES: dict[str, Callable[[], Mesh]] = {
 }
 
 
-def repeats_of(*meshes: Mesh, tolerance: float = module.TOLERANCE) -> Repeats:
+def repeats_of(*meshes: Mesh, tolerance: float = TOLERANCE) -> Repeats:
     joined = shapes.joined(*meshes)
     return segcore.parts(joined.mesh, joined.parts, tolerance=tolerance).repeats
 
 
-def groups_of(*meshes: Mesh, tolerance: float = module.TOLERANCE) -> list[tuple[int, ...]]:
+def groups_of(*meshes: Mesh, tolerance: float = TOLERANCE) -> list[tuple[int, ...]]:
     return [repeat.parts for repeat in repeats_of(*meshes, tolerance=tolerance).groups]
 
 
