@@ -5,8 +5,8 @@ from dataclasses import dataclass
 import numpy as np
 from scipy.spatial import KDTree
 
+from segcore.array_kernels import face_centroids
 from segcore.arrays import FloatArray, IntArray, LongArray
-from segcore.centroids import face_centroids
 from segcore.mesh import face_normals_and_areas
 
 # All set by hand.
