@@ -13,6 +13,9 @@ export type SucceededJob = Schemas["SucceededJob"];
 /** A level of the parts: a number of segments, a granularity, a cut by splits, or a revision; by default the automatic one. */
 export type Level = Pick<NonNullable<paths["/v1/jobs/{job_id}/labels"]["get"]["parameters"]["query"]>, "segments" | "granularity" | "splits" | "revision">;
 
+/** A level, and the tolerance of what is a copy. */
+export type PartsOptions = NonNullable<paths["/v1/jobs/{job_id}/parts"]["get"]["parameters"]["query"]>;
+
 type ModelPath = Extract<keyof paths, `/v1/jobs/{job_id}/${"model" | "parts" | "preview"}.${string}`>;
 /** A file of a job: `model.glb`, `model.3mf`, `parts.zip`, `preview.png`, ... */
 export type ModelFile = ModelPath extends `/v1/jobs/{job_id}/${infer File}` ? File : never;
@@ -119,6 +122,12 @@ export class Cleave {
     const params = { path: { job_id: id }, query: { ...level, format: "raw" as const } };
     const bytes = await answer<ArrayBuffer>(this.api.GET("/v1/jobs/{job_id}/labels", { params, parseAs: "arrayBuffer", ...signalOf(options.signal) }));
     return new Int32Array(bytes);
+  }
+
+  /** Return what can be measured of the parts at a level: size, place, neighbours, and which of them are copies. */
+  parts(id: string, options: PartsOptions = {}, call: Call = {}): Promise<Schemas["PartsDocument"]> {
+    const params = { path: { job_id: id }, query: options };
+    return answer<Schemas["PartsDocument"]>(this.api.GET("/v1/jobs/{job_id}/parts", { params, ...signalOf(call.signal) }));
   }
 
   /** Return the tree of cuts, which has the parts of every level; see PartTree. */

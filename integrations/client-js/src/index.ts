@@ -9,6 +9,7 @@ export {
   type Mesh,
   type ModelFile,
   type ModelOptions,
+  type PartsOptions,
   type SubmitOptions,
   type SucceededJob,
 } from "./client.js";

@@ -56,6 +56,7 @@ def check_story(facts: dict[str, Any], installation: Installation) -> None:
         "wrong": [],
         "model": [200, "model/gltf-binary"],
         "formats": len(installation.get("/v1/formats").json()["meshes"]),
+        "parts": list(range(7)),
         "files": "tetrahedron.obj",
         "refused": [422, "invalid_parameters"],
         "unknown": [404, "job_not_found"],

@@ -26,6 +26,7 @@ export async function story(server: string, mesh: Uint8Array<ArrayBuffer>) {
     wrong,
     model: [model.status, model.headers.get("Content-Type")],
     formats: formats?.meshes.length,
+    parts: (await cleave.parts(job.id, { segments: 7 })).parts.map(({ number }) => number),
     files: await severalFiles(cleave),
     refused: await refusal(cleave.labels(job.id, { segments: 1000 })),
     unknown: await refusal(cleave.wait(UNKNOWN)),
