@@ -48,6 +48,7 @@ from worker.process.work_horse import Ending, ending_of, limit_resources, out_of
 log = logging.getLogger("cleave.worker")
 
 _STORE_PAUSE_S = 2.0  # before the next job if the store is full or does not answer; set by hand
+_NICENESS = 5  # added to that of work-horses: requests are answered first if all cores segment; set by hand
 _HEARTBEAT_S = 1.0  # between two; rq would send five for each job
 _DEQUEUE_TTL_S = 20  # rq waits 15 s less than this for an entry, then sends a heartbeat and waits again
 
@@ -214,6 +215,7 @@ class JobWorker(Worker):  # type: ignore[misc]  # rq is not analysed
         signal.signal(signal.SIGTERM, signal.SIG_IGN)
         die_with_parent(self.pid)
         rename_process("work_horse")
+        os.nice(_NICENESS)
         limit_resources(self._settings)
 
     def _prepare_work_horse(self) -> None:

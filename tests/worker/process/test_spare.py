@@ -47,8 +47,10 @@ def test_a_job_runs_in_the_process_that_waited_for_it_and_each_in_another_one(
 ) -> None:
     worker = start_worker(program=("-c", _PROGRAM))
     first = the_spare(worker.pid)
+    niceness = os.getpriority(os.PRIO_PROCESS, first)
     pid, job_id, ran = run(store, queue)
     assert (pid, ran) == (first, [job_id])
+    assert niceness > os.getpriority(os.PRIO_PROCESS, worker.pid)
     wait_until(lambda: not is_alive(first))
     second = the_spare(worker.pid)
     pid, job_id, ran = run(store, queue)
