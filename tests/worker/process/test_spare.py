@@ -42,15 +42,18 @@ def the_spare(worker: int) -> int:
     return spare
 
 
+def niceness_of(pid: int) -> int:
+    return os.getpriority(os.PRIO_PROCESS, pid)
+
+
 def test_a_job_runs_in_the_process_that_waited_for_it_and_each_in_another_one(
     start_worker: StartWorker, store: JobStore, queue: JobQueue
 ) -> None:
     worker = start_worker(program=("-c", _PROGRAM))
     first = the_spare(worker.pid)
-    niceness = os.getpriority(os.PRIO_PROCESS, first)
+    wait_until(lambda: niceness_of(first) > niceness_of(worker.pid))
     pid, job_id, ran = run(store, queue)
     assert (pid, ran) == (first, [job_id])
-    assert niceness > os.getpriority(os.PRIO_PROCESS, worker.pid)
     wait_until(lambda: not is_alive(first))
     second = the_spare(worker.pid)
     pid, job_id, ran = run(store, queue)
