@@ -3,8 +3,7 @@
 BLAS divides inner products of more than 10,000 numbers, and products of large matrices, among its threads, and so adds
 in another order. The meshes have more edges than that, and more faces than there are clusters.
 
-LAPACK stays for three small problems, which BLAS does not divide: systems and eigenvalues of 3 x 3 matrices, and the
-tridiagonal eigenproblem of ``segcore.solvers.fiedler``.
+LAPACK stays for the eigenvalues of 3 x 3 matrices, which BLAS does not divide.
 """
 
 import io
@@ -40,10 +39,10 @@ def rough(mesh: Mesh, seed: int) -> Mesh:
 
 
 def meshes() -> Iterator[Mesh]:
-    """Twenty meshes of 7,600 to 20,500 faces."""
-    for neck, rings in product((0.15, 0.3, 0.45, 0.6), (80, 90, 100)):
+    """Ten meshes of 8,600 to 20,500 faces."""
+    for neck, rings in product((0.15, 0.6), (90, 100)):
         yield rough(shapes.dumbbell(rings, 48, neck).mesh, rings)
-    for arms in range(1, 6):
+    for arms in range(2, 5):
         yield rough(shapes.burr(5, arms).mesh, arms)
     for gap in (2.1, 2.2, 2.3):
         ball = rough(shapes.dumbbell(40, 48).mesh, 0)
@@ -74,9 +73,9 @@ def digests_with(threads: int) -> dict[str, str]:
 
 @pytest.mark.slow
 def test_results_do_not_depend_on_the_number_of_threads() -> None:
-    one, two, four = map(digests_with, (1, 2, 4))
-    assert len(one) == 20 + len(SOLVERS)
-    assert one == two == four
+    one, four = map(digests_with, (1, 4))
+    assert len(one) == 10 + len(SOLVERS)
+    assert one == four
 
 
 if __name__ == "__main__":

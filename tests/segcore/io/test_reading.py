@@ -235,9 +235,11 @@ def test_a_small_file_never_makes_the_process_take_much_memory(tmp_path: Path) -
         path.write_bytes(data)
     script = """
 import resource, sys
+import segcore
 from segcore.errors import CleaveError
 from segcore.io import read_mesh
 
+segcore.warm_up("read")  # readers and kernels are imported when they are used
 pages = int(open("/proc/self/statm").read().split()[0])
 room = pages * resource.getpagesize() + 200 * 10**6
 resource.setrlimit(resource.RLIMIT_AS, (room, room))
