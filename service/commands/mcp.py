@@ -40,15 +40,28 @@ def run(choices: argparse.Namespace) -> None:
         if error.name not in ("mcp", "mcp_types"):
             raise
         raise InvalidSettings(f"Tools for agents need an optional dependency: {extra_command('mcp')}.") from error
-    signal.signal(signal.SIGTERM, lambda *_: sys.exit(0))  # stops its own service, and removes its folder
+    signal.signal(signal.SIGTERM, lambda *_: sys.exit(0))
     with ExitStack() as stack:
         try:
             url = choices.server or stack.enter_context(own_service(choices.data_dir))
         except CannotServe as error:
             raise InvalidSettings(str(error)) from error
+        _end_on_signals(stack)
         api_key = os.environ.get("CLEAVE_API_KEY") if choices.server else None
 
         def connect(_: Any) -> AsyncClient:
             return AsyncClient(url, api_key)
 
         asyncio.run(mcp_server(connect, has_files=True).run_stdio_async())
+
+
+def _end_on_signals(stack: ExitStack) -> None:
+    """Stop the service of its own and end the process on a signal, although a thread waits for standard input."""
+    from service.commands.main import INTERRUPTED
+
+    def end(number: int, _: object) -> None:
+        stack.close()
+        os._exit(INTERRUPTED if number == signal.SIGINT else 0)
+
+    for number in (signal.SIGINT, signal.SIGTERM):
+        signal.signal(number, end)

@@ -3,10 +3,13 @@
 import asyncio
 import json
 import os
+import signal
+import subprocess
 import sys
 from pathlib import Path
 from typing import Any
 
+import pytest
 from mcp import Client, StdioServerParameters, stdio_client
 from mcp_types import TextContent
 
@@ -57,3 +60,24 @@ def test_an_agent_needs_no_service_that_runs(tmp_path: Path) -> None:
     assert names[:2] == ["seat", "leg"]
     assert b'"seat"' in target.read_bytes()
     wait_until(lambda: running_in(data) == [], within_s=30)
+
+
+@pytest.mark.parametrize("is_connected", [False, True])
+@pytest.mark.parametrize(("number", "status"), [(signal.SIGTERM, 0), (signal.SIGINT, 130)])
+def test_a_signal_ends_it_and_its_service(
+    tmp_path: Path, number: signal.Signals, status: int, is_connected: bool
+) -> None:
+    words = [sys.executable, "-m", "service.commands", "mcp"]
+    environment = {**os.environ, "TMPDIR": str(tmp_path)}
+    with subprocess.Popen(words, stdin=subprocess.PIPE, stdout=subprocess.PIPE, env=environment) as process:
+        wait_until(lambda: [*tmp_path.glob("cleave-mcp-*/serve.lock")] != [], within_s=60)
+        if is_connected:
+            assert process.stdin is not None
+            assert process.stdout is not None
+            process.stdin.write(b'{"jsonrpc": "2.0", "id": 1, "method": "ping"}\n')
+            process.stdin.flush()
+            assert b'"id":1' in process.stdout.readline()
+        process.send_signal(number)
+        assert process.wait(30) == status
+    assert [*tmp_path.iterdir()] == []
+    wait_until(lambda: running_in(tmp_path / "cleave-mcp-") == [], within_s=30)
