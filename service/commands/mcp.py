@@ -37,7 +37,7 @@ def run(choices: argparse.Namespace) -> None:
     try:
         from service.mcp.server import mcp_server
     except ModuleNotFoundError as error:
-        if error.name not in ("mcp", "mcp_types"):
+        if (error.name or "").partition(".")[0] not in ("mcp", "mcp_types"):
             raise
         raise InvalidSettings(f"Tools for agents need an optional dependency: {extra_command('mcp')}.") from error
     signal.signal(signal.SIGTERM, lambda *_: sys.exit(0))
