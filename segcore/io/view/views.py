@@ -56,13 +56,18 @@ class View:
 
     def faces_between(self, points: list[tuple[int, int]]) -> list[int]:
         """Return the faces that are seen along the straight lines from point to point, each once, in order."""
-        along: dict[int, None] = {}
-        for (x0, y0), (x1, y1) in pairwise(points):
-            count = max(abs(x1 - x0), abs(y1 - y0), 1) * SAMPLES + 1
-            columns, rows = np.rint(np.linspace((x0, y0), (x1, y1), count)).astype(int).T
-            found = [self.face_at(int(x), int(y)) for x, y in zip(columns, rows, strict=True)]
-            along |= dict.fromkeys(face for face in found if face is not None)
-        return list(along)
+        for x, y in points:
+            self.face_at(x, y)  # refuses a pixel that does not exist
+        runs = [self._along(start, end) for start, end in pairwise(points)]
+        faces = np.concatenate(runs) if runs else np.zeros(0, dtype=np.int32)
+        every, first = np.unique(faces, return_index=True)
+        return [int(face) for face in every[np.argsort(first)] if face >= 0]
+
+    def _along(self, start: tuple[int, int], end: tuple[int, int]) -> IntArray:
+        """(N,) the faces at the samples along a straight line between two pixels, -1 for the background."""
+        count = SAMPLES * max(abs(end[0] - start[0]), abs(end[1] - start[1])) + 1
+        columns, rows = np.rint(np.linspace(start, end, count) * SAMPLES).astype(int).T
+        return self.seen.face[rows, columns]
 
     def visible_parts(self) -> list[VisiblePart]:
         """Return the parts that are seen, those with the most room for a number first."""

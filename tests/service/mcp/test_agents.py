@@ -39,10 +39,10 @@ def guarded(settings: Settings, store: JobStore) -> Iterator[httpx.Client]:
 
 
 @asynccontextmanager
-async def over_http(client: httpx.Client, key: str, path: str = "/mcp") -> AsyncIterator[Any]:
+async def over_http(client: httpx.Client, key: str, path: str = "/mcp", **more: str) -> AsyncIterator[Any]:
     url = f"{str(client.base_url).rstrip('/')}{path}"
     async with (
-        httpx2.AsyncClient(headers={"Authorization": f"Bearer {key}"}, timeout=60) as http,
+        httpx2.AsyncClient(headers={"Authorization": f"Bearer {key}", **more}, timeout=60) as http,
         streamable_http_client(url, http_client=http) as streams,
     ):
         yield streams
@@ -150,6 +150,12 @@ def test_an_agent_over_http_names_the_parts_of_a_mesh_that_it_sends(guarded: htt
     labels = base64.b64decode(content[1].resource.blob)  # type: ignore[union-attr]
     assert guarded.get(path).content == labels
     check_stored(guarded, job_id, labels)
+
+    async def where(agent: Agent) -> str:
+        return str((await answer(agent, "download", job_id=job_id, result="glb"))["path"])
+
+    behind_proxy = over_http(guarded, ANNA, **{"X-Forwarded-Prefix": "/3d"})
+    assert run(behind_proxy, where) == f"/3d/v1/jobs/{job_id}/model.glb?revision=latest"
 
     async def other(agent: Agent) -> tuple[list[Any], str]:
         return (await answer(agent, "list_jobs"))["jobs"], await refusal(agent, "look", job_id=job_id)

@@ -46,6 +46,8 @@ def test_a_pixel_outside_of_the_picture_is_refused() -> None:
     view = view_of(MESH, LABELS, SIZE, 0.0, 0.0)
     with pytest.raises(InvalidParameters, match=r"no pixel \(200, 0\): x and y are 0 to 199"):
         view.face_at(SIZE, 0)
+    with pytest.raises(InvalidParameters, match=r"no pixel \(0, 200\)"):
+        view.faces_between([(0, 0), (0, SIZE)])
 
 
 def test_the_picture_has_the_numbers_of_the_parts_at_their_places() -> None:
