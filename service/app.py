@@ -5,6 +5,7 @@ from contextlib import asynccontextmanager
 
 from fastapi import Depends, FastAPI
 from starlette.middleware.cors import CORSMiddleware
+from starlette.routing import Route
 
 from cleave.settings import Settings
 from cleave.version import installed_version
@@ -15,6 +16,7 @@ from service.guard.foreign_sites import CrossSiteCheckMiddleware, HostCheckMiddl
 from service.guard.headers import HeadMiddleware, SecurityHeadersMiddleware
 from service.guard.unknown_parameters import refuse_unknown_parameters
 from service.keys import key_ring
+from service.mcp.endpoint import AgentEndpoint
 from service.mount import MountMiddleware
 from service.openapi.document import complete
 from service.problems import handle_problems
@@ -29,6 +31,7 @@ from service.routes import (
     home,
     jobs,
     models,
+    pictures,
     results,
     submission,
     webhooks,
@@ -57,6 +60,7 @@ _ROUTES = (
     jobs,
     results,
     models,
+    pictures,
     files,
     edits,
     batches,
@@ -102,6 +106,8 @@ def create_app(settings: Settings) -> FastAPI:
         app.include_router(module.router)
     for module in _ROUTES:
         app.include_router(module.router, dependencies=[Depends(refuse_unknown_parameters)])
+    app.state.agents = AgentEndpoint(app)
+    app.router.routes.append(Route("/mcp", app.state.agents, methods=["POST"]))
     _add_middleware(app, settings)
     app.add_middleware(RequestLogMiddleware, metrics=metrics)
     app.add_middleware(SecurityHeadersMiddleware)
@@ -116,7 +122,7 @@ def create_app(settings: Settings) -> FastAPI:
 async def _lifespan(app: FastAPI) -> AsyncIterator[None]:
     """Listen to the ends of jobs while the application runs, and end the processes of edits with it."""
     context: Context = app.state.context
-    async with context.endings.listening():
+    async with context.endings.listening(), app.state.agents.serving():
         yield
     context.editors.stop()
 

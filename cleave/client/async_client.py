@@ -200,6 +200,10 @@ class AsyncClient:
         finally:
             partial.unlink(missing_ok=True)
 
+    async def content(self, job_id: str, result: str, **params: object) -> bytes:
+        """Return a result, such as ``preview.png``, as bytes in memory; ``params`` as of :meth:`download`."""
+        return await self._run(flows.content(job_id, result, texts(params)))
+
     async def cancel(self, job_id: str) -> Job:
         return await self._run(flows.cancel(job_id))
 

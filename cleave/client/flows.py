@@ -26,7 +26,7 @@ class Call:
 
     method: str
     path: str
-    params: Mapping[str, str] = field(default_factory=dict)
+    params: Mapping[str, str | list[str]] = field(default_factory=dict)
     headers: Mapping[str, str] = field(default_factory=dict)
     body: Sequence[Path | bytes] = ()  # its pieces, files and bytes
     wait_s: float = 0.0  # for which the server was asked to hold back the response
@@ -135,6 +135,10 @@ def labels(job: Job, level: Mapping[str, str]) -> Flow[Segmentation]:
 def hierarchy(job_id: str) -> Flow[dict[str, Any]]:
     document: dict[str, Any] = (yield Call(method="GET", path=f"/v1/jobs/{job_id}/hierarchy")).json()
     return document
+
+
+def content(job_id: str, result: str, params: Mapping[str, str | list[str]]) -> Flow[bytes]:
+    return (yield Call(method="GET", path=f"/v1/jobs/{job_id}/{result}", params=params)).content
 
 
 def page(status: str | None, cursor: str | None) -> Flow[tuple[list[Job], str | None]]:

@@ -208,6 +208,10 @@ class Client:
         finally:
             partial.unlink(missing_ok=True)
 
+    def content(self, job_id: str, result: str, **params: object) -> bytes:
+        """Return a result, such as ``preview.png``, as bytes in memory; ``params`` as of :meth:`download`."""
+        return self._run(flows.content(job_id, result, texts(params)))
+
     def cancel(self, job_id: str) -> Job:
         return self._run(flows.cancel(job_id))
 

@@ -91,6 +91,13 @@ def _shape_features(
     small, large = sides.area[n]
     weight, length = borders.weight[n], borders.border[n]
     ncut = np.log(weight * (1.0 / small + 1.0 / large) * size + _TINY)
+    inner, closed, deviation = np.empty(2), np.empty(2), np.empty((2, 2))
+    for side in range(2):
+        has_edges = sides.length[n, side] > 0.0
+        inner[side] = np.log(sides.weight[n, side] / sides.length[n, side]) if has_edges else 0.0
+        closed[side] = min(1.0, length / max(sides.degree[n, side] - 2.0 * sides.length[n, side], length))
+        for axis in range(2):
+            deviation[side, axis] = np.sqrt(sides.variance[n, side, axis] / max(sides.variance[n, side, 2], _TINY))
     parent = np.log(parent_ncut * size) if parent_ncut > 0.0 else 0.0
     affinity = np.log(weight / length)
     border = np.log(length / size)
@@ -102,42 +109,25 @@ def _shape_features(
         np.log(large / total),
         np.log(small / large),
         affinity,
-        affinity - _inner_affinity(sides, n, 0),
-        affinity - _inner_affinity(sides, n, 1),
+        affinity - inner[0],
+        affinity - inner[1],
         border,
         np.log(length / np.sqrt(small)),
         np.log(length / np.sqrt(large)),
         border - borders.thickness[n],
-        _closed(sides, n, 0, length),
-        _closed(sides, n, 1, length),
+        closed[0],
+        closed[1],
         thin,
         thick,
         borders.thickness[n] - min(thin, thick),
         abs(thin - thick),
         sides.thickness_spread[n, 0],
         sides.thickness_spread[n, 1],
-        _deviation(sides, n, 0, 0),
-        _deviation(sides, n, 0, 1),
-        _deviation(sides, n, 1, 0),
-        _deviation(sides, n, 1, 1),
+        deviation[0, 0],
+        deviation[0, 1],
+        deviation[1, 0],
+        deviation[1, 1],
         np.log1p(float(depth)),
         parent,
         ncut - parent if parent_ncut > 0.0 else 0.0,
     )
-
-
-@njit(cache=True)
-def _inner_affinity(sides: SideSums, n: int, side: int) -> float:
-    """Logarithm of the mean affinity inside a side; 0 if it has no edges."""
-    return np.log(sides.weight[n, side] / sides.length[n, side]) if sides.length[n, side] > 0.0 else 0.0
-
-
-@njit(cache=True)
-def _closed(sides: SideSums, n: int, side: int, border: float) -> float:
-    return min(1.0, border / max(sides.degree[n, side] - 2.0 * sides.length[n, side], border))
-
-
-@njit(cache=True)
-def _deviation(sides: SideSums, n: int, side: int, axis: int) -> float:
-    """Standard deviation along a principal axis over that along the longest one."""
-    return np.sqrt(sides.variance[n, side, axis] / max(sides.variance[n, side, 2], _TINY))

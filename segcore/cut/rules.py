@@ -22,7 +22,7 @@ from segcore.graphs.tree import Tree
 from segcore.learned.models import learned_models
 from segcore.parameters import SegmentationParameters
 from segcore.solvers.fiedler import start_noise
-from segcore.solvers.flow import VECTORS, connected_sweeps
+from segcore.solvers.flow import connected_sweeps
 from segcore.solvers.solvers import SOLVERS
 
 # Their neighbours are compared in bench/RESULTS.md, "Constants and their neighbours".
@@ -213,7 +213,7 @@ class LearnedRule:
         graph = segment.graph
         if self._parameters.solver == "flow":
             order = order_inside(self._elimination, segment.nodes)
-            sides = connected_sweeps(graph, order, start_noise(graph.node_count), VECTORS)
+            sides = connected_sweeps(graph, order, start_noise(graph.node_count))
             cuts = [cut_of(graph, side) for side in sides]
         else:
             cuts = [with_connected_sides(graph, self._solved(graph)).canonical]

@@ -10,7 +10,8 @@ from typing import NamedTuple
 import numpy as np
 from numba import njit
 
-from segcore.arrays import BoolArray, FloatArray, IntArray, LongArray
+from segcore.array_kernels import ascending
+from segcore.arrays import BoolArray, FloatArray, IntArray
 from segcore.graphs.cheeger import Cut, best_level_set, cut_of, cut_sums, level_sets, ncc_of, valley_sides
 from segcore.graphs.max_flow import network_of
 from segcore.graphs.surface_graph import SurfaceGraph, components_of_edges, components_within
@@ -77,9 +78,9 @@ def _symmetric_sweeps(graph: SurfaceGraph, image: IntArray, order: IntArray, noi
     sides = np.empty((1 + (1 + VALLEYS) * evens + odds, count), dtype=np.bool_)
     necks = np.empty((VALLEYS * evens, count), dtype=np.bool_)
     best, least, filled, found = 1, np.inf, 1, 0
-    for part in even[:evens]:
-        levels = level_sets(graph, part)
-        sides[filled] = best_level_set(part, levels, False)
+    for e in range(evens):
+        levels = level_sets(graph, even[e])
+        sides[filled] = best_level_set(even[e], levels, False)
         ncc = ncc_of(*cut_sums(graph, sides[filled]))
         if ncc < least:
             best, least = filled, ncc
@@ -202,7 +203,7 @@ def _pieces(graph: SurfaceGraph, image: IntArray, side: BoolArray) -> _Pieces:
 
 
 @njit(cache=True)
-def _by_ncc(pieces: _Pieces, group: IntArray, count: int) -> LongArray:
+def _by_ncc(pieces: _Pieces, group: IntArray, count: int) -> IntArray:
     """(K,) groups 0..K - 1 of the pieces (P,) by increasing NCC; pieces of group -1 belong to none."""
     border, volume = np.zeros(count), np.zeros(count)
     for e in range(len(pieces.edges)):
@@ -218,7 +219,7 @@ def _by_ncc(pieces: _Pieces, group: IntArray, count: int) -> LongArray:
             volume[group[p]] += pieces.volume[p]
     for k in range(count):
         border[k] = ncc_of(border[k], volume[k], total - volume[k])
-    return np.argsort(border, kind="mergesort")
+    return ascending(border)
 
 
 @njit(cache=True)

@@ -25,7 +25,7 @@ def connected_side(graph: SurfaceGraph, side: BoolArray) -> BoolArray:
     pieces, count = components_within(graph.edges, side)
     if count <= 2:
         return side
-    best = pieces == _best_piece(graph, pieces, count, -1)
+    best = pieces == _best_piece(graph, pieces, count, np.int32(-1))
     pieces, count = components_within(graph.edges, best)
     if count <= 2:
         return best

@@ -5,7 +5,8 @@ Everything that the service, the worker and the command line use is exported her
 ``referenced_files``), the formats of segmentations (``WRITERS``, ``writer_for`` and their functions by name), the input
 with everything that it has, divided by part (``write_kept``, ``write_kept_parts``), plain
 meshes (``write_mesh``), labels and the hierarchy as JSON values, ``.cleave`` files (``write_result``, ``read_result``),
-edited parts as bytes (``encode_partition``, ``decode_partition``) and pictures (``draw``, ``write_png``).
+edited parts as bytes (``encode_partition``, ``decode_partition``), pictures (``draw``, ``write_png``) and views from
+any side (``view_of``).
 """
 
 from typing import TYPE_CHECKING
@@ -42,6 +43,7 @@ if TYPE_CHECKING:
     from segcore.io.references import neighbours_of, referenced_files
     from segcore.io.result import Segmentation, read_result, write_result
     from segcore.io.threemf.writer import write_3mf
+    from segcore.io.view.views import View, view_of
     from segcore.io.writing import WRITE_OPTIONS, WRITERS, WriteOption, Writer, writer_for
 
 _MODULES = {
@@ -117,6 +119,10 @@ _MODULES = {
         "write_result",
     ),
     "threemf.writer": ("write_3mf",),
+    "view.views": (
+        "View",
+        "view_of",
+    ),
     "writing": (
         "WRITE_OPTIONS",
         "WRITERS",
@@ -143,6 +149,7 @@ __all__ = [
     "SegmentColors",
     "SegmentNames",
     "Segmentation",
+    "View",
     "WriteOption",
     "Writer",
     "declared_format",
@@ -164,6 +171,7 @@ __all__ = [
     "runs_document",
     "runs_of",
     "segment_color_names",
+    "view_of",
     "with_coordinates",
     "write_3mf",
     "write_glb",

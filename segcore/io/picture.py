@@ -2,6 +2,7 @@
 
 import struct
 import zlib
+from dataclasses import dataclass
 from typing import BinaryIO
 
 import numpy as np
@@ -16,7 +17,7 @@ from segcore.mesh import Mesh, face_normals_and_areas
 ByteArray = np.ndarray[tuple[int, ...], np.dtype[np.uint8]]
 
 # The look of the pictures, set by hand.
-_SAMPLES = 2  # samples per pixel in each direction
+SAMPLES = 2  # per pixel in each direction
 _MARGIN = 0.04  # free border, as a fraction of the width of the picture
 _CREASE = np.cos(np.radians(40))  # faces that meet at a larger angle are not shaded smoothly
 _KEY = np.array([0.35, 0.75, 0.56])  # direction to the key light: right, up, towards the viewer
@@ -27,6 +28,18 @@ _BACKGROUND = -1  # in place of a label
 _SHORTEST = 1e-12  # length of a mean normal, below which it has no direction and is not normalized
 _CLEAREST = 1e-6  # opacity of a pixel without samples, whose colour does not matter
 _PNG_LEVEL = 9  # pictures are small: the best compression of zlib
+
+
+@dataclass(frozen=True, slots=True)
+class Seen:
+    """What the samples of a picture of a mesh show; R is SAMPLES times the size of the picture."""
+
+    face: IntArray  # (R, R) the nearest face, -1 for the background
+    light: FloatArray  # (R, R) its brightness
+
+    def labels(self, labels: IntArray) -> IntArray:
+        """(R, R) the segment at each sample, -1 for the background, from the segment of each face."""
+        return np.where(self.face == _BACKGROUND, _BACKGROUND, labels[self.face])
 
 
 def draw(
@@ -52,18 +65,23 @@ def draw(
     -------
     (size, size, 4) uint8, red, green, blue and opacity: an orthographic view of the whole mesh, upright.
     """
+    return shaded(seen_from(mesh, size, azimuth, elevation), labels, part_colors)
+
+
+def seen_from(mesh: Mesh, size: int, azimuth: float, elevation: float) -> Seen:
+    """Return which faces are seen in a picture of a mesh; parameters as of :func:`draw`."""
     upright = Coordinates(up=mesh.coordinates.shown_up).rotation_to("y")
     view = transformed(_view(azimuth, elevation), upright.T)
     seen = transformed(np.clip(mesh.vertices, *mesh.bounds), view)
     used = seen[mesh.is_used]
     low, high = used.min(axis=0), used.max(axis=0)
-    resolution = size * _SAMPLES
+    resolution = size * SAMPLES
     scale = resolution * (1 - 2 * _MARGIN) / max(float((high - low)[:2].max()), float(np.finfo(float).tiny))
     screen = (seen - 0.5 * (low + high)) * scale
     screen[:, :2] = screen[:, :2] * [1, -1] + 0.5 * resolution
     normals = _corner_normals(mesh.faces, face_normals_and_areas(mesh.corners)[0], len(mesh.vertices))
-    label, light = _rasterize(screen, mesh.faces, labels, transformed(normals, view), resolution)
-    return _shaded(label, light, size, part_colors)
+    every = np.arange(len(mesh.faces), dtype=np.int32)
+    return Seen(*_rasterize(screen, mesh.faces, every, transformed(normals, view), resolution))
 
 
 def _view(azimuth: float, elevation: float) -> FloatArray:
@@ -74,10 +92,12 @@ def _view(azimuth: float, elevation: float) -> FloatArray:
     return np.stack([right, np.cross(towards, right), towards])
 
 
-def _shaded(label: IntArray, light: FloatArray, size: int, chosen: SegmentColors | None) -> ByteArray:
-    """(size, size, 4) pixels of the samples."""
+def shaded(seen: Seen, labels: IntArray, part_colors: SegmentColors | None = None) -> ByteArray:
+    """Return the picture of segments that are seen, as :func:`draw` does."""
+    label, light = seen.labels(labels), seen.light
+    size = len(label) // SAMPLES
     covered = label != _BACKGROUND
-    colors = segment_colors(int(label.max()) + 1, chosen)[label] if covered.any() else np.zeros((*label.shape, 3))
+    colors = segment_colors(int(label.max()) + 1, part_colors)[label] if covered.any() else np.zeros((*label.shape, 3))
     border = np.zeros(label.shape, dtype=bool)
     for axis in (0, 1):
         behind = np.roll(label, 1, axis)
@@ -86,7 +106,7 @@ def _shaded(label: IntArray, light: FloatArray, size: int, chosen: SegmentColors
     image = np.concatenate(
         [np.minimum(colors * shade[..., None], 1.0) * covered[..., None], covered[..., None]], axis=2
     )
-    image = image.reshape(size, _SAMPLES, size, _SAMPLES, 4).mean(axis=(1, 3))
+    image = image.reshape(size, SAMPLES, size, SAMPLES, 4).mean(axis=(1, 3))
     image[..., :3] /= np.maximum(image[..., 3:], _CLEAREST)
     pixels: ByteArray = np.rint(255 * image).astype(np.uint8)
     return pixels

@@ -135,6 +135,23 @@ def _in_range(factor):  # type: ignore[no-untyped-def]
 
 
 @njit(cache=True)
+def _largest(values, count):  # type: ignore[no-untyped-def]
+    """(min(count, N),) the places of the largest numbers (N,), the largest first."""
+    chosen = np.empty(min(count, len(values)), dtype=np.int64)
+    for k in range(len(chosen)):
+        best = -1
+        for i in range(len(values)):
+            if best < 0 or values[i] > values[best]:
+                is_free = True
+                for j in range(k):
+                    is_free = is_free and chosen[j] != i
+                if is_free:
+                    best = i
+        chosen[k] = best
+    return chosen
+
+
+@njit(cache=True)
 def _has_converged(diagonal, beside, count):  # type: ignore[no-untyped-def]
     """Whether the residuals of the eigenvectors of the largest eigenvalues are below the tolerance."""
     steps = len(diagonal)
@@ -142,7 +159,7 @@ def _has_converged(diagonal, beside, count):  # type: ignore[no-untyped-def]
     last[0, steps - 1] = 1.0
     diagonalise(values, beside.copy(), last)
     has_converged = True
-    for k in np.argsort(-values)[:count]:
+    for k in _largest(values, count):
         has_converged = has_converged and beside[steps - 1] * abs(last[0, k]) <= TOLERANCE * values[k]
     return has_converged
 
@@ -154,7 +171,7 @@ def _combined(diagonal, beside, basis, count):  # type: ignore[no-untyped-def]
     values, mixture = diagonal.copy(), np.eye(steps)
     diagonalise(values, beside.copy(), mixture)
     vectors = np.zeros((count, basis.shape[1]))
-    chosen = np.argsort(-values)[:count]
+    chosen = _largest(values, count)
     for row in range(count):
         for j in range(steps):
             share, direction = mixture[j, chosen[row]], basis[j + 1]

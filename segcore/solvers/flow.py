@@ -69,7 +69,7 @@ def flow_cut(graph: SurfaceGraph, *, count: int = 2) -> Cut:
 
 
 @njit(cache=True)
-def connected_sweeps(graph: SurfaceGraph, order: IntArray, noise: FloatArray, count: int) -> BoolArray:
+def connected_sweeps(graph: SurfaceGraph, order: IntArray, noise: FloatArray) -> BoolArray:
     """(C, N) different cuts of a connected graph with connected sides; node 0 is on the side of each.
 
     They are made of the best of the sweeps of several eigenvectors, improved by maximum flows, of the sweeps, and of
@@ -80,10 +80,9 @@ def connected_sweeps(graph: SurfaceGraph, order: IntArray, noise: FloatArray, co
     graph : connected, at least two nodes.
     order : (N,) of the elimination of the nodes.
     noise : see ``segcore.solvers.fiedler.start_noise``.
-    count : how many eigenvectors after the constant one, at least 1.
     """
     network = network_of(graph, order)
-    vectors = eigenvectors_of(graph, network.factor, noise, count)
+    vectors = eigenvectors_of(graph, network.factor, noise, VECTORS)
     sides = np.empty((1 + (1 + VALLEYS) * len(vectors), len(graph.volume)), dtype=np.bool_)
     best, least, filled = 1, np.inf, 1 + len(vectors)
     for v in range(len(vectors)):

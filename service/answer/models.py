@@ -1,4 +1,4 @@
-"""The segmented mesh as a file for other programs, and as a picture."""
+"""The segmented mesh as a file for other programs."""
 
 from collections.abc import Callable, Mapping
 from typing import Any, BinaryIO
@@ -11,8 +11,6 @@ from service.answer.part_names import names_digest
 from service.answer.renditions import Rendition, to_bytes
 from service.context import Context
 from service.result_cache import ResultCache
-
-PNG = "image/png"
 
 
 def model_rendition(
@@ -41,7 +39,7 @@ def model_rendition(
 
     is_companion = any(one.companion == name for one in MODELS.values())  # a file that others refer to by its name
     file_name = model_file(name) if is_companion else f"{cut.job_id}{writer.extension}"
-    return _cached(context.results, cut, f"{name}?{query}", writer.media_type, write, file_name)
+    return cached_rendition(context.results, cut, f"{name}?{query}", writer.media_type, write, file_name)
 
 
 def _looks(cut: ChosenCut, writer: Writer, names: dict[int, str]) -> dict[str, Any]:
@@ -52,19 +50,7 @@ def _looks(cut: ChosenCut, writer: Writer, names: dict[int, str]) -> dict[str, A
     return {"names": cut.partition.names | names} | colors
 
 
-def preview_rendition(cache: ResultCache, cut: ChosenCut, size: int) -> Rendition:
-    """Return a picture of ``size`` x ``size`` pixels with a transparent background."""
-
-    def write(target: BinaryIO) -> None:
-        from segcore.io import draw, write_png
-
-        colors = None if cut.partition is None else cut.partition.colors
-        write_png(target, draw(cut.result.mesh, cut.labels, size, part_colors=colors))
-
-    return _cached(cache, cut, f"preview.png?{cut.name}&size={size}", PNG, write)
-
-
-def _cached(
+def cached_rendition(
     cache: ResultCache,
     cut: ChosenCut,
     name: str,
@@ -72,6 +58,7 @@ def _cached(
     write: Callable[[BinaryIO], object],
     file_name: str | None = None,
 ) -> Rendition:
+    """Return a rendition whose bytes are kept in the cache by its name, with the level in it."""
     return Rendition(
         identity=f"{cut.job_id}/{name}",
         media_type=media_type,

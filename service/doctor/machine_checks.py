@@ -6,10 +6,11 @@ import resource
 from collections.abc import Iterator
 from contextlib import suppress
 from importlib.metadata import version
+from importlib.util import find_spec
 from pathlib import Path
 
 from cleave.settings import InvalidSettings, Settings, unknown_variables
-from cleave.version import installed_version
+from cleave.version import extra_command, installed_version
 from service.doctor.findings import Finding, error, ok, warning
 from service.guard.exposure import check_exposure
 from service.host.kernel_cache import compiled_kernels
@@ -19,6 +20,8 @@ from service.host.listening import BACKLOG
 # table of stages); the rest is what it needs on a small mesh (docs/operations.md, Sizing) and a reserve, set by hand.
 _BYTES_PER_FACE, _BASE_BYTES = 400, 500 * 2**20
 _PACKAGES = ("numpy", "scipy", "numba", "redis", "rq", "fastapi", "uvicorn", "trimesh")
+# Optional dependencies, by the names of the extras that install them.
+_EXTRAS = {"cloud": "obstore", "completion": "shtab", "draco": "DracoPy", "mcp": "mcp"}
 _CGROUP_LIMITS = ("/sys/fs/cgroup/memory.max", "/sys/fs/cgroup/memory/memory.limit_in_bytes")
 
 
@@ -31,6 +34,7 @@ def check_machine(settings: Settings, host: str) -> list[Finding]:
         *_kernels(),
         *_access(settings, host),
         *_unknown_variables(),
+        _extras(),
         ok("versions", f"Cleave {installed_version()}, Python {platform.python_version()}, {_installed()}."),
     ]
 
@@ -112,6 +116,13 @@ def _access(settings: Settings, host: str) -> Iterator[Finding]:
         )
     else:
         yield ok("access", f"on {host} the service accepts only those that it should.")
+
+
+def _extras() -> Finding:
+    missing = [extra for extra, module in _EXTRAS.items() if find_spec(module) is None]
+    if not missing:
+        return ok("extras", "all are installed.")
+    return ok("extras", f"not installed: {', '.join(missing)}; to add them: {extra_command(','.join(missing))}.")
 
 
 def _unknown_variables() -> Iterator[Finding]:

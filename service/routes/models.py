@@ -1,4 +1,4 @@
-"""The segmented mesh as files for other programs, with a route per format of MODELS, and as a picture."""
+"""The segmented mesh as files for other programs, with a route per format of MODELS."""
 
 from collections.abc import Awaitable, Callable
 from inspect import Parameter, Signature
@@ -10,7 +10,7 @@ from starlette.responses import Response
 from segcore.coordinates import Axis, Unit
 from segcore.io import Layout, PartFormat, PlyColors, WriteOption, Writer
 from service.answer.model_formats import MODELS, model_file, operation_name
-from service.answer.models import PNG, model_rendition, preview_rendition
+from service.answer.models import model_rendition
 from service.answer.originals import ORIGINAL_PROBLEMS
 from service.answer.part_names import PartNames
 from service.answer.renditions import LEVEL_PROBLEMS, answer_rendition, rendition_responses
@@ -152,17 +152,3 @@ def _add_route(name: str, writer: Writer) -> None:
 
 for _name, _writer in MODELS.items():
     _add_route(_name, _writer)
-
-
-@router.get(
-    "/preview.png",
-    response_class=Response,
-    responses=rendition_responses({PNG: _BINARY}, "A picture.", *LEVEL_PROBLEMS, *REVISION_PROBLEMS),
-)
-def get_preview(
-    wanted: ResultRequestOf,
-    size: Annotated[int, Query(ge=16, le=1024, description="Width and height in pixels.")] = 256,
-) -> Response:
-    """A picture of the mesh in the colours of its segments, with a transparent background."""
-    rendition = preview_rendition(wanted.context.results, wanted.cut(), size)
-    return answer_rendition(wanted.request, rendition)

@@ -82,6 +82,7 @@ def test_a_job_can_be_followed_fetched_and_deleted(url: str, mesh: Path, tmp_pat
         assert "o arm" in (tmp_path / "parts.obj").read_text()
         client.download(job.id, "model.glb", tmp_path / "parts.glb", segments=3)
         assert (tmp_path / "parts.glb").read_bytes().startswith(b"glTF")
+        assert client.content(job.id, "model.glb", segments=3) == (tmp_path / "parts.glb").read_bytes()
         client.delete(job.id)
         with pytest.raises(RequestRefused, match="deleted") as refused:
             client.job(job.id)
@@ -101,6 +102,8 @@ def test_the_asyncio_client_does_the_same(url: str, mesh: Path, tmp_path: Path) 
             assert {other.id async for other in client.jobs()} == {job.id, parts.job.id}
             await client.download(job.id, "labels", tmp_path / "labels.npy", format="npy", segments=4)
             assert np.array_equal(np.load(tmp_path / "labels.npy"), parts.labels)
+            content = await client.content(job.id, "labels", format="npy", segments=4)
+            assert content == (tmp_path / "labels.npy").read_bytes()
             assert (await client.hierarchy(job.id))["max_segments"] == job.max_segments
             await client.delete(job.id)
             with pytest.raises(RequestRefused):

@@ -30,6 +30,8 @@ CALLS = {
     ("convert", 2): ["ball.off", "-o", "ball.glb"],
     ("inspect", 0): ["ball.off"],
     ("inspect", 2): ["ball.off", "--unit", "milimeter"],
+    ("mcp", 0): ["--server", "http://127.0.0.1:1"],  # the standard input has ended
+    ("mcp", 2): ["--data-dir", "ball.off"],
     ("key", 0): ["anna"],
     ("key", 2): ["Anna Smith"],
     ("doctor", 0): [],
@@ -67,8 +69,9 @@ def test_a_command_ends_with_its_status(
     monkeypatch.setenv("CLEAVE_DATA_DIR", str(tmp_path / "data"))
     if (command, status) == ("doctor", 2):
         monkeypatch.setenv("CLEAVE_MAX_FACES", "many")
-    if command in ("serve", "worker"):  # which configure the log of the process
-        assert subprocess.run([*CLEAVE, command, *CALLS[command, status]], check=False).returncode == status
+    if command in ("serve", "worker", "mcp"):  # which configure the log or the signals of the process
+        words = [*CLEAVE, command, *CALLS[command, status]]
+        assert subprocess.run(words, stdin=subprocess.DEVNULL, check=False).returncode == status
     else:
         assert status_of(command, *CALLS[command, status]) == status
 

@@ -43,3 +43,10 @@ def test_limits_of_the_machine_are_compared_with_the_settings(tmp_path: Path, mo
 def test_access_to_the_service_is_checked(tmp_path: Path, auth: str, host: str, severity: str) -> None:
     settings = Settings.model_validate({"data_dir": tmp_path, "auth": auth})
     assert severities(check_machine(settings, host))["access"] == severity
+
+
+def test_extras_that_are_missing_are_named(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr("service.doctor.machine_checks.find_spec", lambda name: None if name == "mcp" else name)
+    found = {finding.topic: finding for finding in check_machine(Settings(data_dir=tmp_path), "127.0.0.1")}
+    assert found["extras"].severity == "ok"
+    assert found["extras"].message == "not installed: mcp; to add them: pip install 'cleave-mesh[mcp]'."

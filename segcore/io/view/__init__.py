@@ -1,0 +1,1 @@
+"""Pictures in which the parts have numbers, and what is seen at their pixels."""
