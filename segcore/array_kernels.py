@@ -45,9 +45,10 @@ def _distinct_pairs(pairs, count):  # type: ignore[no-untyped-def]
     for low in range(count):
         begin, end = start[low], start[low + 1]
         if end - begin > _FEW:
-            order = np.argsort(high[begin:end], kind="mergesort")
-            high[begin:end] = high[begin:end][order]
-            which[begin:end] = which[begin:end][order]
+            far_ends, found = high[begin:end].copy(), which[begin:end].copy()
+            order = ascending(far_ends.astype(np.float64))
+            for p in range(end - begin):
+                high[begin + p], which[begin + p] = far_ends[order[p]], found[order[p]]
         else:
             for p in range(begin + 1, end):
                 far, pair, q = high[p], which[p], p

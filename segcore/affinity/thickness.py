@@ -184,8 +184,8 @@ def _typical(distances: FloatArray, cosines: FloatArray) -> tuple[FloatArray, Fl
         confidence[i] = hits / rays
         if hits == 0:
             continue
-        middle = np.median(hit[:hits])
-        spread = np.std(hit[:hits]) + _EQUAL * middle
+        middle = _median(hit, hits)
+        spread = _deviation(hit, hits) + _EQUAL * middle
         total, weight = 0.0, 0.0
         for j in range(rays):
             if abs(distances[i, j] - middle) <= spread:
@@ -193,3 +193,27 @@ def _typical(distances: FloatArray, cosines: FloatArray) -> tuple[FloatArray, Fl
                 weight += cosines[j]
         value[i] = total / weight if weight > 0.0 else middle
     return value, confidence
+
+
+@njit(cache=True)
+def _median(values: FloatArray, count: int) -> float:
+    """The median of the first numbers of an array, which are sorted in place."""
+    for i in range(1, count):
+        value, place = values[i], i
+        while place > 0 and values[place - 1] > value:
+            values[place] = values[place - 1]
+            place -= 1
+        values[place] = value
+    return 0.5 * (values[(count - 1) // 2] + values[count // 2])
+
+
+@njit(cache=True)
+def _deviation(values: FloatArray, count: int) -> float:
+    """The standard deviation of the first numbers of an array."""
+    mean = 0.0
+    for i in range(count):
+        mean += values[i] / count
+    square = 0.0
+    for i in range(count):
+        square += (values[i] - mean) ** 2
+    return np.sqrt(square / count)
