@@ -48,6 +48,18 @@ def slice_file(path: Path, target: Path, scale: float) -> None:
     )
 
 
+def sliced_with(path: Path, target: Path, extruders: int) -> None:
+    """Slice the objects of a file for a printer with several extruders into G-code, at the size of the file.
+
+    Raises
+    ------
+    BenchmarkError
+        If the program is missing or fails.
+    """
+    nozzles = ",".join(["0.4"] * extruders)
+    _run("--export-gcode", "--nozzle-diameter", nozzles, "--center", "100,100", "--output", str(target), str(path))
+
+
 def _run(*arguments: str) -> str:
     program = shutil.which(PROGRAM)
     if program is None:
