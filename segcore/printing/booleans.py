@@ -37,7 +37,8 @@ def library() -> ModuleType:
 def solid_of(vertices: FloatArray, faces: IntArray) -> Manifold | None:
     """Return closed faces as a solid; None if they are not the surface of one."""
     kernel = library()
-    solid = kernel.Manifold(kernel.Mesh64(np.ascontiguousarray(vertices), faces.astype(np.uint64)))
+    arrays = np.array(vertices, order="C"), np.array(faces, dtype=np.uint64, order="C")  # it takes no read-only ones
+    solid = kernel.Manifold(kernel.Mesh64(*arrays))
     is_sound = solid.status() == kernel.Error.NoError and solid.volume() > 0
     return solid if is_sound else None
 
@@ -45,7 +46,7 @@ def solid_of(vertices: FloatArray, faces: IntArray) -> Manifold | None:
 def surface_of(solid: Manifold) -> tuple[FloatArray, IntArray]:
     """Return the vertices (V, 3) and the faces (F, 3) of a solid."""
     mesh = solid.to_mesh64()
-    return np.asarray(mesh.vert_properties)[:, :3], np.asarray(mesh.tri_verts).astype(np.int32)
+    return np.array(mesh.vert_properties)[:, :3], np.array(mesh.tri_verts, dtype=np.int32)
 
 
 def cylinder(centre: FloatArray, direction: FloatArray, radius: float, begin: float, end: float) -> Manifold:
