@@ -36,6 +36,13 @@ class _Plane:
     place: float
 
 
+def room_for(options: PrintOptions) -> FloatArray:
+    """(3,) the sides of the largest piece that fits the bed with the pegs that it may get on both sides."""
+    added = LARGEST_DEPTH + options.clearance if options.connectors == "peg" else 0.0
+    room: FloatArray = np.array(options.sides) - 2 * added
+    return room
+
+
 def divide(solid: Manifold, options: PrintOptions) -> Divided:
     """Halve the sides of a part that are larger than the bed, by planes across them, until every piece fits.
 
@@ -44,8 +51,7 @@ def divide(solid: Manifold, options: PrintOptions) -> Divided:
     """
     if options.bed is None:
         return Divided([solid], [])
-    added = LARGEST_DEPTH + options.clearance if options.connectors == "peg" else 0.0  # the pegs of both sides
-    room = np.array(options.sides) - 2 * added
+    room = room_for(options)
     pieces: list[Manifold] = []
     planes: list[_Plane] = []
     waiting = [solid]

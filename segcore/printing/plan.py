@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
@@ -18,10 +18,11 @@ from segcore.io.names import SegmentNames, segment_names
 from segcore.io.palette import SegmentColors
 from segcore.io.parts.pieces import closed_groups, labels_on, positions
 from segcore.mesh import Mesh
-from segcore.printing.beds import divide
+from segcore.printing.beds import Divided, divide, room_for
 from segcore.printing.booleans import solid_of, surface_of
 from segcore.printing.connectors import Joint, add_connectors
 from segcore.printing.contacts import Closed, find_contacts
+from segcore.printing.fitting import FittedLevel, fitted_level
 from segcore.printing.options import LARGEST_LENGTH, PrintOptions
 from segcore.printing.slots import Slot, slots_of
 
@@ -54,11 +55,12 @@ class PrintPlan:
     options: PrintOptions
     unit: Unit | None  # of the mesh; None if it is not known and taken as mm
     scale: float  # that was applied to lengths in mm
-    closed_volumes: Mapping[int, float]  # mm^3 of the closed parts before connectors are added
+    closed_volumes: Mapping[int, float]  # mm^3 of the pieces of the level before connectors are added
     pieces: list[Piece]
     slots: list[Slot]
-    joints: list[Joint]
-    cuts: Mapping[int, list[Joint]]  # between pieces of a part, by its label; parts of contacts are numbers of pieces
+    joints: list[Joint]  # between pieces of the level
+    cuts: Mapping[int, list[Joint]]  # where planes divide a piece of the level, by its number
+    level: FittedLevel
 
 
 def plan_print(
@@ -89,29 +91,26 @@ def plan_print(
     options = options or PrintOptions()
     count = len(hierarchy.segment_nodes(segments))
     moved, scale = _in_millimetres(mesh, options.size)
+    level = fitted_level(hierarchy, segments, moved.corners, room_for(options))
     surface = build_surface(moved)
-    vertices, labels = positions(moved, surface), labels_on(surface, hierarchy.labels(segments))
-    parts = _closed(vertices, surface.faces, labels, count)
-    solids = {label: solid for label, part in parts.items() if (solid := solid_of(part.vertices, part.faces))}
-    volumes = {label: solid.volume() for label, solid in solids.items()}
+    vertices, labels = positions(moved, surface), labels_on(surface, level.labels)
+    parts = _closed(vertices, surface.faces, labels, len(level.part))
+    solids = {piece: solid for piece, part in parts.items() if (solid := solid_of(part.vertices, part.faces))}
+    volumes = {piece: solid.volume() for piece, solid in solids.items()}
     joints = add_connectors(solids, find_contacts(vertices, surface.faces, labels, parts), options)
-    divided = {label: divide(solid, options) for label, solid in solids.items()}
-    slots = slots_of(sorted(parts), volumes, count, options.slots, part_colors)
+    divided = {piece: divide(solid, options) for piece, solid in solids.items()}
+    cuts = {piece: one.joints for piece, one in divided.items()}
+    present = sorted({level.part[piece] for piece in parts})
+    slots = slots_of(present, _by_part(volumes, level), count, options.slots, part_colors)
     slot = {label: one.number for one in slots for label in one.labels}
     titles = segment_names(names, count)
-    pieces: list[Piece] = []
-    for label, part in sorted(parts.items()):
-        if label in divided:
-            solid_pieces = divided[label].pieces
-            for k, solid in enumerate(solid_pieces):
-                name = f"{titles[label]} {k + 1}" if len(solid_pieces) > 1 else titles[label]
-                pieces.append(_piece(name, solid, label, slot[label]))
-        else:
-            pieces.append(Piece(titles[label], part.vertices, part.faces, None, label, slot[label]))
-    cuts = {label: one.joints for label, one in divided.items()}
-    return PrintPlan(
-        options, mesh.coordinates.unit, scale, volumes, pieces + _dowels(joints, cuts, slot), slots, joints, cuts
-    )
+    pieces = [
+        piece
+        for number, part in sorted(parts.items())
+        for piece in _pieces(part, divided.get(number), level, titles, slot)
+    ]
+    pieces += _dowels(joints, cuts, [slot[label] for label in level.part])
+    return PrintPlan(options, mesh.coordinates.unit, scale, volumes, pieces, slots, joints, cuts, level)
 
 
 def _in_millimetres(mesh: Mesh, size: float | None) -> tuple[Mesh, float]:
@@ -140,14 +139,37 @@ def _closed(vertices: FloatArray, faces: IntArray, labels: IntArray, count: int)
     return parts
 
 
+def _by_part(volumes: Mapping[int, float], level: FittedLevel) -> dict[int, float]:
+    total = dict.fromkeys(level.part, 0.0)
+    for piece, volume in volumes.items():
+        total[level.part[piece]] += volume
+    return total
+
+
+def _pieces(
+    part: Closed, divided: Divided | None, level: FittedLevel, titles: Sequence[str], slot: Mapping[int, int]
+) -> Iterator[Piece]:
+    """Yield what a piece of the level becomes: itself, or several that planes have divided."""
+    label = level.part[part.label]
+    title = titles[label]
+    if level.part.count(label) > 1:
+        title += f" {level.number(part.label)}"
+    if divided is None:
+        yield Piece(title, part.vertices, part.faces, None, label, slot[label])
+        return
+    for k, solid in enumerate(divided.pieces):
+        yield _piece(f"{title} {k + 1}" if len(divided.pieces) > 1 else title, solid, label, slot[label])
+
+
 def _piece(name: str, solid: Manifold, label: int | None, slot: int) -> Piece:
     vertices, faces = surface_of(solid)
     return Piece(name, vertices, faces, solid.volume(), label, slot)
 
 
-def _dowels(joints: list[Joint], cuts: Mapping[int, list[Joint]], slot: Mapping[int, int]) -> list[Piece]:
-    """The dowels, each of the filament of the first part that it joins."""
+def _dowels(joints: list[Joint], cuts: Mapping[int, list[Joint]], slot: Sequence[int]) -> Iterator[Piece]:
+    """Yield the dowels, each of the filament of the first piece that it joins; ``slot`` is that of every piece."""
     own = [(joint, joint.contact.parts[0]) for joint in joints]
-    own += [(joint, label) for label, of_part in cuts.items() for joint in of_part]
-    dowels = [(joint.connector.dowel, label) for joint, label in own if joint.connector and joint.connector.dowel]
-    return [_piece(f"dowel {k + 1}", dowel, None, slot[label]) for k, (dowel, label) in enumerate(dowels)]
+    own += [(joint, piece) for piece, of_piece in cuts.items() for joint in of_piece]
+    dowels = [(joint.connector.dowel, piece) for joint, piece in own if joint.connector and joint.connector.dowel]
+    for k, (dowel, piece) in enumerate(dowels):
+        yield _piece(f"dowel {k + 1}", dowel, None, slot[piece])

@@ -15,7 +15,7 @@ def print_report(plan: PrintPlan) -> dict[str, Any]:
     """Return what is printed: objects, filaments, and contacts with their connector or the reason for none.
 
     Lengths are in mm, areas in mm^2, volumes in mm^3. ``objects`` are in the order of the 3MF file. Contacts between
-    pieces of a part that planes have divided have ``pieces``, numbers from 1.
+    pieces of one part have ``pieces``, the numbers in the names of the objects.
     """
     options = plan.options
     return {
@@ -44,15 +44,20 @@ def _object(plan: PrintPlan, piece: Piece) -> dict[str, Any]:
 
 
 def _joints(plan: PrintPlan) -> Iterator[dict[str, Any]]:
+    """Yield the contacts between pieces of the level."""
+    level = plan.level
     for joint in plan.joints:
-        yield {"parts": list(joint.contact.parts), "pieces": None, **_contact(joint, plan.options.connectors)}
+        parts = [level.part[piece] for piece in joint.contact.parts]
+        pieces = [level.number(piece) for piece in joint.contact.parts] if parts[0] == parts[1] else None
+        yield {"parts": parts, "pieces": pieces, **_contact(joint, plan.options.connectors)}
 
 
 def _cuts(plan: PrintPlan) -> Iterator[dict[str, Any]]:
-    for label, joints in plan.cuts.items():
+    """Yield the contacts at planes."""
+    for piece, joints in plan.cuts.items():
         for joint in joints:
             pieces = [number + 1 for number in joint.contact.parts]
-            yield {"parts": [label, label], "pieces": pieces, **_contact(joint, plan.options.connectors)}
+            yield {"parts": [plan.level.part[piece]] * 2, "pieces": pieces, **_contact(joint, plan.options.connectors)}
 
 
 def _contact(joint: Joint, kind: str) -> dict[str, Any]:

@@ -21,10 +21,12 @@ class ConnectorDocument(BaseModel):
 
 
 class ContactDocument(BaseModel):
-    """A place at which two parts touch, or two pieces of a part that a plane has divided."""
+    """A place at which two parts touch, or two pieces of a part that was divided for the bed."""
 
     parts: list[int] = Field(min_length=2, max_length=2, examples=[[0, 3]])
-    pieces: list[int] | None = Field(description="The pieces of a divided part, from 1; null between two parts.")
+    pieces: list[int] | None = Field(
+        description="The numbers of two pieces of one part, as in their names; null between two parts."
+    )
     area: float = Field(description="Of the region that the caps of both share, in mm^2.")
     circle_diameter: float = Field(description="Of the largest circle in that region; 0 if there is none.")
     deviation: float = Field(description="How far the border leaves the plane.")

@@ -3,8 +3,12 @@
 import numpy as np
 import pytest
 
+from helpers.creatures import creature
 from helpers.printing.bars import bar
 from helpers.printing.solids import volume
+from segcore.method import segment
+from segcore.parameters import SegmentationParameters
+from segcore.printing.fitting import fitted_level
 from segcore.printing.options import PrintOptions
 from segcore.printing.plan import plan_print
 from segcore.printing.report import print_report
@@ -40,3 +44,32 @@ def test_a_part_is_divided_into_a_limited_number_of_pieces() -> None:
     plan = plan_print(*bar(length=20_000.0), options=PrintOptions(connectors="none", bed="50x50x50"))
     assert len(plan.pieces) <= 2 * 64
     assert not all(one["fits_bed"] for one in print_report(plan)["objects"])
+
+
+def test_the_hierarchy_divides_a_part_before_planes_do() -> None:
+    mesh, hierarchy = bar(length=90.0)
+    options = PrintOptions(connectors="dowel", bed="50x50x50")
+    plan = plan_print(mesh, hierarchy, 1, options, names={0: "arm"})
+    assert [piece.name for piece in plan.pieces] == ["arm 1", "arm 2", "dowel 1"]
+    assert [piece.label for piece in plan.pieces] == [0, 0, None]
+    (contact,) = print_report(plan)["contacts"]
+    assert (contact["parts"], contact["pieces"]) == ([0, 0], [1, 2])
+    level = fitted_level(hierarchy, 1, mesh.corners, np.array([50.0, 50.0, 50.0]))
+    assert np.array_equal(level.labels, hierarchy.labels(2))
+    too_small = fitted_level(hierarchy, 1, mesh.corners, np.array([30.0, 50.0, 50.0]))
+    assert np.array_equal(too_small.labels, hierarchy.labels(1))  # planes divide it
+
+
+def test_a_level_is_fitted_part_by_part() -> None:
+    mesh = creature(subdivisions=3)
+    hierarchy = segment(mesh, SegmentationParameters(max_segments=12))
+    room = np.ptp(mesh.vertices, axis=0) * 0.6
+    level = fitted_level(hierarchy, 2, mesh.corners, room)
+    coarse = hierarchy.labels(2)
+    assert all(len(set(coarse[level.labels == piece])) == 1 for piece in range(len(level.part)))
+    assert [int(coarse[level.labels == piece][0]) for piece in range(len(level.part))] == level.part
+    divided = {part for part in level.part if level.part.count(part) > 1}
+    for piece, part in enumerate(level.part):
+        corners = mesh.corners[level.labels == piece].reshape(-1, 3)
+        assert part not in divided or (np.ptp(corners, axis=0) <= room).all()
+    assert divided
