@@ -7,7 +7,7 @@ import numpy as np
 from segcore.arrays import FloatArray, IntArray
 from segcore.hierarchy import Hierarchy
 
-_MOST_PIECES = 8  # of one part; set by hand: planes make fewer seams than more splits do
+_MOST_PIECES = 8  # of one part; set by hand: more splits than that make more borders than planes do
 
 
 @dataclass(frozen=True, slots=True, eq=False)
