@@ -91,10 +91,10 @@ def _contacts(pieces: list[Manifold], planes: list[_Plane]) -> list[Contact]:
 
 
 def _common_regions(pair: tuple[int, int], one: FloatArray, other: FloatArray, origin: FloatArray) -> list[Contact]:
-    normal = np.cross(one[:, 1] - one[:, 0], one[:, 2] - one[:, 0]).sum(axis=0)
-    normal /= np.linalg.norm(normal)
-    if np.cross(other[:, 1] - other[:, 0], other[:, 2] - other[:, 0]).sum(axis=0) @ normal > 0:
-        return []  # both are on the same side of the plane
+    towards, against = _area_vector(one), _area_vector(other)
+    if towards @ against >= 0:
+        return []  # they are not on different sides of the plane
+    normal = towards / np.linalg.norm(towards)
     frame = plane_axes(normal)
     common = region((one - origin) @ frame.T) ^ region((other - origin) @ frame.T)
     circles = [(part.area(), largest_circle(part)) for part in common.decompose()]
@@ -103,3 +103,9 @@ def _common_regions(pair: tuple[int, int], one: FloatArray, other: FloatArray, o
         for area, circle in circles
         if circle is not None
     ]
+
+
+def _area_vector(triangles: FloatArray) -> FloatArray:
+    """(3,) twice the sum of the areas of triangles (N, 3, 3) along their normals."""
+    vector: FloatArray = np.cross(triangles[:, 1] - triangles[:, 0], triangles[:, 2] - triangles[:, 0]).sum(axis=0)
+    return vector

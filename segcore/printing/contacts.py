@@ -6,6 +6,7 @@ from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 
 import numpy as np
+from scipy.spatial import KDTree
 
 from segcore.arrays import FloatArray, IntArray
 from segcore.graphs.surface_graph import connected_components
@@ -13,6 +14,7 @@ from segcore.printing.booleans import plane_axes, region
 from segcore.printing.circles import Circle, largest_circle
 
 _LEAST_WIDTH = 0.02  # of its length, that a border must have across it to define a plane; set by hand
+_MOST_BORDERS = 64  # of two parts; set by hand: shells that touch all over have thousands of small ones
 _ROUNDING = 1e-9  # of the extent of a border
 
 
@@ -51,7 +53,7 @@ def find_contacts(
 
     The edges between two parts are divided into connected borders. A border defines the plane that fits it best, and
     the contact is the region that the caps of both parts cover in that plane. Two borders of one region, as the two
-    rings where a pipe is cut, are one contact.
+    rings where a pipe is cut, are one contact. Of two parts, the 64 borders with the most edges count.
 
     Parameters
     ----------
@@ -62,7 +64,7 @@ def find_contacts(
         if not parts.keys() >= set(pair):
             continue
         piece = _connected(edges)
-        for number in np.argsort(-np.bincount(piece), kind="stable").tolist():
+        for number in np.argsort(-np.bincount(piece), kind="stable")[:_MOST_BORDERS].tolist():
             border = vertices[np.unique(edges[piece == number])]
             contact = _contact(parts[pair[0]], parts[pair[1]], border)
             if not any(_is_same(contact, other) for other in found):
@@ -131,9 +133,8 @@ def _touches(polygons: list[FloatArray], points: FloatArray, reach: float) -> bo
     """Whether a corner of the polygons is as near to one of the points as rounding and the reach allow."""
     if not polygons:
         return False
-    corners = np.concatenate(polygons)
-    gap = np.abs(corners[:, None] - points[None]).max(axis=2).min()
-    return bool(gap <= reach + _ROUNDING * np.abs(points).max())
+    gap = float(np.min(KDTree(points).query(np.concatenate(polygons))[0]))
+    return gap <= reach + _ROUNDING * float(np.abs(points).max())
 
 
 def _is_same(contact: Contact, other: Contact) -> bool:

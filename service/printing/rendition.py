@@ -1,16 +1,16 @@
 """A result of a job as a file for printing, and the report of it."""
 
-from typing import BinaryIO
+from typing import TYPE_CHECKING, BinaryIO
 
 from segcore.printing.options import PrintOptions
-from segcore.printing.plan import PrintPlan, plan_print
-from segcore.printing.report import print_report
-from segcore.printing.writer import write_print
 from service.answer.label_formats import compact_json
 from service.answer.level import ChosenCut
 from service.answer.part_names import names_digest
 from service.answer.renditions import Rendition, to_bytes
 from service.result_cache import ResultCache
+
+if TYPE_CHECKING:
+    from segcore.printing.plan import PrintPlan
 
 
 def print_rendition(cache: ResultCache, cut: ChosenCut, names: dict[int, str], options: PrintOptions) -> Rendition:
@@ -22,6 +22,8 @@ def print_rendition(cache: ResultCache, cut: ChosenCut, names: dict[int, str], o
     """
 
     def write(target: BinaryIO) -> None:
+        from segcore.printing.writer import write_print
+
         write_print(target, _plan(cut, names, options))
 
     name = f"print.3mf?{_query(cut, names, options)}"
@@ -36,16 +38,24 @@ def print_rendition(cache: ResultCache, cut: ChosenCut, names: dict[int, str], o
 
 def report_rendition(cache: ResultCache, cut: ChosenCut, names: dict[int, str], options: PrintOptions) -> Rendition:
     """Return the report of the same file."""
+
+    def render() -> bytes:
+        from segcore.printing.report import print_report
+
+        return compact_json(print_report(_plan(cut, names, options)))
+
     name = f"print.json?{_query(cut, names, options)}"
     return Rendition(
         identity=f"{cut.job_id}/{name}",
         media_type="application/json",
-        render=lambda: cache.rendered(cut.job_id, name, lambda: compact_json(print_report(_plan(cut, names, options)))),
+        render=lambda: cache.rendered(cut.job_id, name, render),
         may_change=cut.is_newest,
     )
 
 
-def _plan(cut: ChosenCut, names: dict[int, str], options: PrintOptions) -> PrintPlan:
+def _plan(cut: ChosenCut, names: dict[int, str], options: PrintOptions) -> "PrintPlan":
+    from segcore.printing.plan import plan_print
+
     mesh, hierarchy, partition = cut.result.mesh, cut.result.hierarchy, cut.partition
     if partition is None:
         return plan_print(mesh, hierarchy, cut.segments, options, names=names)

@@ -4,6 +4,7 @@ import sys
 
 import numpy as np
 import pytest
+import trimesh
 
 from helpers.printing.bars import IN_MM, bar, bent_bar
 from helpers.printing.solids import halves, pipe, volume
@@ -93,6 +94,19 @@ def test_the_wall_of_a_pipe_is_one_contact_and_too_thin_for_a_connector() -> Non
     assert "small" in contact["reason"]
     (contact,) = print_report(plan_print(mesh, hierarchy, options=PrintOptions(size=100.0)))["contacts"]
     assert contact["reason"].startswith("the wall is thin")
+
+
+def test_two_parts_that_touch_twice_have_two_connectors() -> None:
+    ring = trimesh.creation.torus(major_radius=40.0, minor_radius=8.0, major_sections=32, minor_sections=32)
+    mesh = Mesh(ring.vertices, ring.faces, coordinates=IN_MM)
+    plan = plan_print(
+        mesh, halves(mesh, mesh.corners[:, :, 1].mean(axis=1) > 0), options=PrintOptions(connectors="peg")
+    )
+    contacts = print_report(plan)["contacts"]
+    assert [contact["connector"]["holes"] for contact in contacts] == [1, 1]
+    centres = np.array([contact["connector"]["centre"] for contact in contacts])
+    assert np.ptp(centres, axis=0) == pytest.approx([80.0, 0.0, 0.0], abs=1e-3)
+    assert [contact["area"] for contact in contacts] == pytest.approx([np.pi * 64.0] * 2, rel=0.01)
 
 
 def test_a_contact_that_is_not_nearly_plane_has_no_connector_and_the_reason() -> None:
