@@ -15,7 +15,7 @@ CLEARANCE = 0.2  # mm, set by hand: a usual fit of filament printers
 LARGEST_CLEARANCE = 5.0  # mm
 MOST_SLOTS = 16  # of filament
 _LEAST_BED = 50.0  # mm
-LARGEST_LENGTH = 100_000.0  # mm, of a model and of a bed
+LARGEST_LENGTH = 10_000.0  # mm, of a model and of a bed
 BED_PATTERN = r"^[0-9]{1,6}(\.[0-9]{1,3})?(x[0-9]{1,6}(\.[0-9]{1,3})?){2}$"
 
 

@@ -41,7 +41,7 @@ def test_pieces_of_a_part_are_numbered() -> None:
 
 
 def test_a_part_is_divided_into_a_limited_number_of_pieces() -> None:
-    plan = plan_print(*bar(length=20_000.0), options=PrintOptions(connectors="none", bed="50x50x50"))
+    plan = plan_print(*bar(length=9_000.0), options=PrintOptions(connectors="none", bed="50x50x50"))
     assert len(plan.pieces) <= 2 * 64
     assert not all(one["fits_bed"] for one in print_report(plan)["objects"])
 

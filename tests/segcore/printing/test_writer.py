@@ -32,6 +32,7 @@ def test_lib3mf_reads_every_file_in_strict_mode_without_warnings(place: str, sli
     reader = model.QueryReader("3mf")
     reader.SetStrictModeActive(True)
     data = printed(place=place, slicer=slicer)
+    assert data == printed(place=place, slicer=slicer)
     reader.ReadFromBuffer(bytearray(data))
     assert reader.GetWarningCount() == 0
     objects, found = model.GetMeshObjects(), []
