@@ -17,8 +17,9 @@ Public are the names of this package:
 - ``Hierarchy``, ``Fineness``, ``keep_splits``: the result at any number of segments
 - ``Guide``: corrections by hand, the part around marked faces and borders between parts
 - ``mesh_report``, ``MeshReport``, ``build_surface``, ``Surface``: the cleaned mesh and the defects that were found
+- the modules of ``segcore.printing``: ``options``, ``plan``, ``report`` and ``writer``, files for printing
 - ``CleaveError``, ``InvalidMesh``, ``UnsupportedFormat``, ``InvalidParameters``, ``PartLocked``,
-  ``LimitExceeded``: the errors
+  ``MissingPackage``, ``LimitExceeded``: the errors
 
 and the modules that define them, ``segcore.io`` (readers and writers), ``segcore.edit.operations`` and
 ``segcore.edit.tools``, ``segcore.part_list``, ``segcore.appearance``, ``segcore.structure``, ``segcore.progress`` and
@@ -35,7 +36,15 @@ from segcore.lazy import lazy_names
 if TYPE_CHECKING:
     from segcore.clean.surface import Surface, build_surface
     from segcore.edit.guide import Guide
-    from segcore.errors import CleaveError, InvalidMesh, InvalidParameters, LimitExceeded, PartLocked, UnsupportedFormat
+    from segcore.errors import (
+        CleaveError,
+        InvalidMesh,
+        InvalidParameters,
+        LimitExceeded,
+        MissingPackage,
+        PartLocked,
+        UnsupportedFormat,
+    )
     from segcore.hierarchy import Hierarchy
     from segcore.io import read_mesh
     from segcore.kernels.tasks import warm_up
@@ -56,6 +65,7 @@ _MODULES = {
         "InvalidMesh",
         "InvalidParameters",
         "LimitExceeded",
+        "MissingPackage",
         "PartLocked",
         "UnsupportedFormat",
     ),
@@ -83,6 +93,7 @@ __all__ = [
     "MeasuredPart",
     "Mesh",
     "MeshReport",
+    "MissingPackage",
     "Part",
     "PartList",
     "PartLocked",

@@ -5,6 +5,7 @@ CleaveError
  |- UnsupportedFormat   the file has a format that is not supported: convert it
  |- InvalidParameters   a value is outside its documented range: fix the call
  |- PartLocked          an edit would change a part that is locked: unlock it
+ |- MissingPackage      an optional package is not installed: install it
  `- LimitExceeded       the input is larger than this installation accepts: reduce it or raise the limit
 
 Every class has a stable ``code`` for programs. The message is one sentence for people and names a remedy.
@@ -39,6 +40,12 @@ class PartLocked(CleaveError):  # noqa: N818
     """An edit would change the faces of a part that is locked."""
 
     code = "part_locked"
+
+
+class MissingPackage(CleaveError):  # noqa: N818
+    """An optional package that the call needs is not installed."""
+
+    code = "missing_package"
 
 
 class LimitExceeded(CleaveError):  # noqa: N818

@@ -16,7 +16,7 @@ from starlette.exceptions import HTTPException
 from starlette.requests import ClientDisconnect
 from starlette.responses import Response
 
-from segcore.errors import InvalidParameters, PartLocked
+from segcore.errors import InvalidParameters, MissingPackage, PartLocked
 from worker.jobs.attempts import FAILURE_CODES
 from worker.jobs.objects.durable import is_disk_full
 from worker.jobs.objects.interface import StoreError
@@ -78,6 +78,10 @@ _CODES: dict[str, tuple[int, str]] = {
     "too_many_jobs": (429, "The caller has too many unfinished jobs: submit again when some have ended."),
     "too_many_bytes": (429, "The caller has uploaded too many bytes in this hour: continue after Retry-After."),
     "internal_error": (500, "The server failed with an internal error: its log has the details."),
+    "missing_package": (
+        501,
+        "This installation lacks an optional package: its operator can install the one that detail names.",
+    ),
     "queue_unavailable": (503, "The queue does not answer: try again after Retry-After."),
     "store_unavailable": (503, "The store does not answer: try again after Retry-After."),
     "guide_not_ready": (
@@ -195,6 +199,8 @@ def translate(exception: Exception) -> Problem:
             return Problem("revision_damaged")
         case PartLocked():
             return Problem("part_locked", str(exception))
+        case MissingPackage():
+            return Problem("missing_package", str(exception))
         case InvalidParameters():
             return Problem("invalid_parameters", str(exception))
         case RequestValidationError():
@@ -230,6 +236,7 @@ def handle_problems(app: FastAPI) -> None:
         UnknownRevision,
         RevisionDamaged,
         PartLocked,
+        MissingPackage,
         InvalidParameters,
         RequestValidationError,
         HTTPException,

@@ -1,14 +1,16 @@
-"""Parts for printing: whether PrusaSlicer takes every object of 3MF files and every STL file for manifold."""
+"""Parts for printing: whether PrusaSlicer takes every object for manifold, and slices prints with connectors."""
 
 from __future__ import annotations
 
 import argparse
 import tempfile
 import zipfile
+from collections.abc import Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING
 
 from bench.errors import BenchmarkError
+from bench.printing.prints import check_print
 from bench.printing.slicer import are_manifold
 
 if TYPE_CHECKING:
@@ -16,19 +18,27 @@ if TYPE_CHECKING:
     from segcore.mesh import Mesh
 
 
+_HEADS = ("mesh", "faces", "parts", "3MF manifold", "STL manifold")
+_PRINT_HEADS = ("mesh", "faces", "parts", "connectors", "manifold", "volume error", "tools")
+
+
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("meshes", type=Path, nargs="+", metavar="MESH", help="mesh files")
     parser.add_argument("--segments", type=int, metavar="K", help="number of segments (the automatic one)")
+    parser.add_argument("--connectors", choices=("dowel", "peg"), help="write prints, and slice them (plain files)")
+    parser.add_argument("--size", type=float, default=100.0, help="of prints, in mm (%(default)s)")
+    parser.add_argument("--slots", type=int, default=4, help="filaments of prints (%(default)s)")
 
 
 def run(arguments: argparse.Namespace) -> None:
-    print("| mesh | faces | parts | 3MF manifold | STL manifold |")
-    print("|---|---|---|---|---|")
+    heads = _PRINT_HEADS if arguments.connectors else _HEADS
+    print(f"| {' | '.join(heads)} |")
+    print("|---" * len(heads) + "|")
     for path in arguments.meshes:
-        print(_row(path, arguments.segments), flush=True)
+        print(f"| {' | '.join(map(str, _row(path, arguments)))} |", flush=True)
 
 
-def _row(path: Path, segments: int | None) -> str:
+def _row(path: Path, arguments: argparse.Namespace) -> Sequence[object]:
     from segcore.errors import CleaveError
     from segcore.io import read_mesh
     from segcore.method import segment
@@ -36,11 +46,30 @@ def _row(path: Path, segments: int | None) -> str:
     try:
         mesh = read_mesh(path)
         hierarchy = segment(mesh)
-        count = segments or hierarchy.automatic_segments
-        found = _manifold(mesh, hierarchy, count)
+        count = arguments.segments or hierarchy.automatic_segments
+        cells = _print_cells if arguments.connectors else _plain_cells
+        return path.name, len(mesh.faces), count, *cells(mesh, hierarchy, count, arguments)
     except (CleaveError, OSError) as error:
         raise BenchmarkError(f"{path}: {error}") from error
-    return f"| {path.name} | {len(mesh.faces)} | {count} | {found['3mf']} | {found['stl']} |"
+
+
+def _plain_cells(mesh: Mesh, hierarchy: Hierarchy, count: int, _: argparse.Namespace) -> Sequence[object]:
+    found = _manifold(mesh, hierarchy, count)
+    return found["3mf"], found["stl"]
+
+
+def _print_cells(mesh: Mesh, hierarchy: Hierarchy, count: int, arguments: argparse.Namespace) -> Sequence[object]:
+    from segcore.printing.options import PrintOptions
+
+    options = PrintOptions(connectors=arguments.connectors, size=arguments.size, slots=arguments.slots, slicer="prusa")
+    with tempfile.TemporaryDirectory(prefix="printing-") as name:
+        found = check_print(mesh, hierarchy, count, options, Path(name))
+    return (
+        f"{found.connectors} of {found.contacts}",
+        f"{found.manifold} of {found.objects}",
+        f"{found.volume_error:.0e}",
+        f"{found.tools} of {found.slots}",
+    )
 
 
 def _manifold(mesh: Mesh, hierarchy: Hierarchy, segments: int) -> dict[str, str]:

@@ -12,6 +12,9 @@ from bench.errors import BenchmarkError
 
 PROGRAM = "prusa-slicer"
 _TIMEOUT_S = 300
+_LAYER = "0.3"  # mm
+_TOOL = re.compile(r"^T(\d+)", re.MULTILINE)
+_VOLUME = re.compile(r"^volume = (\S+)$", re.MULTILINE)
 _MANIFOLD = re.compile(r"^manifold = (yes|no)$", re.MULTILINE)
 
 
@@ -46,6 +49,45 @@ def slice_file(path: Path, target: Path, scale: float) -> None:
         str(target),
         str(path),
     )
+
+
+def volumes(path: Path) -> list[float]:
+    """Return the volume of every object of a file as PrusaSlicer measures it, in mm^3.
+
+    Raises
+    ------
+    BenchmarkError
+        If the program is missing or fails.
+    """
+    return [float(found) for found in _VOLUME.findall(_run("--info", str(path)))]
+
+
+def tools_of(path: Path, folder: Path, extruders: int) -> set[int]:
+    """Return the tools that the G-code of a file changes to, for a printer with several extruders and on a raft.
+
+    With one extruder there are no changes.
+
+    Raises
+    ------
+    BenchmarkError
+        If the program is missing or fails.
+    """
+    target, nozzles = folder / "print.gcode", ",".join(["0.4"] * extruders)
+    _run(
+        *(
+            "--export-gcode",
+            "--nozzle-diameter",
+            nozzles,
+            "--layer-height",
+            _LAYER,
+            "--raft-layers",
+            "2",
+            "--center",
+            "100,100",
+        ),
+        *("--output", str(target), str(path)),
+    )
+    return set(map(int, _TOOL.findall(target.read_text())))
 
 
 def _run(*arguments: str) -> str:

@@ -106,6 +106,12 @@ def srgb(linear: FloatArray) -> FloatArray:
     return np.where(linear <= 0.0031308, linear * 12.92, 1.055 * np.maximum(linear, 0.0031308) ** (1 / 2.4) - 0.055)
 
 
+def oklab(srgb: FloatArray) -> FloatArray:
+    """(N, 3) OKLab coordinates of sRGB colours (N, 3) in 0..1: distances between them are about as people see them."""
+    seen: FloatArray = _appearance(srgb)[0]
+    return seen
+
+
 @cache
 def _sequence() -> FloatArray:
     candidates = np.concatenate([_first_colors(), _candidates()])

@@ -18,6 +18,7 @@ from service.commands.outputs import (
     write_model,
 )
 from service.commands.summary import level_lines
+from service.printing.command import add_print_options, print_options, write_prints
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
@@ -32,6 +33,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     add_level(parser, "the edited parts, else the automatic one")
     add_outputs(parser, required=True)
     parser.add_argument("--source", type=Path, metavar="MESH", help="the file that was segmented, for --keep all")
+    add_print_options(parser)
 
 
 def run(choices: argparse.Namespace) -> None:
@@ -45,17 +47,22 @@ def run(choices: argparse.Namespace) -> None:
         If a file cannot be read or written.
     """
     fineness, outputs = Fineness(choices.segments, choices.granularity), choices.output
-    tell = check_outputs(outputs)
+    printing, tell = print_options(choices), check_outputs(outputs)
     result = read_result(standard_input(choices.result))
     mesh = with_coordinates(result.mesh, choices.unit, choices.up)
     options = output_options(choices, choices.source)
-    if result.edited is not None and fineness.is_automatic:
+    edited = result.edited if fineness.is_automatic else None
+    segments = fineness.segments_of(result.hierarchy)
+    if printing:
+        notes = write_prints(choices, replace(result, mesh=mesh, edited=edited), segments, printing)
+    elif edited:
         shown = replace(result, mesh=mesh)
         notes = [note for path in outputs for note in write_edited(path, shown, options)]
-        lines = [f"{len(result.edited.partition)} parts of revision {result.edited.revision}"]
     else:
-        segments = fineness.segments_of(result.hierarchy)
         notes = [note for path in outputs for note in write_model(path, mesh, result.hierarchy, segments, options)]
+    if edited:
+        lines = [f"{len(edited.partition)} parts of revision {edited.revision}"]
+    else:
         lines = level_lines(result.hierarchy, segments, fineness)
     for line in (*notes, *lines):
         tell(line)

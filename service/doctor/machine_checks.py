@@ -21,7 +21,7 @@ from service.host.listening import BACKLOG
 _BYTES_PER_FACE, _BASE_BYTES = 400, 500 * 2**20
 _PACKAGES = ("numpy", "scipy", "numba", "redis", "rq", "fastapi", "uvicorn", "trimesh")
 # Optional dependencies, by the names of the extras that install them.
-_EXTRAS = {"cloud": "obstore", "completion": "shtab", "draco": "DracoPy", "mcp": "mcp"}
+_EXTRAS = {"cloud": "obstore", "completion": "shtab", "draco": "DracoPy", "mcp": "mcp", "print": "manifold3d"}
 _CGROUP_LIMITS = ("/sys/fs/cgroup/memory.max", "/sys/fs/cgroup/memory/memory.limit_in_bytes")
 
 

@@ -14,6 +14,7 @@ from service.documents import BatchJobs, HierarchyDocument, LabelsDocument, Runs
 from service.edit.label_uploads import UploadedLabels, UploadedRuns
 from service.openapi.exactness import make_exact
 from service.openapi.examples import add_examples
+from service.printing.documents import PrintDocument
 from service.problems import MEDIA_TYPE, ProblemDocument, documented
 from worker.edits.operation_documents import EditDocument
 
@@ -26,6 +27,7 @@ _HIDDEN_MODELS: tuple[type[BaseModel], ...] = (
     PartsDocument,
     BatchJobs,
     EditDocument,
+    PrintDocument,
     UploadedLabels,
     UploadedRuns,
 )

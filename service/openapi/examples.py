@@ -1,4 +1,7 @@
-"""Examples of JSON bodies: responses of a service to a mesh of two tetrahedra, and requests that it accepts."""
+"""Examples of JSON bodies: responses of a service to a mesh of two tetrahedra, and requests that it accepts.
+
+The report of a print is that of a bar of two halves.
+"""
 
 import json
 from importlib.resources import files

@@ -18,23 +18,23 @@ from segcore.io.stl.writer import offset_of
 from segcore.io.text.rows import format_rows
 from segcore.mesh import Mesh
 
-_CORE = "http://schemas.microsoft.com/3dmanufacturing/core/2015/02"
-_MODEL = "3D/3dmodel.model"
+CORE = "http://schemas.microsoft.com/3dmanufacturing/core/2015/02"
+MODEL = "3D/3dmodel.model"
 _MODEL_TYPE = "application/vnd.ms-package.3dmanufacturing-3dmodel+xml"
 _RELATIONSHIPS = "http://schemas.openxmlformats.org/package/2006/relationships"
 _HEAD = '<?xml version="1.0" encoding="UTF-8"?>\n'
-_PACKAGE = {
+PACKAGE = {
     "[Content_Types].xml": (
         f'{_HEAD}<Types xmlns="http://schemas.openxmlformats.org/package/2006/content-types">'
         '<Default Extension="rels" ContentType="application/vnd.openxmlformats-package.relationships+xml"/>'
         f'<Default Extension="model" ContentType="{_MODEL_TYPE}"/></Types>'
     ),
     "_rels/.rels": (
-        f'{_HEAD}<Relationships xmlns="{_RELATIONSHIPS}"><Relationship Id="rel0" Target="/{_MODEL}" '
+        f'{_HEAD}<Relationships xmlns="{_RELATIONSHIPS}"><Relationship Id="rel0" Target="/{MODEL}" '
         'Type="http://schemas.microsoft.com/3dmanufacturing/2013/01/3dmodel"/></Relationships>'
     ),
 }
-_TURN = "1 0 0 0 1 0 0 0 1"  # none: the first nine numbers of a transform
+TURN = "1 0 0 0 1 0 0 0 1"  # none: the first nine numbers of a transform
 _NOT_SOLID = "not a solid: an edge does not have two faces"
 _MATERIALS = 1  # the id of the colours; segment k is object k + 2
 
@@ -75,13 +75,13 @@ def write_3mf(
     mesh = converted(mesh, "millimeter", "z")
     offset = offset_of(mesh)
     parts = parts_of(mesh, hierarchy, segments, capped is not False, offset)
-    called = [_quoted(name) for name in segment_names(names, count)]
+    called = [quoted(name) for name in segment_names(names, count)]
     look, slices = mesh.appearance or Appearance(), segment_slices(hierarchy, segments)
     groups = [", ".join(map(one_line, look.groups_of(slices[label]))) for label in range(count)]
     with zipfile.ZipFile(target, "w", compresslevel=FAST) as archive:
-        for name, text in _PACKAGE.items():
+        for name, text in PACKAGE.items():
             archive.writestr(member(name, compressed=True), text, compresslevel=FAST)
-        with archive.open(member(_MODEL, compressed=True), "w", force_zip64=True) as model:
+        with archive.open(member(MODEL, compressed=True), "w", force_zip64=True) as model:
             model.writelines(_model(parts, called, color_bytes(count, part_colors).tolist(), groups, offset))
 
 
@@ -96,7 +96,7 @@ def _escaped(text: str) -> str:
     return text.replace("&", "&amp;").replace("<", "&lt;").replace(">", "&gt;")
 
 
-def _quoted(text: str) -> str:
+def quoted(text: str) -> str:
     """An attribute value in quotation marks, or in apostrophes if it contains quotation marks and no apostrophes."""
     value = _escaped(text)
     if '"' in value and "'" not in value:
@@ -112,7 +112,7 @@ def _model(
         for name, color in zip(names, colors, strict=True)
     ]
     yield (
-        f'{_HEAD}<model unit="millimeter" xml:lang="en-US" xmlns="{_CORE}">\n<resources>\n'
+        f'{_HEAD}<model unit="millimeter" xml:lang="en-US" xmlns="{CORE}">\n<resources>\n'
         f'<basematerials id="{_MATERIALS}">\n{"".join(materials)}</basematerials>\n'
     ).encode()
     objects = []
@@ -123,7 +123,7 @@ def _model(
             yield from _object(distinct, objects[-1], names[part.label], _description(part, groups[part.label]))
     assembly = _MATERIALS + 1 + len(names)
     components = "".join(f'<component objectid="{part}"/>\n' for part in objects)
-    place = f' transform="{_TURN} {" ".join(map(repr, offset.tolist()))}"' if offset.any() else ""
+    place = f' transform="{TURN} {" ".join(map(repr, offset.tolist()))}"' if offset.any() else ""
     yield (
         f'<object id="{assembly}" type="model" name="segments">\n<components>\n{components}</components>\n</object>\n'
         f'</resources>\n<build>\n<item objectid="{assembly}"{place}/>\n</build>\n</model>\n'

@@ -6,6 +6,7 @@ import pytest
 
 from bench.__main__ import main
 from helpers.creatures import creature
+from helpers.printing.bars import bar
 from helpers.printing.slicers import needs_slicer
 from segcore.io import write_mesh
 
@@ -15,6 +16,16 @@ def test_every_mesh_has_a_line(tmp_path: Path, capsys: pytest.CaptureFixture[str
     write_mesh(tmp_path / "creature.off", creature(subdivisions=3))
     assert main(["printing", str(tmp_path / "creature.off"), "--segments", "6"]) == 0
     assert capsys.readouterr().out.splitlines()[2:] == ["| creature.off | 1280 | 6 | 6 of 6 | 6 of 6 |"]
+
+
+@needs_slicer
+def test_prints_are_sliced_with_their_filaments(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    write_mesh(tmp_path / "bar.off", bar()[0])
+    options = ["--connectors", "dowel", "--slots", "2", "--size", "60", "--segments", "1"]
+    assert main(["printing", str(tmp_path / "bar.off"), *options]) == 0
+    (line,) = capsys.readouterr().out.splitlines()[2:]
+    assert line.startswith("| bar.off | 192 | 1 | 0 of 0 | 1 of 1 | ")
+    assert line.endswith(" | 0 of 1 |")  # one filament needs no change
 
 
 def test_a_missing_slicer_is_named(

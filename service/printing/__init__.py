@@ -1,0 +1,1 @@
+"""Files for printing, in the API and on the command line."""
