@@ -1,11 +1,14 @@
 """The list of parts in responses."""
 
+from typing import BinaryIO
+
 from pydantic import BaseModel, Field
 
 import segcore
 from segcore.part_list.document import part_list_document
 from service.answer.label_formats import compact_json
 from service.answer.level import ChosenCut
+from service.answer.models import cached_rendition
 from service.answer.renditions import Rendition
 from service.result_cache import ResultCache
 
@@ -98,17 +101,11 @@ def parts_rendition(cache: ResultCache, cut: ChosenCut, tolerance: float) -> Ren
     ----------
     tolerance : largest deviation of congruent parts, in diagonals of the box of the first one.
     """
-    name = f"parts?{cut.name}&tolerance={tolerance!r}"
 
-    def render() -> bytes:
+    def write(target: BinaryIO) -> None:
         mesh, partition = cut.result.mesh, cut.partition
         names, colors = ({}, {}) if partition is None else (partition.names, partition.colors)
         listed = segcore.parts(mesh, cut.labels, names, tolerance=tolerance)
-        return compact_json(part_list_document(listed, mesh.coordinates.unit, colors))
+        target.write(compact_json(part_list_document(listed, mesh.coordinates.unit, colors)))
 
-    return Rendition(
-        identity=f"{cut.job_id}/{name}",
-        media_type="application/json",
-        render=lambda: cache.rendered(cut.job_id, name, render),
-        may_change=cut.is_newest,
-    )
+    return cached_rendition(cache, cut, f"parts?{cut.name}&tolerance={tolerance!r}", "application/json", write)

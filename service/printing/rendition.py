@@ -5,8 +5,9 @@ from typing import TYPE_CHECKING, BinaryIO
 from segcore.printing.options import PrintOptions
 from service.answer.label_formats import compact_json
 from service.answer.level import ChosenCut
+from service.answer.models import cached_rendition
 from service.answer.part_names import names_digest
-from service.answer.renditions import Rendition, to_bytes
+from service.answer.renditions import Rendition
 from service.result_cache import ResultCache
 
 if TYPE_CHECKING:
@@ -27,30 +28,18 @@ def print_rendition(cache: ResultCache, cut: ChosenCut, names: dict[int, str], o
         write_print(target, _plan(cut, names, options))
 
     name = f"print.3mf?{_query(cut, names, options)}"
-    return Rendition(
-        identity=f"{cut.job_id}/{name}",
-        media_type="model/3mf",
-        render=lambda: cache.rendered(cut.job_id, name, lambda: to_bytes(write)),
-        file_name=f"{cut.job_id}-print.3mf",
-        may_change=cut.is_newest,
-    )
+    return cached_rendition(cache, cut, name, "model/3mf", write, f"{cut.job_id}-print.3mf")
 
 
 def report_rendition(cache: ResultCache, cut: ChosenCut, names: dict[int, str], options: PrintOptions) -> Rendition:
     """Return the report of the same file."""
 
-    def render() -> bytes:
+    def write(target: BinaryIO) -> None:
         from segcore.printing.report import print_report
 
-        return compact_json(print_report(_plan(cut, names, options)))
+        target.write(compact_json(print_report(_plan(cut, names, options))))
 
-    name = f"print.json?{_query(cut, names, options)}"
-    return Rendition(
-        identity=f"{cut.job_id}/{name}",
-        media_type="application/json",
-        render=lambda: cache.rendered(cut.job_id, name, render),
-        may_change=cut.is_newest,
-    )
+    return cached_rendition(cache, cut, f"print.json?{_query(cut, names, options)}", "application/json", write)
 
 
 def _plan(cut: ChosenCut, names: dict[int, str], options: PrintOptions) -> "PrintPlan":
