@@ -41,7 +41,7 @@ if TYPE_CHECKING:
     from segcore.io.ply.writer import write_ply
     from segcore.io.reading import read_mesh
     from segcore.io.references import neighbours_of, referenced_files
-    from segcore.io.result import Segmentation, read_result, write_result
+    from segcore.io.result import Segmentation, is_result_file, read_result, write_result
     from segcore.io.threemf.writer import write_3mf
     from segcore.io.view.views import View, view_of
     from segcore.io.writing import WRITE_OPTIONS, WRITERS, WriteOption, Writer, writer_for
@@ -115,6 +115,7 @@ _MODULES = {
     ),
     "result": (
         "Segmentation",
+        "is_result_file",
         "read_result",
         "write_result",
     ),
@@ -159,6 +160,7 @@ __all__ = [
     "hierarchy_document",
     "is_hidden",
     "is_mesh_name",
+    "is_result_file",
     "labels_document",
     "model_in_folder",
     "name_in_set",

@@ -38,6 +38,7 @@ import json
 import os
 import zipfile
 from dataclasses import asdict, dataclass, fields
+from pathlib import Path
 from types import NoneType
 from typing import Any, BinaryIO, get_args
 
@@ -208,6 +209,14 @@ def _coordinates(header: dict[str, Any]) -> Coordinates:
     if not is_known or values["usual_up"] not in get_args(Axis):
         raise InvalidMesh("The unit or the axis in the header of the .cleave file is not a known one: make it again.")
     return Coordinates(**values)
+
+
+def is_result_file(path: Path) -> bool:
+    """Whether a path is that of a .cleave file, by its members."""
+    if not path.is_file() or not zipfile.is_zipfile(path):
+        return False
+    with zipfile.ZipFile(path) as archive:
+        return _HEADER in archive.namelist()
 
 
 def _read_header(archive: zipfile.ZipFile) -> dict[str, Any]:

@@ -5,13 +5,11 @@ from __future__ import annotations
 import argparse
 import json
 import sys
-import zipfile
 from dataclasses import dataclass, replace
-from pathlib import Path
 from typing import TYPE_CHECKING
 
 import segcore
-from segcore.io import read_result
+from segcore.io import is_result_file, read_result
 from segcore.levels import Fineness
 from segcore.part_list.document import part_list_document
 from service.commands.console import ProgressBar, say
@@ -21,8 +19,6 @@ from service.commands.segment import compile_first_kernels
 if TYPE_CHECKING:
     from segcore.part_list.listing import MeasuredPart
     from segcore.part_list.repeats import Repeat
-
-_HEADER = "header.json"  # a member of .cleave files
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -42,7 +38,7 @@ def print_parts(choices: argparse.Namespace) -> None:
         If the file cannot be read.
     """
     fineness = Fineness(choices.segments, choices.granularity)
-    is_result = choices.mesh == STANDARD or _is_result(choices.mesh)
+    is_result = choices.mesh == STANDARD or is_result_file(choices.mesh)
     chosen = _stored(choices, fineness) if is_result else _segmented(choices, fineness)
     mesh, partition = chosen.mesh, chosen.partition
     listed = segcore.parts(mesh, partition.labels, partition.names)
@@ -56,13 +52,6 @@ def print_parts(choices: argparse.Namespace) -> None:
         say(line)
     if not listed.repeats.is_complete:
         say("There are too many parts to compare all with each other: some copies may be missing.")
-
-
-def _is_result(path: Path) -> bool:
-    if not path.is_file() or not zipfile.is_zipfile(path):
-        return False
-    with zipfile.ZipFile(path) as archive:
-        return _HEADER in archive.namelist()
 
 
 def _stored(choices: argparse.Namespace, fineness: Fineness) -> _Chosen:
