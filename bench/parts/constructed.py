@@ -7,6 +7,7 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 import numpy as np
+from scipy.spatial.transform import Rotation
 
 if TYPE_CHECKING:
     from segcore.arrays import FloatArray, IntArray
@@ -103,10 +104,8 @@ def _moved(corners: FloatArray, rng: np.random.Generator) -> FloatArray:
 
 
 def _rotation(rng: np.random.Generator) -> FloatArray:
-    q, r = np.linalg.qr(rng.normal(size=(3, 3)))
-    q = q * np.sign(np.diag(r))
-    q[:, 0] *= np.sign(np.linalg.det(q))
-    return q
+    rotation: FloatArray = Rotation.from_quat(rng.normal(size=4)).as_matrix()
+    return rotation
 
 
 def _refined(corners: FloatArray, times: int) -> FloatArray:
