@@ -71,10 +71,8 @@ class AgentEndpoint:
         try:
             from mcp.server.transport_security import TransportSecuritySettings
         except ModuleNotFoundError as error:
-            needed = extra_command("mcp")
-            raise Problem(
-                "not_found", f"This server has no tools for agents: the operator adds them by {needed}."
-            ) from (error)
+            sentence = f"This server has no tools for agents: the operator adds them by {extra_command('mcp')}."
+            raise Problem("not_found", sentence) from error
         from service.mcp.own_client import own_clients
         from service.mcp.server import mcp_server
 
