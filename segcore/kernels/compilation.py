@@ -1,7 +1,6 @@
 """Compilation of groups of kernels, once for all processes that use the same cache."""
 
 import logging
-import os
 from collections import Counter
 from collections.abc import Callable, Collection
 from dataclasses import replace
@@ -10,6 +9,7 @@ from typing import TypeAlias
 from segcore.kernels.manifest import GROUPS, Kernel, kernels
 from segcore.kernels.place import CompilationProgress, KernelPlace, kernel_place
 from segcore.kernels.processes import compile_in_processes
+from segcore.threads import usable_cores
 
 OnProgress: TypeAlias = Callable[[CompilationProgress], object]
 
@@ -77,5 +77,4 @@ def _compile(place: KernelPlace, groups: frozenset[str], on_progress: OnProgress
 
 
 def _processes() -> int:
-    cores = len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1
-    return min(cores, _MOST_PROCESSES)
+    return min(usable_cores(), _MOST_PROCESSES)

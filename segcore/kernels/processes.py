@@ -14,6 +14,11 @@ from segcore.kernels.manifest import GROUPS, Kernel, kernels
 _ROOT = Path(__file__).parents[2]
 
 
+def environment() -> dict[str, str]:
+    """Return the variables of a process that imports this package, also if it is run from a checkout."""
+    return os.environ | {"PYTHONPATH": os.pathsep.join(filter(None, [str(_ROOT), os.environ.get("PYTHONPATH")]))}
+
+
 def compile_in_processes(
     chosen: Sequence[Kernel], count: int, niceness: int, on_done: Callable[[Kernel], None]
 ) -> bool:
@@ -44,13 +49,12 @@ class _Child:
     """A process and the kernel that it compiles now."""
 
     def __init__(self, niceness: int, stack: ExitStack) -> None:
-        path = os.pathsep.join(filter(None, [str(_ROOT), os.environ.get("PYTHONPATH")]))
         self._process = subprocess.Popen(
             [sys.executable, "-P", "-m", "segcore.kernels.compiler", str(niceness)],
             stdin=subprocess.PIPE,
             stdout=subprocess.PIPE,
             bufsize=0,
-            env=os.environ | {"PYTHONPATH": path},
+            env=environment(),
         )
         stack.callback(self._process.wait)
         stack.callback(self._process.kill)

@@ -6,24 +6,19 @@ import subprocess
 import sys
 import time
 from functools import partial
-from pathlib import Path
 
 from redis import Redis
 
 import segcore
 from cleave.parent_death import die_with_parent
-from segcore.kernels import FIRST, CompilationProgress, compile_kernels, must_compile
+from segcore.kernels import FIRST, CompilationProgress, compile_kernels, environment, must_compile
 from worker.jobs.queue.compilation import Compilation, publish_compilation
 from worker.jobs.queue.connection import QueueError
 
 log = logging.getLogger("cleave.worker")
 
-_OTHERS = (
-    "read",
-    "bodies",
-    "fine",
-    "draw",
-)  # groups of which many jobs need kernels; edits run in processes of their own
+# Groups of which many jobs need kernels; edits run in processes of their own.
+_OTHERS = ("read", "bodies", "fine", "draw")
 _LOG_INTERVAL_S = 5.0  # set by hand
 _PAUSE_S = 2.0  # after an error of Redis, which may not be ready yet; set by hand
 
@@ -92,11 +87,9 @@ class _Report:
 
 
 def _start_compiling() -> "subprocess.Popen[bytes]":
-    root = str(Path(segcore.__file__).parents[1])
-    path = os.pathsep.join(filter(None, [root, os.environ.get("PYTHONPATH")]))
     return subprocess.Popen(
         [sys.executable, "-P", "-m", "segcore.kernels", "--quiet"],
         stdin=subprocess.DEVNULL,
-        env=os.environ | {"PYTHONPATH": path},
+        env=environment(),
         preexec_fn=partial(die_with_parent, os.getpid()),
     )
