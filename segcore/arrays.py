@@ -32,6 +32,13 @@ def pair_keys(pairs: NDArray[np.integer], count: int) -> LongArray:
     return keys
 
 
+def plane_axes(normal: FloatArray) -> FloatArray:
+    """(2, 3) unit vectors that form a right-handed frame with a unit normal (3,)."""
+    across = np.cross(normal, np.eye(3)[np.argmin(np.abs(normal))])
+    across /= np.linalg.norm(across)
+    return np.stack([across, np.cross(normal, across)])
+
+
 def transformed(points: FloatArray, matrix: FloatArray) -> FloatArray:
     """(..., K) the images M p of points p (..., 3) under a matrix M (K, 3), without the threads of BLAS."""
     images: FloatArray = np.einsum("...j,kj->...k", points, matrix)

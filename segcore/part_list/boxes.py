@@ -5,7 +5,7 @@ from dataclasses import dataclass
 import numpy as np
 from scipy.spatial import ConvexHull, QhullError
 
-from segcore.arrays import FloatArray, LongArray, transformed
+from segcore.arrays import FloatArray, LongArray, plane_axes, transformed
 from segcore.part_list.directions import spread_directions
 
 # All set by hand.
@@ -116,9 +116,7 @@ def _hull_normals(points: FloatArray, most: int) -> FloatArray:
 def _frame(points: FloatArray, normal: FloatArray) -> FloatArray:
     """(3, 3) the axes of the least box around points with one axis along a normal, as rows."""
     normal = normal / np.linalg.norm(normal)
-    across = np.cross(normal, np.eye(3)[np.argmin(np.abs(normal))])
-    across /= np.linalg.norm(across)
-    basis = np.stack([across, np.cross(normal, across)])
+    basis = plane_axes(normal)
     flat = transformed(points, basis)
     try:
         corners = flat[ConvexHull(flat).vertices]

@@ -8,8 +8,8 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from segcore.arrays import FloatArray
-from segcore.printing.booleans import plane_axes, region, surface_of
+from segcore.arrays import FloatArray, plane_axes
+from segcore.printing.booleans import region, surface_of
 from segcore.printing.circles import largest_circle
 from segcore.printing.connectors import LARGEST_DEPTH, Joint, add_connectors
 from segcore.printing.contacts import Contact

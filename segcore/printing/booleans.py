@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from segcore.arrays import FloatArray, IntArray
+from segcore.arrays import FloatArray, IntArray, plane_axes
 from segcore.errors import MissingPackage
 
 if TYPE_CHECKING:
@@ -59,13 +59,6 @@ def cylinder(centre: FloatArray, direction: FloatArray, radius: float, begin: fl
 def hole_radius(radius: float, clearance: float) -> float:
     """Return the radius of a hole whose flat sides are half the clearance from those of a cylinder."""
     return radius + 0.5 * clearance / float(np.cos(np.pi / _SIDES))
-
-
-def plane_axes(normal: FloatArray) -> FloatArray:
-    """(2, 3) unit vectors that form a right-handed frame with a unit normal (3,)."""
-    across = np.cross(normal, np.eye(3)[np.argmin(np.abs(normal))])
-    across /= np.linalg.norm(across)
-    return np.stack([across, np.cross(normal, across)])
 
 
 def contains(solid: Manifold, other: Manifold) -> bool:

@@ -8,9 +8,9 @@ from dataclasses import dataclass
 import numpy as np
 from scipy.spatial import KDTree
 
-from segcore.arrays import FloatArray, IntArray
+from segcore.arrays import FloatArray, IntArray, plane_axes
 from segcore.graphs.surface_graph import connected_components
-from segcore.printing.booleans import plane_axes, region
+from segcore.printing.booleans import region
 from segcore.printing.circles import Circle, largest_circle
 
 _LEAST_WIDTH = 0.02  # of its length, that a border must have across it to define a plane; set by hand

@@ -5,7 +5,7 @@ from dataclasses import dataclass
 import numpy as np
 from numba import njit
 
-from segcore.arrays import FloatArray, IntArray, LongArray, transformed
+from segcore.arrays import FloatArray, IntArray, LongArray, plane_axes, transformed
 
 # The number of ears, each with a shorter base than the one before, that end the search. Set by hand: one is enough for
 # a valid cap, more avoid long thin triangles.
@@ -86,9 +86,7 @@ def _projected(points: FloatArray) -> FloatArray:
     normal = np.cross(relative, np.roll(relative, -1, axis=0)).sum(axis=0)
     size = float(np.linalg.norm(normal))
     normal = normal / size if size > 0 else np.array([0.0, 0.0, 1.0])
-    across = np.cross(normal, np.eye(3)[np.argmin(np.abs(normal))])
-    across /= np.linalg.norm(across)
-    return transformed(relative, np.stack([across, np.cross(normal, across)]))
+    return transformed(relative, plane_axes(normal))
 
 
 @njit(cache=True)
