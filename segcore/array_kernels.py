@@ -5,7 +5,7 @@ from numba import njit
 from numpy.typing import NDArray
 
 from segcore.arrays import FloatArray, IntArray, LongArray, pair_keys
-from segcore.threads import in_blocks
+from segcore.threads import in_blocks, sums_of_blocks
 
 _DENSE = 4  # indices for each pair, up to which pairs are counted by their smaller index; set by hand
 _FEW = 32  # pairs of one smaller index up to which they are sorted by insertion; set by hand
@@ -146,3 +146,37 @@ def _write_centroids(start, end, vertices, faces, centroids):  # type: ignore[no
         a, b, c = vertices[faces[f, 0]], vertices[faces[f, 1]], vertices[faces[f, 2]]
         for axis in range(3):
             centroids[f, axis] = (a[axis] + b[axis] + c[axis]) / 3.0
+
+
+def area_moments(vertices: FloatArray, faces: IntArray, areas: FloatArray) -> tuple[FloatArray, FloatArray]:
+    """(3,) centroid and (3, 3) covariance of the area of faces (F, 3), by the exact integrals over the triangles."""
+    count, arrays = len(faces), (vertices, faces, areas)
+    area, *firsts = sums_of_blocks(_area_moments, count, *arrays, np.zeros(3))[:4].tolist()
+    centre = np.array(firsts) / area
+    xx, yy, zz, xy, xz, yz = sums_of_blocks(_area_moments, count, *arrays, centre)[4:] / area
+    return centre, np.array([[xx, xy, xz], [xy, yy, yz], [xz, yz, zz]])
+
+
+@njit(cache=True, nogil=True)
+def _area_moments(start, end, vertices, faces, areas, centre):  # type: ignore[no-untyped-def]
+    """(10,) area of some faces, and its moments x, y, z, xx, yy, zz, xy, xz, yz about a centre (3,)."""
+    sums = np.zeros(10)
+    corner = np.empty((4, 3))  # and their mean
+    factor = (1.0 / 12.0, 1.0 / 12.0, 1.0 / 12.0, 9.0 / 12.0)
+    for f in range(start, end):
+        for axis in range(3):
+            for k in range(3):
+                corner[k, axis] = vertices[faces[f, k], axis] - centre[axis]
+            corner[3, axis] = (corner[0, axis] + corner[1, axis] + corner[2, axis]) / 3.0
+            sums[1 + axis] += areas[f] * corner[3, axis]
+        sums[0] += areas[f]
+        for k in range(4):
+            x, y, z = corner[k, 0], corner[k, 1], corner[k, 2]
+            weight = factor[k] * areas[f]
+            sums[4] += weight * x * x
+            sums[5] += weight * y * y
+            sums[6] += weight * z * z
+            sums[7] += weight * x * y
+            sums[8] += weight * x * z
+            sums[9] += weight * y * z
+    return sums

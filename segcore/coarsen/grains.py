@@ -8,7 +8,7 @@ import numpy as np
 from numba import njit
 
 from segcore.arrays import IntArray, group_sums
-from segcore.graphs.surface_graph import SurfaceGraph, components_inside
+from segcore.graphs.surface_graph import SurfaceGraph, components_inside, edges_between
 
 # Set by hand. There are about 16 grains or more in each of 2,500 clusters, whose outlines are drawn again afterwards.
 MANY = 1 << 17  # nodes from which on there are grains
@@ -45,7 +45,7 @@ def merged_grains(graph: SurfaceGraph, grain: IntArray) -> tuple[SurfaceGraph, I
     """
     is_strong = graph.weight >= _GUARD * graph.length
     grain = components_inside(graph.edges[is_strong], grain)
-    edge = _edges_across(graph.edges, grain)
+    edge = edges_between(graph.edges, grain)
     volume = group_sums(grain, graph.volume)
     pairs = grain[graph.edges[edge]]
     return SurfaceGraph.with_sums(pairs, graph.weight[edge], volume, graph.length[edge]), grain
@@ -74,15 +74,3 @@ def _grown(start, neighbour, edge, weight, length, volume, most, largest):  # ty
                     tail += 1
         grains += 1
     return grain
-
-
-@njit(cache=True, nogil=True)
-def _edges_across(edges: IntArray, group: IntArray) -> IntArray:
-    """The edges between different groups (N,) of nodes."""
-    found = np.empty(len(edges), np.int32)
-    count = 0
-    for e in range(len(edges)):
-        if group[edges[e, 0]] != group[edges[e, 1]]:
-            found[count] = e
-            count += 1
-    return found[:count].copy()

@@ -7,6 +7,7 @@ from numba import njit
 
 from segcore.arrays import BoolArray, FloatArray, IntArray
 from segcore.cut.fields import SegmentFields
+from segcore.graphs.cheeger import side_volumes
 
 _WHOLE = 1.0 - 1e-9  # share of a body that counts as all of it
 
@@ -75,12 +76,7 @@ def sums_of_cuts(part: SegmentFields, chosen: BoolArray, body_area: FloatArray) 
 @njit(cache=True)
 def _smaller(part: SegmentFields, side: BoolArray) -> BoolArray:
     """(M,) the side of less area; the given one of two equals."""
-    inside = outside = 0.0
-    for i in range(len(side)):
-        if side[i]:
-            inside += part.volume[i]
-        else:
-            outside += part.volume[i]
+    inside, outside = side_volumes(part.volume, side)
     return side if inside <= outside else ~side
 
 

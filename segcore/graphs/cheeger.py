@@ -70,13 +70,20 @@ def cut_sums(graph: SurfaceGraph, side: BoolArray) -> tuple[float, float, float]
     for e in range(len(graph.edges)):
         if side[graph.edges[e, 0]] != side[graph.edges[e, 1]]:
             weight += graph.weight[e]
+    inside, outside = side_volumes(graph.volume, side)
+    return weight, inside, outside
+
+
+@njit(cache=True)
+def side_volumes(volume: FloatArray, side: BoolArray) -> tuple[float, float]:
+    """Volume of a set of nodes (N,), and of the rest."""
     inside = outside = 0.0
     for i in range(len(side)):
         if side[i]:
-            inside += graph.volume[i]
+            inside += volume[i]
         else:
-            outside += graph.volume[i]
-    return weight, inside, outside
+            outside += volume[i]
+    return inside, outside
 
 
 @njit(cache=True)
@@ -169,20 +176,6 @@ def sweep(graph: SurfaceGraph, values: FloatArray, criterion: Criterion = "ncc")
     return cut_of(graph, best_level_set(values, level_sets(graph, values), criterion == "ncut"))
 
 
-def valleys(graph: SurfaceGraph, values: FloatArray, most: int) -> list[Cut]:
-    """Return the cuts of least weight among the upper level sets of a function, each the least one around it.
-
-    A cut through a neck is a valley of the weight along the sweep, even if another level set has a better ratio.
-
-    Parameters
-    ----------
-    values : (N,) finite.
-    most : number of valleys, at most.
-    """
-    sides = valley_sides(level_sets(graph, np.ascontiguousarray(values)), most)
-    return [cut_of(graph, side) for side in sides]
-
-
 class LevelSets(NamedTuple):
     """The nodes by increasing values of a function, and the cuts between the first r + 1 of them and the rest."""
 
@@ -237,9 +230,10 @@ def best_level_set(values: FloatArray, levels: LevelSets, both_sides: bool) -> B
 def valley_sides(levels: LevelSets, most: int) -> BoolArray:
     """(K, N) the upper level sets whose weight is the least within a width of volume to both sides, K <= most.
 
-    The least one comes first. A window over the ranks is moved along; ``queue`` has the ranks in it that are lower than
-    all later ones, so that the first is the lowest (Lemire, Streaming maximum-minimum filter using no more than three
-    comparisons per element, Nordic Journal of Computing 13, 2006).
+    A cut through a neck is such a valley, even if another level set has a better ratio. The least one comes first. A
+    window over the ranks is moved along; ``queue`` has the ranks in it that are lower than all later ones, so that the
+    first is the lowest (Lemire, Streaming maximum-minimum filter using no more than three comparisons per element,
+    Nordic Journal of Computing 13, 2006).
     """
     weight, volume = levels.weight, levels.volume
     node_count = len(weight)

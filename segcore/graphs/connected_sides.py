@@ -15,8 +15,7 @@ def with_connected_sides(graph: SurfaceGraph, cut: Cut) -> Cut:
     its components touch that piece. The complement of each of them is therefore connected, and the best of them is cut
     off instead.
     """
-    side = connected_side(graph, cut.side)
-    return cut if side is cut.side or (side == cut.side).all() else cut_of(graph, side)
+    return cut_of(graph, connected_side(graph, cut.side))
 
 
 @njit(cache=True)

@@ -187,6 +187,18 @@ def induced_edges(edges: IntArray, nodes: IntArray, node_count: int) -> tuple[In
 
 
 @njit(cache=True, nogil=True)
+def edges_between(edges: IntArray, group: IntArray | BoolArray) -> IntArray:
+    """The edges between nodes of different groups (N,)."""
+    found = np.empty(len(edges), np.int32)
+    count = 0
+    for e in range(len(edges)):
+        if group[edges[e, 0]] != group[edges[e, 1]]:
+            found[count] = e
+            count += 1
+    return found[:count].copy()
+
+
+@njit(cache=True, nogil=True)
 def components_within(edges: IntArray, group: IntArray | BoolArray) -> tuple[IntArray, int]:
     """(N,) the components of a graph without the edges between groups of nodes (N,), and their number."""
     parent = np.arange(len(group)).astype(np.int32)

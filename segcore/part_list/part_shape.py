@@ -4,6 +4,7 @@ from functools import cached_property
 
 import numpy as np
 
+from segcore.array_kernels import area_moments
 from segcore.arrays import FloatArray, IntArray
 from segcore.mesh import face_normals_and_areas
 from segcore.part_list.boxes import OrientedBox, extreme_places
@@ -25,7 +26,9 @@ class PartShape:
 
     def __init__(self, vertices: FloatArray, faces: IntArray, box: OrientedBox) -> None:
         around = vertices - box.centre
-        centroid, moments, self.area = area_moments(around[faces])
+        areas = face_normals_and_areas(around[faces])[1]
+        centroid, moments = area_moments(around, faces, areas)
+        self.area = float(areas.sum())
         self.centre = box.centre + centroid
         self.vertices, self.faces, self.box = around - centroid, faces, box
         self.size = box.diagonal
@@ -45,16 +48,3 @@ class PartShape:
     def distance(self) -> SurfaceDistance:
         """Distances of other points from the faces."""
         return SurfaceDistance(self.vertices, self.faces)
-
-
-def area_moments(corners: FloatArray) -> tuple[FloatArray, FloatArray, float]:
-    """(3,) centroid, (3, 3) covariance and sum of the area of triangles (F, 3, 3), by exact integrals."""
-    areas = face_normals_and_areas(corners)[1]
-    total = float(areas.sum())
-    weight = areas / total
-    middles = corners.mean(axis=1)
-    centre = np.einsum("f,fi->i", weight, middles)
-    around = corners - centre
-    squares = np.einsum("f,fki,fkj->ij", weight, around, around, optimize=True)
-    inner = np.einsum("f,fi,fj->ij", weight, middles - centre, middles - centre, optimize=True)
-    return centre, (squares + 9.0 * inner) / 12.0, total

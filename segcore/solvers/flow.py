@@ -121,8 +121,7 @@ def improve(network: Network, cut: Cut) -> Cut:
     Andersen and Lang, An algorithm for improving graph partitions, SODA 2008; Hein and Setzer, Beyond spectral
     clustering: tight relaxations of balanced graph cuts, NIPS 2011.
     """
-    side = improved(network, cut.side)
-    return cut if side is cut.side else cut_of(network.graph, side)
+    return cut_of(network.graph, improved(network, cut.side))
 
 
 @njit(cache=True)

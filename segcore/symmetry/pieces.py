@@ -1,10 +1,9 @@
 """Groups of nodes that have come apart, made connected again."""
 
 import numpy as np
-from numba import njit
 
-from segcore.arrays import BoolArray, IntArray, group_sums
-from segcore.graphs.surface_graph import SurfaceGraph, components_inside
+from segcore.arrays import IntArray, group_sums
+from segcore.graphs.surface_graph import SurfaceGraph, components_inside, edges_between
 
 
 def in_one_piece(graph: SurfaceGraph, group: IntArray, kind: IntArray) -> IntArray:
@@ -35,7 +34,7 @@ def _joined_once(graph: SurfaceGraph, group: IntArray, kind: IntArray) -> IntArr
     is_loose[order[np.unique(of_piece[order], return_index=True)[1]]] = False
     if not is_loose.any():
         return group
-    edge = _edges_between(graph.edges, is_loose[piece])
+    edge = edges_between(graph.edges, is_loose[piece])
     ends = piece[graph.edges[edge]]
     one, other = np.concatenate([ends, ends[:, ::-1]]).T
     near = is_loose[one] & ~is_loose[other] & (kind[of_piece[one]] == kind[of_piece[other]])
@@ -45,15 +44,3 @@ def _joined_once(graph: SurfaceGraph, group: IntArray, kind: IntArray) -> IntArr
     of_piece[keys[ascending] // len(kind)] = keys[ascending] % len(kind)
     joined: IntArray = of_piece[piece]
     return joined
-
-
-@njit(cache=True, nogil=True)
-def _edges_between(edges: IntArray, inside: BoolArray) -> IntArray:
-    """The edges of which one node is inside a set of nodes (N,), and the other outside of it."""
-    found = np.empty(len(edges), np.int32)
-    count = 0
-    for e in range(len(edges)):
-        if inside[edges[e, 0]] != inside[edges[e, 1]]:
-            found[count] = e
-            count += 1
-    return found[:count].copy()

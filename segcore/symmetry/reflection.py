@@ -10,13 +10,12 @@ vertices.
 from dataclasses import dataclass
 
 import numpy as np
-from numba import njit
 from scipy.spatial import KDTree
 
+from segcore.array_kernels import area_moments
 from segcore.arrays import BoolArray, FloatArray, IntArray, group_sums
 from segcore.clean.surface import Surface
 from segcore.coarsen.contacts import spread_points
-from segcore.threads import sums_of_blocks
 
 # All set by hand.
 _POINTS = 8192  # that represent the surface; their spacing is sqrt(1 / 8192) = 1 / 90 of the size
@@ -79,47 +78,13 @@ def find_reflection(surface: Surface) -> Reflection | None:
     if not surface.areas.sum() > 0.0:
         return None
     test = _Test(surface)
-    centre, covariance = _moments(surface)
+    centre, covariance = area_moments(surface.vertices, surface.faces, surface.areas)
     found = []
     for axis, factor in _axes(covariance):
         reflection = test.accepted(Reflection(axis, float(axis @ centre)))
         if reflection is not None:
             found.append((factor * float(axis @ covariance @ axis), reflection))
     return max(found, key=lambda entry: entry[0])[1] if found else None
-
-
-def _moments(surface: Surface) -> tuple[FloatArray, FloatArray]:
-    """(3,) centroid and (3, 3) covariance of the area, by the exact integrals over the triangles."""
-    count, arrays = len(surface.faces), (surface.vertices, surface.faces, surface.areas)
-    area, *firsts = sums_of_blocks(_area_moments, count, *arrays, np.zeros(3))[:4].tolist()
-    centre = np.array(firsts) / area
-    xx, yy, zz, xy, xz, yz = sums_of_blocks(_area_moments, count, *arrays, centre)[4:] / area
-    return centre, np.array([[xx, xy, xz], [xy, yy, yz], [xz, yz, zz]])
-
-
-@njit(cache=True, nogil=True)
-def _area_moments(start, end, vertices, faces, areas, centre):  # type: ignore[no-untyped-def]
-    """(10,) area of some faces, and its moments x, y, z, xx, yy, zz, xy, xz, yz about a centre (3,)."""
-    sums = np.zeros(10)
-    corner = np.empty((4, 3))  # and their mean
-    factor = (1.0 / 12.0, 1.0 / 12.0, 1.0 / 12.0, 9.0 / 12.0)
-    for f in range(start, end):
-        for axis in range(3):
-            for k in range(3):
-                corner[k, axis] = vertices[faces[f, k], axis] - centre[axis]
-            corner[3, axis] = (corner[0, axis] + corner[1, axis] + corner[2, axis]) / 3.0
-            sums[1 + axis] += areas[f] * corner[3, axis]
-        sums[0] += areas[f]
-        for k in range(4):
-            x, y, z = corner[k, 0], corner[k, 1], corner[k, 2]
-            weight = factor[k] * areas[f]
-            sums[4] += weight * x * x
-            sums[5] += weight * y * y
-            sums[6] += weight * z * z
-            sums[7] += weight * x * y
-            sums[8] += weight * x * z
-            sums[9] += weight * y * z
-    return sums
 
 
 def _axes(covariance: FloatArray) -> list[tuple[FloatArray, float]]:

@@ -4,8 +4,13 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from helpers.graphs import graph_of, graphs, laplacian
-from segcore.graphs.cheeger import Criterion, cut_of, cut_weight, ncc, ncut, sweep, valleys
+from segcore.arrays import FloatArray
+from segcore.graphs.cheeger import Criterion, Cut, cut_of, cut_weight, level_sets, ncc, ncut, sweep, valley_sides
 from segcore.graphs.surface_graph import SurfaceGraph
+
+
+def valleys(graph: SurfaceGraph, values: FloatArray, most: int) -> list[Cut]:
+    return [cut_of(graph, side) for side in valley_sides(level_sets(graph, values), most)]
 
 
 @given(graphs(connected=False), st.data())

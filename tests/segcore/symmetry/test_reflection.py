@@ -4,9 +4,10 @@ import pytest
 from helpers.creatures import creature
 from helpers.meshes import moved, refined, rotation
 from segcore import shapes
+from segcore.array_kernels import area_moments
 from segcore.clean.surface import build_surface
 from segcore.mesh import Mesh
-from segcore.symmetry.reflection import Reflection, _moments, find_reflection
+from segcore.symmetry.reflection import Reflection, find_reflection
 
 
 def turns(count):
@@ -59,12 +60,17 @@ def test_a_reflection_is_recovered_from_points_and_their_images():
     np.testing.assert_allclose(true.heights(true.of_points(points)), -true.heights(points), atol=1e-12)
 
 
+def moments(mesh):
+    surface = build_surface(mesh)
+    return area_moments(surface.vertices, surface.faces, surface.areas)
+
+
 def test_the_moments_are_integrals_over_the_area():
     """Those of a sphere of radius r: centre 0, covariance r^2 / 3; and the same for any division of the faces."""
     coarse = creature(subdivisions=3)
-    once, again = (_moments(build_surface(mesh)) for mesh in (coarse, refined(coarse, 1)))
+    once, again = (moments(mesh) for mesh in (coarse, refined(coarse, 1)))
     np.testing.assert_allclose(once[0], again[0], atol=1e-12)
     np.testing.assert_allclose(once[1], again[1], atol=1e-12)
-    centre, covariance = _moments(build_surface(shapes.icosphere(5)))  # scaled to radius 1 / 2
+    centre, covariance = moments(shapes.icosphere(5))  # scaled to radius 1 / 2
     np.testing.assert_allclose(centre, 0.0, atol=1e-12)
     np.testing.assert_allclose(covariance, np.eye(3) / 12, atol=1e-3)
