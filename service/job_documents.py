@@ -58,6 +58,8 @@ class JobLinks(BaseModel):
     objzip: str = Field(description="A ZIP archive with the OBJ file and its colours.")
     threemf: str
     parts: str = Field(description="A ZIP archive with a file per segment.")
+    print: str = Field(description="3MF for printing: solids with connectors and filaments.")
+    print_report: str = Field(description="What the file for printing contains.")
     preview: str = Field(description="A picture.")
     edits: str = Field(description="For POST.")
     revisions: str
@@ -268,6 +270,8 @@ def job_links(path: str) -> JobLinks:
         cancel=f"{path}/cancel",
         labels=f"{path}/labels",
         hierarchy=f"{path}/hierarchy",
+        print=f"{path}/print.3mf",
+        print_report=f"{path}/print.json",
         preview=f"{path}/preview.png",
         edits=f"{path}/edits",
         revisions=f"{path}/revisions",

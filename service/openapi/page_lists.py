@@ -1,9 +1,10 @@
-"""What the page shows: formats of uploads and of models, stages of a job, and the name of a part that has none."""
+"""What the page shows: formats, stages of a job, the name of a part that has none, and options of prints."""
 
 from typing import Any
 
 from segcore.io import DEFAULT_SEGMENT_NAME, FORMATS
 from service.answer.model_formats import MODELS, model_file
+from service.printing.choices import print_choices
 from worker.process.progress import REPORTED_STAGES
 
 _STAGE_TITLES = {
@@ -29,4 +30,5 @@ def page_lists() -> dict[str, Any]:
         ],
         "stages": [{"name": stage, "title": _STAGE_TITLES[stage]} for stage in REPORTED_STAGES],
         "segmentName": DEFAULT_SEGMENT_NAME,
+        "print": print_choices(),
     }

@@ -91,6 +91,37 @@ export interface Parameter {
   readonly exclusiveMaximum?: number;
 }
 
+/** What a file for printing contains; lengths in mm. */
+export interface PrintReport {
+  /** Null if it is not known. */
+  readonly unit_of_mesh: string | null;
+  readonly scale: number;
+  readonly connectors: string;
+  readonly volume: number;
+  readonly objects: readonly PrintObject[];
+  readonly slots: readonly { readonly slot: number; readonly color: string }[];
+  readonly contacts: readonly PrintContact[];
+}
+
+export interface PrintObject {
+  readonly name: string;
+  /** Null for a dowel. */
+  readonly part: number | null;
+  readonly slot: number;
+  readonly closed: boolean;
+  readonly volume: number | null;
+  readonly size: readonly number[];
+  readonly fits_bed: boolean;
+}
+
+export interface PrintContact {
+  readonly parts: readonly [number, number];
+  /** The numbers of two pieces of one part; null between two parts. */
+  readonly pieces: readonly number[] | null;
+  readonly connector: { readonly kind: string; readonly diameter: number; readonly hole_diameter: number; readonly holes: number } | null;
+  readonly reason: string | null;
+}
+
 const KEY = "cleave.key";
 
 /** The API key stored in this browser; empty if the server requires none. */
@@ -121,6 +152,8 @@ export const jobPath = (id: string, rest = ""): string => `v1/jobs/${encodeURICo
 export const getJob = (id: string): Promise<Job> => get(jobPath(id));
 export const getFormats = (): Promise<Formats> => (formats ??= get<Formats>("v1/formats").catch(forgetFormats));
 export const getMethods = (): Promise<ParameterSchema> => get("v1/methods");
+
+export const getPrintReport = (id: string, query: string): Promise<PrintReport> => get(jobPath(id, `/print.json${query}`));
 
 export function listJobs(cursor: string | null): Promise<JobPage> {
   return get(`v1/jobs?limit=50${cursor === null ? "" : `&cursor=${encodeURIComponent(cursor)}`}`);

@@ -28,10 +28,13 @@ export class DownloadDialog {
   readonly #dialog = byId<HTMLDialogElement>("download");
   readonly #viewer: CleaveViewer;
   readonly #shown: () => Result | null;
+  readonly #onPrint: () => void;
 
-  constructor(viewer: CleaveViewer, shown: () => Result | null) {
+  /** ``onPrint`` opens the dialog of files for printing. */
+  constructor(viewer: CleaveViewer, shown: () => Result | null, onPrint: () => void) {
     this.#viewer = viewer;
     this.#shown = shown;
+    this.#onPrint = onPrint;
     byId("open-download").addEventListener("click", () => this.open());
     byId("copy-link").addEventListener("click", () => void copy(location.href, "Link copied."));
     for (const id of ["curl", "python"])
@@ -45,6 +48,7 @@ export class DownloadDialog {
     byId("downloads").replaceChildren(
       ...DOWNLOADS.map((item) => this.#row(item.id, item.title, item.about, () => this.#download(item))),
       this.#row("png", "Picture", "This view as PNG, without a background", () => this.#savePicture()),
+      this.#row("print", "Print", "3MF with connectors and filaments", async () => this.#print()),
     );
     const hidden = shown.session.work.hidden.size;
     byId("download-hidden").hidden = hidden === 0;
@@ -84,6 +88,11 @@ export class DownloadDialog {
     }
   }
 
+  #print(): void {
+    this.#dialog.close();
+    this.#onPrint();
+  }
+
   async #savePicture(): Promise<void> {
     save(await this.#viewer.picture(), `${stem(nameOf(this.#shown()!.job))}.png`);
   }
@@ -97,7 +106,7 @@ function modelDownload({ name, title, extension, path }: (typeof lists.formats)[
 }
 
 /** Return the query string with the names of the parts, by label: 0, 1, ... in the order of the parts. */
-function nameQuery({ parts, work }: Session): string {
+export function nameQuery({ parts, work }: Session): string {
   const named = parts.flatMap((id, label) => (work.names.has(id) ? [`${label}:${work.names.get(id)}`] : []));
   return named.map((name) => `&name=${encodeURIComponent(name)}`).join("");
 }

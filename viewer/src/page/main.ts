@@ -16,6 +16,7 @@ import { listenToKeys } from "./keys";
 import { LevelSlider } from "./level";
 import { ParameterDrawer, type Run } from "./parameters";
 import { PartsPanel } from "./parts";
+import { PrintDialog } from "./print";
 import { explain, problemOf, type Problem, type Remedy } from "./problems";
 import { Saver, type Shown } from "./saver";
 import { Session, type Result } from "./session";
@@ -70,7 +71,8 @@ class Page {
   #frame = 0;
 
   constructor() {
-    new DownloadDialog(this.#viewer, () => this.#result);
+    const print = new PrintDialog(() => this.#result);
+    new DownloadDialog(this.#viewer, () => this.#result, () => print.open());
     this.#listen();
     void this.#openAddress();
   }

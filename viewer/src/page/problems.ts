@@ -66,6 +66,7 @@ const KNOWN: Record<string, [title: string, next: string, remedy: Remedy]> = {
   worker_lost: ["The worker died while it ran this job", "Simplify the mesh, then try again.", "choose"],
   out_of_memory: ["The mesh needs too much memory", "Simplify the mesh, then try again.", "choose"],
   timed_out: ["The mesh took too long", "Simplify the mesh, then try again.", "choose"],
+  missing_package: ["The server lacks a package for this", "Ask the operator to install it.", "retry"],
   file_too_large: ["The result is too large to be stored", "Simplify the mesh, then try again.", "choose"],
   input_lost: ["The mesh is no longer on the server", "Send it again.", "retry"],
   no_webgl: ["3D graphics are not available", "Enable WebGL 2 in the browser settings, or use another browser.", "retry"],
