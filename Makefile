@@ -30,9 +30,9 @@ security:  ## insecure patterns in the code
 audit: security  ## also known vulnerabilities of the installed packages (needs the internet and the extra `audit`)
 	pip freeze --exclude-editable --exclude cleave-mesh | pip-audit --strict --disable-pip --no-deps --requirement /dev/stdin
 
-containers:  ## Dockerfile and compose file, without a container engine
+containers:  ## Dockerfile and compose files, without a container engine
 	hadolint Dockerfile
-	check-jsonschema --builtin-schema vendor.compose-spec docker-compose.yml
+	check-jsonschema --builtin-schema vendor.compose-spec docker-compose.yml deploy/compose/tls.yml
 
 viewer:  ## types of the viewer, and if service/viewer is up to date (`npm run build` in viewer/ updates it)
 	cd viewer && npm ci --ignore-scripts --no-audit --no-fund --loglevel=error && npm run --silent check

@@ -7,8 +7,6 @@ from collections.abc import Iterator, Sequence
 from datetime import datetime
 from urllib.parse import urlsplit
 
-import httpx
-
 from bench.day.expected import Upgrade, Versions
 from bench.day.finding import Finding
 from bench.day.member import ENDED, Member
@@ -76,7 +74,7 @@ def _jobs(members: Sequence[Member], versions: Versions) -> Iterator[Finding]:
 def _strangers(members: Sequence[Member]) -> Iterator[Finding]:
     """Count answers from which somebody learns of a job or a batch of somebody else."""
     listed = seen = tried = 0
-    with httpx.Client(base_url=members[0].http.base_url, timeout=60) as nobody:
+    with members[0].client({}) as nobody:
         for owner in members:
             jobs = [f"/v1/jobs/{job.id}{result}" for job in owner.jobs for result in _RESULTS]
             batches = [f"/v1/batches/{batch}{result}" for batch in owner.batches for result in ("", "/results.zip")]

@@ -10,6 +10,7 @@ from typing import Any
 import httpx
 
 from bench.day.orders import Order, Orders
+from bench.day.proxies import Proxy
 from bench.errors import BenchmarkError
 from bench.load.retries import until_answered
 from worker.jobs.job import now
@@ -39,7 +40,7 @@ class Accepted:
 class Member:
     """One client, which repeats requests while the service is away."""
 
-    def __init__(self, name: str, key: str, url: str, webhook: str, orders: Orders) -> None:
+    def __init__(self, name: str, key: str, proxy: Proxy, webhook: str, orders: Orders) -> None:
         self.name = name
         self.orders = orders
         self.jobs: list[Accepted] = []
@@ -47,7 +48,12 @@ class Member:
         self.repeats: list[tuple[str, str]] = []  # the id of a job, and that in the answer to the repeated request
         self._webhook = webhook
         self._keys = count()
-        self.http = httpx.Client(base_url=url, headers={"Authorization": f"Bearer {key}"}, timeout=60)
+        self.proxy = proxy
+        self.http = self.client({"Authorization": f"Bearer {key}"})
+
+    def client(self, headers: dict[str, str]) -> httpx.Client:
+        """Return a client for the service that sends some headers with every request."""
+        return httpx.Client(base_url=self.proxy.url, headers=headers, timeout=60, verify=self.proxy.trust)
 
     def submit(self, order: Order) -> Accepted:
         """Submit a job with an Idempotency-Key, so that a repeated request makes no second job."""

@@ -14,7 +14,7 @@ from bench.day.expected import Upgrade, Versions
 from bench.day.finding import Finding
 from bench.day.member import Member
 from bench.day.orders import Orders
-from bench.day.proxies import nginx, proxied
+from bench.day.proxies import NGINX, proxied
 from bench.day.receiver import Receiver, receiving
 from bench.day.site import WORKERS, Site
 from bench.errors import BenchmarkError
@@ -86,9 +86,9 @@ def _team(plan: DayPlan) -> Iterator[_Team]:
         stack.callback(site.close)
         receiver = stack.enter_context(receiving())
         (folder / "proxy").mkdir()
-        url = stack.enter_context(proxied(nginx, folder / "proxy", site.url))
+        proxy = stack.enter_context(proxied(NGINX, folder / "proxy", site.url))
         members = [
-            Member(name, key, url, receiver.url(name), Orders(place, len(keys), plan.long_faces))
+            Member(name, key, proxy, receiver.url(name), Orders(place, len(keys), plan.long_faces))
             for place, (name, key) in enumerate(keys.items())
         ]
         for member in members:

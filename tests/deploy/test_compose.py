@@ -12,6 +12,7 @@ from deploy.dockerfile import parse
 
 ROOT = Path(__file__).parents[2]
 COMPOSE = yaml.safe_load((ROOT / "docker-compose.yml").read_text())
+WITH_TLS = yaml.safe_load((ROOT / "deploy" / "compose" / "tls.yml").read_text())
 SERVICES: dict[str, dict[str, Any]] = COMPOSE["services"]
 OWN = [name for name, service in SERVICES.items() if service["image"] == "cleave:local"]
 LASTING = [name for name in SERVICES if name != "bucket"]  # which ends when it has created the bucket
@@ -81,3 +82,23 @@ def test_containers_share_only_the_queue_and_the_store() -> None:
     for name in OWN:
         assert not [volume for volume in SERVICES[name]["volumes"] if volume.split(":")[0] in named], name
         assert SERVICES[name]["environment"]["CLEAVE_STORE_URL"].startswith("s3://cleave?endpoint=http://store:7070")
+
+
+def test_the_proxy_leads_to_the_service_which_requires_keys() -> None:
+    proxy = WITH_TLS["services"]["proxy"]
+    host, _, port = proxy["environment"]["UPSTREAM"].partition(":")
+    assert set(WITH_TLS["services"]) - {"proxy"} == {host}
+    assert SERVICES[host]["ports"] == [f"127.0.0.1:{port}:{port}"]
+    assert WITH_TLS["services"][host]["environment"]["CLEAVE_AUTH"] == "required"
+    named = set(re.findall(r"\{\$(\w+)\}", (ROOT / "deploy" / "compose" / "Caddyfile").read_text()))
+    assert named == set(proxy["environment"])
+
+
+def test_the_proxy_has_the_least_privileges_and_keeps_its_certificates() -> None:
+    proxy = WITH_TLS["services"]["proxy"]
+    assert proxy["read_only"] is True
+    assert (proxy["cap_drop"], proxy["cap_add"]) == (["ALL"], ["NET_BIND_SERVICE"])
+    assert "no-new-privileges:true" in proxy["security_opt"]
+    files = [mount for mount in proxy["volumes"] if mount.startswith("./")]
+    assert all((ROOT / mount.split(":")[0]).is_file() and mount.endswith(":ro") for mount in files)
+    assert {mount.split(":")[0] for mount in proxy["volumes"]} - {files[0].split(":")[0]} == set(WITH_TLS["volumes"])

@@ -7,7 +7,6 @@ import pytest
 import yaml
 
 from cleave.settings import Settings
-from helpers.documents import blocks
 from service.problems import STATUS
 from service.telemetry.metrics import Metrics
 from worker.jobs.queue.counters import JobCounters, Stored
@@ -51,10 +50,13 @@ def test_every_claim_of_the_security_document_names_an_existing_test(name: str) 
 
 
 def test_the_names_in_the_configuration_of_traefik_refer_to_each_other() -> None:
-    (text,) = blocks((ROOT / "docs" / "how-to" / "proxies.md").read_text(), "yaml")
-    http = yaml.safe_load(text)["http"]
+    http = yaml.safe_load((ROOT / "deploy" / "proxies" / "traefik.yml").read_text())["http"]
+    static = yaml.safe_load((ROOT / "deploy" / "proxies" / "traefik-static.yml").read_text())
     (router,) = http["routers"].values()
+    assert set(router["entryPoints"]) < set(static["entryPoints"])
+    assert router["tls"]["certResolver"] in static["certificatesResolvers"]
+    assert static["entryPoints"]["web"]["http"]["redirections"]["entryPoint"]["to"] in static["entryPoints"]
     assert router["service"] in http["services"]
     assert set(router["middlewares"]) == set(http["middlewares"])
     (prefix,) = http["middlewares"][router["middlewares"][0]]["stripPrefix"]["prefixes"]
-    assert f"PathPrefix(`{prefix}`)" == router["rule"]
+    assert router["rule"].endswith(f"PathPrefix(`{prefix}`)")

@@ -15,8 +15,9 @@ BUILT = "cleave:local"  # by docker-compose.yml, from the Dockerfile
 
 
 def composed() -> list[str]:
-    services = yaml.safe_load((ROOT / "docker-compose.yml").read_text())["services"].values()
-    return [re.sub(r"\$\{\w+:-(.*)\}", r"\1", service["image"]) for service in services]
+    files = [ROOT / "docker-compose.yml", *(ROOT / "deploy" / "compose").glob("*.yml")]
+    services = [service for file in files for service in yaml.safe_load(file.read_text())["services"].values()]
+    return [re.sub(r"\$\{\w+:-(.*)\}", r"\1", service["image"]) for service in services if "image" in service]
 
 
 def bases() -> list[str]:

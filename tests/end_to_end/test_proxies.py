@@ -1,16 +1,17 @@
-"""The service below a path of nginx and of Caddy, with the configurations of docs/how-to/proxies.md."""
+"""The service behind nginx and Caddy, with the configurations of deploy/."""
 
 import os
 import re
 import shutil
 import time
 from collections.abc import Iterator
+from contextlib import contextmanager
 from pathlib import Path
 
 import httpx
 import pytest
 
-from bench.day.proxies import caddy, nginx, proxied
+from bench.day.proxies import CADDY, CADDY_OF_COMPOSE, NGINX, PATH, Proxy, ProxyKind, proxied
 from helpers.api import AGAIN
 from helpers.installation import Installation
 from helpers.jobs import sphere
@@ -23,19 +24,28 @@ def installation() -> Iterator[Installation]:
         yield running
 
 
-@pytest.fixture(params=[nginx, caddy], ids=["nginx", "caddy"])
-def url(request: pytest.FixtureRequest, installation: Installation, tmp_path: Path) -> Iterator[str]:
-    if shutil.which(request.param.__name__) is None and "CI" not in os.environ:
-        pytest.skip(f"the test needs {request.param.__name__}")
-    with proxied(request.param, tmp_path, installation.url) as shown:
+@contextmanager
+def running(kind: ProxyKind, installation: Installation, folder: Path) -> Iterator[Proxy]:
+    if shutil.which(kind.program) is None and "CI" not in os.environ:
+        pytest.skip(f"the test needs {kind.program}")
+    with proxied(kind, folder, installation.url) as proxy:
+        yield proxy
+
+
+@pytest.fixture(params=[NGINX, CADDY], ids=["nginx", "caddy"])
+def proxy(request: pytest.FixtureRequest, installation: Installation, tmp_path: Path) -> Iterator[Proxy]:
+    with running(request.param, installation, tmp_path) as shown:
         yield shown
 
 
-def test_a_job_runs_through_the_proxy_and_every_link_leads_to_it(url: str) -> None:
-    root = url.removesuffix("/cleave")
+def client_of(proxy: Proxy) -> httpx.Client:
+    return httpx.Client(base_url=proxy.url.removesuffix(PATH), timeout=60, verify=proxy.trust)
+
+
+def test_a_job_runs_through_the_proxy_and_every_link_leads_to_it(proxy: Proxy) -> None:
     mesh = sphere(120)
     assert len(mesh) > 1_500_000  # more than nginx takes by default
-    with httpx.Client(base_url=root, timeout=60) as client:
+    with client_of(proxy) as client:
         answer = client.post("/cleave/v1/jobs?segments=3", files={"mesh": ("mesh.off", mesh)}, headers=AGAIN)
         assert answer.status_code == 202
         path = answer.headers["Location"]
@@ -48,8 +58,8 @@ def test_a_job_runs_through_the_proxy_and_every_link_leads_to_it(url: str) -> No
         assert client.post(links["cancel"]).status_code == 409
 
 
-def test_events_arrive_when_they_happen(url: str) -> None:
-    with httpx.Client(base_url=url.removesuffix("/cleave"), timeout=60) as client:
+def test_events_arrive_when_they_happen(proxy: Proxy) -> None:
+    with client_of(proxy) as client:
         form = {"mesh": ("mesh.off", sphere(150))}
         job = client.post("/cleave/v1/jobs", files=form, headers=AGAIN).json()
         with client.stream("GET", job["links"]["events"]) as stream:
@@ -59,12 +69,29 @@ def test_events_arrive_when_they_happen(url: str) -> None:
     assert arrived[-1] - arrived[0] > 0.2  # buffered events would arrive together
 
 
-def test_the_page_and_the_reference_load_all_their_files(url: str) -> None:
-    with httpx.Client(follow_redirects=True, timeout=60) as client:
-        for start in (url, f"{url}/", f"{url}/docs"):
-            page = client.get(start)
+def test_the_page_and_the_reference_load_all_their_files(proxy: Proxy) -> None:
+    with client_of(proxy) as client:
+        for start in ("", "/", "/docs"):
+            page = client.get(f"{PATH}{start}", follow_redirects=True)
             assert page.status_code == 200
             files = re.findall(r'(?:href|src)="([\w./-]+\.(?:js|css|svg|json))"', page.text)
             assert files
             for file in files:
                 assert client.get(page.url.join(file)).status_code == 200, file
+
+
+def test_requests_without_tls_are_redirected(proxy: Proxy) -> None:
+    answer = httpx.get(f"{proxy.plain_url}/docs")
+    assert answer.status_code in (301, 308)
+    target = httpx.URL(answer.headers["Location"])
+    assert (target.scheme, target.host, target.path) == ("https", "localhost", f"{PATH}/docs")
+
+
+def test_the_proxy_of_compose_shows_the_service_at_the_root_of_its_host(
+    installation: Installation, tmp_path: Path
+) -> None:
+    with running(CADDY_OF_COMPOSE, installation, tmp_path) as proxy, client_of(proxy) as client:
+        form = {"mesh": ("mesh.off", sphere(20))}
+        job = client.post("/v1/jobs", files=form, headers=AGAIN).json()
+        assert job["links"]["self"] == f"/v1/jobs/{job['id']}"
+        assert client.get(job["links"]["self"]).status_code == 200
