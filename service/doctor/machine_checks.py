@@ -5,12 +5,12 @@ import platform
 import resource
 from collections.abc import Iterator
 from contextlib import suppress
-from importlib.metadata import version
-from importlib.util import find_spec
+from importlib.metadata import PackageNotFoundError, version
 from pathlib import Path
 
 from cleave.settings import InvalidSettings, Settings, unknown_variables
 from cleave.version import extra_command, installed_version
+from service.doctor.extras import missing_extras
 from service.doctor.findings import Finding, error, ok, warning
 from service.guard.exposure import check_exposure
 from service.host.kernel_cache import compiled_kernels
@@ -20,8 +20,6 @@ from service.host.listening import BACKLOG
 # table of stages); the rest is what it needs on a small mesh (docs/operations.md, Sizing) and a reserve, set by hand.
 _BYTES_PER_FACE, _BASE_BYTES = 400, 500 * 2**20
 _PACKAGES = ("numpy", "scipy", "numba", "redis", "rq", "fastapi", "uvicorn", "trimesh")
-# Optional dependencies, by the names of the extras that install them.
-_EXTRAS = {"cloud": "obstore", "completion": "shtab", "draco": "DracoPy", "mcp": "mcp", "print": "manifold3d"}
 _CGROUP_LIMITS = ("/sys/fs/cgroup/memory.max", "/sys/fs/cgroup/memory/memory.limit_in_bytes")
 
 
@@ -119,7 +117,10 @@ def _access(settings: Settings, host: str) -> Iterator[Finding]:
 
 
 def _extras() -> Finding:
-    missing = [extra for extra, module in _EXTRAS.items() if find_spec(module) is None]
+    try:
+        missing = missing_extras()
+    except PackageNotFoundError:
+        return ok("extras", "not known: the packages are used from a checkout that is not installed.")
     if not missing:
         return ok("extras", "all are installed.")
     return ok("extras", f"not installed: {', '.join(missing)}; to add them: {extra_command(','.join(missing))}.")

@@ -46,7 +46,7 @@ def test_access_to_the_service_is_checked(tmp_path: Path, auth: str, host: str, 
 
 
 def test_extras_that_are_missing_are_named(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr("service.doctor.machine_checks.find_spec", lambda name: None if name == "mcp" else name)
+    monkeypatch.setattr("service.doctor.machine_checks.missing_extras", lambda: ["mcp", "print"])
     found = {finding.topic: finding for finding in check_machine(Settings(data_dir=tmp_path), "127.0.0.1")}
     assert found["extras"].severity == "ok"
-    assert found["extras"].message == "not installed: mcp; to add them: pip install 'cleave-mesh[mcp]'."
+    assert found["extras"].message == "not installed: mcp, print; to add them: pip install 'cleave-mesh[mcp,print]'."
