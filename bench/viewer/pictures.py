@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Any
 
 from bench.viewer.devices import DARK, DESKTOP, PHONE, new_page, save_picture
 from bench.viewer.edit_pictures import take_edit_pictures
+from bench.viewer.story_pictures import take_label_picture, take_print_pictures
 
 if TYPE_CHECKING:
     from playwright.sync_api import Browser, Page
@@ -33,6 +34,8 @@ def take_pictures(browser: Browser, url: str, large_job: str, folder: Path) -> N
     for shot in _shots(jobs, other, large_job):
         _take(browser, shot, f"{url}/{shot.fragment}", folder / f"{shot.name}.png")
     take_edit_pictures(browser, f"{url}/#job={jobs['stool']}", folder)
+    take_print_pictures(browser, f"{url}/#job={jobs['pawn']}", folder)
+    take_label_picture(browser, f"{url}/#job={jobs['stool']}", list(jobs.values()), folder)
 
 
 def _shots(jobs: dict[str, str], other: str, large_job: str) -> list[Shot]:

@@ -1,43 +1,17 @@
 """The examples of the README, the first steps and the guide for pages work as pasted."""
 
-import os
-import re
 import shutil
-import subprocess
 import sys
 from pathlib import Path
 
 import pytest
 
-from helpers.documents import ROOT, blocks, read
+from helpers.documents import ADDRESS, block, run, shell
 from helpers.installation import Installation
 
-ADDRESS = "http://127.0.0.1:8000"
 README = Path("README.md")
 FIRST_STEPS = Path("docs/first-steps.md")
 FRONTEND = Path("docs/how-to/frontend.md")
-
-
-def block(document: Path, language: str, mark: str) -> str:
-    """Return the only block of code in a language that contains a mark."""
-    (text,) = [text for text in blocks(read(document), language) if mark in text]
-    return text
-
-
-def shell(text: str) -> list[str]:
-    """Return the command that runs shell lines, with the ``cleave`` of this checkout."""
-    return ["bash", "-euc", re.sub(r"^cleave ", f"{sys.executable} -m service.commands ", text, flags=re.MULTILINE)]
-
-
-def run(command: list[str], folder: Path) -> str:
-    path = f"{Path(sys.executable).parent}{os.pathsep}{os.environ['PATH']}"
-    python_path = f"{ROOT}{os.pathsep}{os.environ.get('PYTHONPATH', '')}"
-    environment = os.environ | {"PATH": path, "PYTHONPATH": python_path}
-    done = subprocess.run(
-        command, cwd=folder, env=environment, capture_output=True, text=True, timeout=240, check=False
-    )
-    assert done.returncode == 0, done.stderr
-    return done.stdout
 
 
 def test_the_walk_through_with_curl_works_as_pasted_and_so_do_the_ways_without_a_server(tmp_path: Path) -> None:
