@@ -1,9 +1,11 @@
 """A whole story of an agent, with the client of the SDK: segment, look, click, split, name, download."""
 
+import ast
 import asyncio
 import base64
 import json
 import os
+import re
 import sys
 from collections.abc import AsyncIterator, Awaitable, Callable, Iterator
 from contextlib import AbstractAsyncContextManager, asynccontextmanager
@@ -14,11 +16,13 @@ import httpx
 import httpx2
 import numpy as np
 import pytest
+import trimesh
 from mcp import Client, StdioServerParameters, stdio_client
 from mcp.client.streamable_http import streamable_http_client
 from mcp_types import CallToolResult, EmbeddedResource, ImageContent, TextContent
 
 from cleave.settings import Settings
+from helpers.documents import read
 from helpers.servers import serving, working
 from service.keys import key_digest, new_key
 from service.samples import sample_ply
@@ -178,6 +182,30 @@ def test_an_agent_over_stdio_names_the_parts_of_a_file(guarded: httpx.Client, tm
         return job_id
 
     check_stored(guarded, run(over_stdio(guarded), story), target.read_bytes())
+
+
+def test_the_calls_of_the_guide_name_the_parts_of_a_stool(guarded: httpx.Client, tmp_path: Path) -> None:
+    (tmp_path / "stool.ply").write_bytes(sample_ply("stool"))
+    table = re.findall(r"^\| `(\w+\(.*\))` \|", read(Path("docs/how-to/agents.md")), re.MULTILINE)
+    assert [line.partition("(")[0] for line in table] == ["segment", "look", "name_parts", "download"]
+
+    async def story(agent: Agent) -> list[str]:
+        job_id, names = "", []
+        for line in table:
+            written = line.replace("/home/anna", str(tmp_path)).replace("job_id=...", f"job_id={job_id!r}")
+            call = ast.parse(written, mode="eval").body
+            assert isinstance(call, ast.Call)
+            arguments = {one.arg: ast.literal_eval(one.value) for one in call.keywords}
+            result = await agent.call_tool(line.partition("(")[0], arguments)
+            assert not result.is_error, result.content
+            job_id = job_id or text_of(result)["job_id"]
+            names = list(arguments.get("names", {}).values()) or names
+        return names
+
+    names = run(over_stdio(guarded), story)
+    assert len(names) == 5
+    nodes = trimesh.load_scene(tmp_path / "stool.glb").graph.nodes_geometry
+    assert set(nodes) == set(names)
 
 
 def test_without_a_key_there_are_no_tools(guarded: httpx.Client) -> None:
