@@ -4,6 +4,8 @@ import io
 import zipfile
 from pathlib import Path
 
+import pytest
+
 from browser.test_access import PHONE, violations
 from helpers.browser.visit import NewVisit, Visit
 
@@ -44,12 +46,16 @@ def test_the_file_has_what_was_chosen_and_the_report_says_so(visit: Visit, job: 
     assert "The unit" not in text
 
 
-def test_the_report_says_why_there_is_no_connector_and_what_is_unknown(new_visit: NewVisit, job: str, axe: str) -> None:
-    visit = new_visit(**PHONE)
+@pytest.mark.parametrize("scheme", ["light", "dark"])
+def test_the_report_says_why_there_is_no_connector_and_what_is_unknown(
+    new_visit: NewVisit, job: str, axe: str, scheme: str
+) -> None:
+    visit = new_visit(color_scheme=scheme, **PHONE)
     visit.open_job(job)
     open_print(visit)
     text = report(visit, "report")
     assert "0 of 6 contacts have a dowel." in text
+    assert visit.page.inner_text("#announcer") == text.splitlines()[0]
     assert text.count("no connector: the contact is small") == 6
     assert "The unit of the mesh is not known" in text
     assert violations(visit, axe) == []

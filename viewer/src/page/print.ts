@@ -1,10 +1,10 @@
 /** The dialog Print: options of the file for printing, its download, and what it contains. */
 
 import { getBlob, getPrintReport, jobPath, nameOf } from "./api";
-import { byId, h, openDialog, save } from "./dom";
+import { announce, byId, h, openDialog, save } from "./dom";
 import { nameQuery } from "./download";
 import lists from "./lists.json";
-import { reportOf } from "./print_report";
+import { reportOf, summaryOf } from "./print_report";
 import { explain, problemOf } from "./problems";
 import type { Result } from "./session";
 import { stem } from "./text";
@@ -53,13 +53,14 @@ export class PrintDialog {
     const shown = this.#shown();
     if (shown === null || this.#dialog.ariaBusy === "true") return;
     this.#dialog.ariaBusy = "true";
-    this.#report.replaceChildren(h("p", { className: "summary" }, "Making solids of the parts."));
+    this.#report.replaceChildren(h("p", { className: "summary is-busy" }, "Making solids of the parts."));
     try {
       const { job, session } = shown;
       const query = `${session.query}${nameQuery(session)}${this.#query()}`;
       if (isFile) save(await getBlob(jobPath(job.id, `/print.3mf${query}`)), `${stem(nameOf(job))}-print.3mf`);
       const report = await getPrintReport(job.id, query);
       this.#report.replaceChildren(...reportOf(report, session.parts.map((id) => session.nameOf(id))));
+      announce(summaryOf(report));
     } catch (error) {
       const { title, detail } = explain(problemOf(error));
       this.#report.replaceChildren(h("p", { className: "summary", role: "alert" }, h("b", {}, `${title}. `), detail));

@@ -17,7 +17,8 @@ export function reportOf(report: PrintReport, names: readonly string[]): HTMLEle
   ];
 }
 
-function summaryOf({ objects, slots, contacts, connectors, volume }: PrintReport): string {
+/** Return what a file contains in one or two sentences. */
+export function summaryOf({ objects, slots, contacts, connectors, volume }: PrintReport): string {
   const made = `${plural(objects.length, "object")} in ${plural(slots.length, "filament")}, ${volumeText(volume)} of closed parts`;
   if (connectors === "none" || contacts.length === 0) return `${made}.`;
   const joined = contacts.filter(({ connector }) => connector !== null).length;
