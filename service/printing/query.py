@@ -1,9 +1,11 @@
 """The query parameters of files for printing."""
 
+from dataclasses import dataclass
 from typing import Annotated
 
 from fastapi import Depends, Query
 
+from segcore.coordinates import Axis
 from segcore.printing.options import (
     BED_PATTERN,
     CLEARANCE,
@@ -17,7 +19,15 @@ from segcore.printing.options import (
 )
 
 
-async def _options(
+@dataclass(frozen=True, slots=True)
+class PrintRequest:
+    """What a request wants to be printed."""
+
+    options: PrintOptions
+    up: Axis | None  # of the mesh, if it does not name it
+
+
+async def _request(
     connectors: Annotated[
         Connectors,
         Query(description="Dowels, each for two holes, pegs that are a piece of one of two parts, or none."),
@@ -61,8 +71,12 @@ async def _options(
             "Studio and OrcaSlicer. By default materials only, which every reader of 3MF knows."
         ),
     ] = "any",
-) -> PrintOptions:
-    return PrintOptions(
+    up: Annotated[
+        Axis | None,
+        Query(description="The axis that points up, y or z, if the mesh does not name it; by default z."),
+    ] = None,
+) -> PrintRequest:
+    options = PrintOptions(
         connectors=connectors,
         clearance=clearance,
         bed=bed,
@@ -71,6 +85,7 @@ async def _options(
         place=place,
         slicer=slicer,
     )
+    return PrintRequest(options, up)
 
 
-PrintOptionsOf = Annotated[PrintOptions, Depends(_options)]
+PrintRequestOf = Annotated[PrintRequest, Depends(_request)]

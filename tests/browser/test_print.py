@@ -33,6 +33,7 @@ def test_the_file_has_what_was_chosen_and_the_report_says_so(visit: Visit, job: 
     with visit.page.expect_download() as download:
         text = report(visit, "file")
     assert download.value.suggested_filename == "burr-print.3mf"
+    assert all(url.endswith("&up=y") for url in visit.requests if "/print." in url)  # as the page shows it
     model = zipfile.ZipFile(io.BytesIO(Path(download.value.path()).read_bytes())).read("3D/3dmodel.model").decode()
     assert 'name="Ball"' in model
     assert model.count("<base ") == 2

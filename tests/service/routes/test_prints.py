@@ -10,6 +10,7 @@ import pytest
 
 from helpers.api import problem
 from helpers.printing.bars import bar
+from segcore import Mesh
 from segcore.io import write_mesh
 from service.printing.documents import PrintDocument
 
@@ -41,6 +42,18 @@ def test_the_report_says_what_the_file_contains(client: httpx.Client, path: str)
     assert again.status_code == 304
 
 
+@pytest.mark.parametrize(("said", "up", "tall"), [(None, None, 20.0), (None, "y", 60.0), ("z", "y", 20.0)])
+def test_the_axis_that_points_up_can_be_said_if_the_mesh_does_not_name_it(
+    client: httpx.Client, finished_job: Callable[..., str], said: str | None, up: str | None, tall: float
+) -> None:
+    mesh, target = bar()[0], io.BytesIO()
+    write_mesh(target, Mesh(mesh.vertices[:, [1, 0, 2]], mesh.faces[:, ::-1]), "off")  # long along y
+    path = finished_job(target.getvalue(), unit="mm", **({"up": said} if said else {}))
+    query = {"segments": 1, **({"up": up} if up else {})}
+    (only,) = client.get(f"{path}/print.json", params=query).json()["objects"]
+    assert only["size"][2] == pytest.approx(tall)
+
+
 @pytest.mark.parametrize(
     ("query", "code"),
     [
@@ -51,6 +64,7 @@ def test_the_report_says_what_the_file_contains(client: httpx.Client, path: str)
         ("connectors=screws", "invalid_request"),
         ("segments=99", "invalid_parameters"),
         ("connector=peg", "invalid_request"),
+        ("up=x", "invalid_request"),
     ],
 )
 def test_values_that_do_not_exist_are_refused(client: httpx.Client, path: str, query: str, code: str) -> None:

@@ -56,7 +56,8 @@ export class PrintDialog {
     this.#report.replaceChildren(h("p", { className: "summary is-busy" }, "Making solids of the parts."));
     try {
       const { job, session } = shown;
-      const query = `${session.query}${nameQuery(session)}${this.#query()}`;
+      // Without a name for it in the file, what the page shows upwards stands on the bed.
+      const query = `${session.query}${nameQuery(session)}${this.#query()}&up=${session.modes.up}`;
       if (isFile) save(await getBlob(jobPath(job.id, `/print.3mf${query}`)), `${stem(nameOf(job))}-print.3mf`);
       const report = await getPrintReport(job.id, query);
       this.#report.replaceChildren(...reportOf(report, session.parts.map((id) => session.nameOf(id))));
