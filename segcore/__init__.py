@@ -30,7 +30,7 @@ and the modules that define them, ``segcore.io`` (readers and writers), ``segcor
 
 from typing import TYPE_CHECKING
 
-import segcore.kernel_cache  # noqa: F401  # before any kernel
+import segcore.jit.cache  # noqa: F401  # before any kernel
 from segcore.lazy import lazy_names
 
 if TYPE_CHECKING:

@@ -1,10 +1,10 @@
 """Kernels on arrays that several stages share. :mod:`segcore.arrays` has none, so that it is imported without numba."""
 
 import numpy as np
-from numba import njit
 from numpy.typing import NDArray
 
 from segcore.arrays import FloatArray, IntArray, LongArray, pair_keys
+from segcore.jit.decorators import inner_kernel, kernel
 from segcore.threads import in_blocks, sums_of_blocks
 
 _DENSE = 4  # indices for each pair, up to which pairs are counted by their smaller index; set by hand
@@ -23,7 +23,7 @@ def distinct_pairs(pairs: NDArray[np.integer]) -> tuple[IntArray, LongArray]:
     return np.stack([keys // count, keys % count], axis=1).astype(np.int32), which
 
 
-@njit(cache=True, nogil=True)
+@kernel
 def _distinct_pairs(pairs, count):  # type: ignore[no-untyped-def]
     """Pairs sorted by counting their smaller indices, and by insertion or merging where these are equal."""
     start = np.zeros(count + 1, np.int64)
@@ -64,7 +64,14 @@ def _distinct_pairs(pairs, count):  # type: ignore[no-untyped-def]
     return distinct[:used].copy(), number
 
 
-@njit(cache=True)
+@inner_kernel
+def assign(target, values):  # type: ignore[no-untyped-def]
+    """``target[:] = values`` of one dimension; assignments of arrays to slices take long to compile."""
+    for i in range(len(values)):
+        target[i] = values[i]
+
+
+@kernel
 def ascending(values: FloatArray) -> IntArray:
     """(N,) the order of finite numbers (N,), equal ones as they come: a stable sort by digits of 11 bits. O(N)."""
     count = len(values)
@@ -79,7 +86,7 @@ def ascending(values: FloatArray) -> IntArray:
         start = np.zeros(2049, dtype=np.int32)
         for i in range(count):
             start[((keys[i] >> shift) & np.uint64(2047)) + 1] += 1
-        if start.max() == count:
+        if count == 0 or start[((keys[0] >> shift) & np.uint64(2047)) + 1] == count:
             continue  # all have the same digit
         for k in range(2048):
             start[k + 1] += start[k]
@@ -93,7 +100,7 @@ def ascending(values: FloatArray) -> IntArray:
     return order
 
 
-@njit(cache=True, nogil=True)
+@kernel
 def members_by_group(group: IntArray, count: int) -> tuple[IntArray, LongArray]:
     """(N,) the members of groups 0..count - 1, by group and ascending in each, and (count + 1,) where each begins."""
     start = np.zeros(count + 1, dtype=np.int64)
@@ -109,7 +116,7 @@ def members_by_group(group: IntArray, count: int) -> tuple[IntArray, LongArray]:
     return members, start
 
 
-@njit(cache=True)
+@kernel
 def dot(x: FloatArray, y: FloatArray) -> float:
     """The inner product of two vectors (N,), added in an order that depends on N alone.
 
@@ -140,7 +147,7 @@ def face_centroids(vertices: FloatArray, faces: IntArray) -> FloatArray:
     return centroids
 
 
-@njit(cache=True, nogil=True)
+@kernel
 def _write_centroids(start, end, vertices, faces, centroids):  # type: ignore[no-untyped-def]
     for f in range(start, end):
         a, b, c = vertices[faces[f, 0]], vertices[faces[f, 1]], vertices[faces[f, 2]]
@@ -157,7 +164,7 @@ def area_moments(vertices: FloatArray, faces: IntArray, areas: FloatArray) -> tu
     return centre, np.array([[xx, xy, xz], [xy, yy, yz], [xz, yz, zz]])
 
 
-@njit(cache=True, nogil=True)
+@kernel
 def _area_moments(start, end, vertices, faces, areas, centre):  # type: ignore[no-untyped-def]
     """(10,) area of some faces, and its moments x, y, z, xx, yy, zz, xy, xz, yz about a centre (3,)."""
     sums = np.zeros(10)

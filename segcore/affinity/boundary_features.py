@@ -3,13 +3,13 @@
 from typing import NamedTuple
 
 import numpy as np
-from numba import njit
 
 from segcore.affinity.measurements import Measurements
 from segcore.affinity.patch_fields import TENSOR_RADII, THICKNESS_RADII, PatchFields, patch_fields
 from segcore.arrays import FloatArray, IntArray, LongArray
 from segcore.clean.edge_geometry import EdgeArrays, across_edge
 from segcore.clean.surface import Surface
+from segcore.jit.decorators import inner_kernel, kernel
 from segcore.learned.logistic import write_probabilities
 from segcore.learned.models import learned_models
 from segcore.learned.squeezing import squeeze
@@ -127,7 +127,7 @@ def edge_features(
     return np.ascontiguousarray(columns.T)
 
 
-@njit(cache=True, nogil=True)
+@kernel
 def _write_boundary_probabilities(start, end, inputs, fields, model, probability):  # type: ignore[no-untyped-def]
     columns, work = np.empty((len(model.mean), _WIDTH)), np.empty((2, _WIDTH))
     for first in range(start, end, _AT_ONCE):
@@ -136,7 +136,7 @@ def _write_boundary_probabilities(start, end, inputs, fields, model, probability
         write_probabilities(columns, model, probability[first : first + len(edges)])
 
 
-@njit(cache=True, nogil=True, error_model="numpy")
+@kernel
 def _write_features(edges, inputs, fields, columns, work):  # type: ignore[no-untyped-def]
     """Write the features of N edges into the first N entries of columns (M, at least N)."""
     mean = np.empty(fields.shape[1])
@@ -154,7 +154,7 @@ def _write_features(edges, inputs, fields, columns, work):  # type: ignore[no-un
             squeeze(columns[j, : len(edges)], work)
 
 
-@njit(cache=True, nogil=True, error_model="numpy")
+@inner_kernel
 def _write_numbers(i, e, inputs, mean, columns):  # type: ignore[no-untyped-def]
     """Write the features of an edge, before their logarithms are taken, into column entries i.
 
@@ -192,7 +192,7 @@ def _write_numbers(i, e, inputs, mean, columns):  # type: ignore[no-untyped-def]
     columns[_CONFIDENCE, i] = mean[_SHARE]
 
 
-@njit(cache=True, nogil=True)
+@inner_kernel
 def _value(numbers, k, a, b):  # type: ignore[no-untyped-def]
     """The value at two vectors of a symmetric bilinear form (xx, yy, zz, xy, xz, yz), numbers k to k + 5."""
     return (
@@ -205,7 +205,7 @@ def _value(numbers, k, a, b):  # type: ignore[no-untyped-def]
     )
 
 
-@njit(cache=True, nogil=True)
+@inner_kernel
 def _along(numbers, k, direction):  # type: ignore[no-untyped-def]
     """The derivative along a vector of a field with the gradient that numbers k to k + 2 are."""
     return numbers[k] * direction[0] + numbers[k + 1] * direction[1] + numbers[k + 2] * direction[2]

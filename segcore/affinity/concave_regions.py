@@ -12,11 +12,11 @@ Chahhou, Moumoun, El Far, Gadi, Segmentation of 3D meshes using p-spectral clust
 from typing import NamedTuple
 
 import numpy as np
-from numba import njit
 
 from segcore.affinity.curvature import PrincipalCurvatures
 from segcore.arrays import BoolArray, FloatArray, IntArray
 from segcore.graphs.surface_graph import Rows, connected_components
+from segcore.jit.decorators import inner_kernel, kernel
 from segcore.parameters import Thinning
 
 DEEP = -0.8  # z-score of the minimum curvature below which a vertex is deep concave: the paper's
@@ -72,7 +72,7 @@ def cleaned_up(concave: BoolArray, z: FloatArray, rows: Rows) -> BoolArray:
     return kept
 
 
-@njit(cache=True)
+@kernel
 def region_statistics(k1: FloatArray, k2: FloatArray, rows: Rows) -> Regions:
     """Mean and covariance of the columns of the 2 x (N + 1) matrix of principal curvatures in every region."""
     start, neighbour = rows.start, rows.neighbour
@@ -97,7 +97,7 @@ def region_statistics(k1: FloatArray, k2: FloatArray, rows: Rows) -> Regions:
     return Regions(mean, covariance)
 
 
-@njit(cache=True)
+@kernel
 def mahalanobis(u: int, v: int, regions: Regions) -> float:
     """Squared Mahalanobis distance between the means of the regions of two vertices under their pooled covariance."""
     mean, covariance = regions.mean, regions.covariance
@@ -111,7 +111,7 @@ def mahalanobis(u: int, v: int, regions: Regions) -> float:
     return (c * x * x - 2.0 * b * x * y + a * y * y) / determinant
 
 
-@njit(cache=True)
+@inner_kernel
 def _most_similar(here: int, is_open: BoolArray, rows: Rows, regions: Regions) -> int:
     """The open neighbour of a vertex with the least Mahalanobis distance; -1 if none is open."""
     ahead, nearest = -1, np.inf
@@ -124,7 +124,7 @@ def _most_similar(here: int, is_open: BoolArray, rows: Rows, regions: Regions) -
     return ahead
 
 
-@njit(cache=True)
+@kernel
 def _walk(deepest_first: IntArray, concave: BoolArray, rows: Rows, regions: Regions) -> BoolArray:
     """(V,) paths in which every vertex has at most the neighbours before and after it.
 
@@ -149,7 +149,7 @@ def _walk(deepest_first: IntArray, concave: BoolArray, rows: Rows, regions: Regi
     return path
 
 
-@njit(cache=True)
+@kernel
 def _walk_with_revisits(deepest_first: IntArray, concave: BoolArray, rows: Rows, regions: Regions) -> BoolArray:
     """(V,) walks that may turn back. A vertex reached for the second time closes itself and its unvisited neighbours.
 

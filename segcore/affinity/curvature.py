@@ -9,10 +9,10 @@ from dataclasses import dataclass
 from typing import NamedTuple, TypeAlias
 
 import numpy as np
-from numba import njit
 
 from segcore.affinity.frames import tangent_vectors
 from segcore.arrays import FloatArray, IntArray
+from segcore.jit.decorators import inner_kernel, kernel
 
 _SLIVER = 1e-6  # twice the area over the squared longest edge below which a normal is rounding noise; set by hand
 _OPPOSITE = -0.999  # cosine of two normals below which the rotation between them is replaced by a reflection
@@ -68,7 +68,7 @@ class _Form(NamedTuple):
     g: float
 
 
-@njit(cache=True, nogil=True, error_model="numpy")
+@kernel
 def _curvature_tensors(vertices: FloatArray, faces: IntArray) -> FloatArray:
     """(V, 3) the entries (e, f, g) of the second fundamental form in a tangent frame of every vertex."""
     count = len(vertices)
@@ -84,7 +84,7 @@ def _curvature_tensors(vertices: FloatArray, faces: IntArray) -> FloatArray:
     return tensor
 
 
-@njit(cache=True, nogil=True, error_model="numpy")
+@inner_kernel
 def _add_normals_and_cells(vertices: FloatArray, face: IntArray, stars: _Stars, cells: FloatArray) -> None:
     """Add a face to the normals of its vertices (weights of Max 1999) and to their areas (mixed Voronoi cells).
 
@@ -125,7 +125,7 @@ def _add_normals_and_cells(vertices: FloatArray, face: IntArray, stars: _Stars, 
         stars.area[face[k]] += shares[k]
 
 
-@njit(cache=True, nogil=True, error_model="numpy")
+@inner_kernel
 def _normalize(normal: FloatArray) -> None:
     """Scale a normal (3,) to length 1, in place; a zero vector becomes the z-axis."""
     length = np.sqrt(normal[0] ** 2 + normal[1] ** 2 + normal[2] ** 2)
@@ -135,7 +135,7 @@ def _normalize(normal: FloatArray) -> None:
         normal[2] = 1.0
 
 
-@njit(cache=True, nogil=True, error_model="numpy")
+@inner_kernel
 def _add_face_tensor(
     vertices: FloatArray, face: IntArray, stars: _Stars, cells: FloatArray, tensor: FloatArray
 ) -> None:
@@ -174,14 +174,14 @@ def _add_face_tensor(
         _add_rotated(form, plane, stars, v, cells[k] / stars.area[v], tensor[v])
 
 
-@njit(cache=True, nogil=True, error_model="numpy")
+@inner_kernel
 def _edge(vertices: FloatArray, face: IntArray, k: int) -> Vector:
     """The edge opposite corner k, counter-clockwise."""
     a, b = vertices[face[(k + 1) % 3]], vertices[face[(k + 2) % 3]]
     return b[0] - a[0], b[1] - a[1], b[2] - a[2]
 
 
-@njit(cache=True, nogil=True, error_model="numpy")
+@inner_kernel
 def _add_rotated(form: _Form, plane: _Plane, stars: _Stars, vertex: int, weight: float, tensor: FloatArray) -> None:
     """Rotate the frame of a vertex into the plane of a face, and add the form in that frame to the tensor (3,)."""
     (tx, ty, tz), (bx, by, bz) = plane

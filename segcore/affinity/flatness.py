@@ -3,13 +3,13 @@
 from typing import NamedTuple
 
 import numpy as np
-from numba import njit
 
 from segcore.array_kernels import ascending
 from segcore.arrays import BoolArray, FloatArray, IntArray, group_sums
 from segcore.clean.edge_geometry import dihedral_angles, edge_lengths
 from segcore.clean.surface import Surface
 from segcore.graphs.surface_graph import Rows, connected_components
+from segcore.jit.decorators import kernel
 
 # Set by hand; docs/algorithm.md, "Flat faces" in section 2, has what the first two were compared with.
 COHESION = 2.0  # factor on the affinity inside flat and convex smooth faces
@@ -88,7 +88,7 @@ def _are_large(surface: Surface, region: IntArray, dihedral: FloatArray) -> Bool
     return large
 
 
-@njit(cache=True, nogil=True)
+@kernel
 def _grown(order: IntArray, rows: Rows, normals: FloatArray, cosine: float) -> IntArray:
     """(F,) regions grown breadth-first from the faces that have none yet, in an order (F,)."""
     region = np.full(len(order), -1, np.int32)

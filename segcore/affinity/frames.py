@@ -4,9 +4,9 @@ Duff et al., Building an orthonormal basis, revisited, Journal of Computer Graph
 """
 
 import numpy as np
-from numba import njit
 
 from segcore.arrays import FloatArray
+from segcore.jit.decorators import inner_kernel, kernel
 
 
 def tangent_frames(normals: FloatArray) -> tuple[FloatArray, FloatArray]:
@@ -16,7 +16,7 @@ def tangent_frames(normals: FloatArray) -> tuple[FloatArray, FloatArray]:
     return u, v
 
 
-@njit(cache=True, nogil=True, error_model="numpy")
+@inner_kernel
 def tangent_vectors(x, y, z):  # type: ignore[no-untyped-def]
     """The two vectors of the frame of a unit normal, three numbers each."""
     sign = 1.0 if z >= 0.0 else -1.0
@@ -25,7 +25,7 @@ def tangent_vectors(x, y, z):  # type: ignore[no-untyped-def]
     return (1.0 + sign * x**2 * a, sign * b, -sign * x), (b, sign + y**2 * a, -y)
 
 
-@njit(cache=True, nogil=True)
+@kernel
 def _tangent_frames(normals: FloatArray, u: FloatArray, v: FloatArray) -> None:
     for i in range(len(normals)):
         one, other = tangent_vectors(normals[i, 0], normals[i, 1], normals[i, 2])

@@ -3,7 +3,6 @@
 from dataclasses import dataclass
 
 import numpy as np
-from numba import njit
 
 from segcore.affinity.curvature import PrincipalCurvatures, principal_curvatures
 from segcore.affinity.patches import Patches, patches_of
@@ -11,6 +10,7 @@ from segcore.affinity.thickness import Thickness, patch_thickness, smooth_logari
 from segcore.arrays import FloatArray
 from segcore.clean.edge_geometry import EdgeArrays, EdgeGeometry, across_edge
 from segcore.clean.surface import Surface
+from segcore.jit.decorators import kernel
 from segcore.progress import OnPart, report_nothing
 from segcore.threads import in_blocks, meanwhile
 
@@ -73,14 +73,14 @@ def measure(surface: Surface, seed: int, on_part: OnPart = report_nothing) -> Me
     return Measurements(edges, size, curvatures, bending, change, patches, thickness, log)
 
 
-@njit(cache=True, nogil=True)
+@kernel
 def _write_bending(start, end, dihedral, typical, half_size, ends, k2, bending):  # type: ignore[no-untyped-def]
     for e in range(start, end):
         lowest = half_size * (k2[ends[e, 0]] + k2[ends[e, 1]])
         bending[e] = max(0.0, -dihedral[e]) / typical + max(0.0, -lowest) / _CURVATURE_SCALE
 
 
-@njit(cache=True, nogil=True)
+@kernel
 def _write_change(start, end, arrays, of_face, slope, change):  # type: ignore[no-untyped-def]
     """Write the derivative across every edge, from the slopes (P, 3) of the patches at its sides."""
     for e in range(start, end):

@@ -7,13 +7,13 @@ SoCG 2003): sums over edges of dihedral angle times length, which do not depend 
 from typing import NamedTuple
 
 import numpy as np
-from numba import njit
 
 from segcore.affinity.measurements import THICKNESS_RADIUS, Measurements
 from segcore.affinity.thickness import smooth_logarithm
 from segcore.arrays import FloatArray
 from segcore.clean.edge_geometry import EdgeArrays, across_edge
 from segcore.clean.surface import Surface
+from segcore.jit.decorators import kernel
 from segcore.threads import sums_of_blocks
 
 # Radii of smoothing in sqrt(total area), set by hand. The model is trained with them; its card is
@@ -73,7 +73,7 @@ def _tensors(surface: Surface, measured: Measurements) -> FloatArray:
     return sums_of_blocks(_patch_tensors, len(edges.length), *arrays, groups=count)
 
 
-@njit(cache=True, nogil=True)
+@kernel
 def _patch_tensors(start, end, arrays, dihedral, length, of_face, count):  # type: ignore[no-untyped-def]
     tensors = np.zeros((count, 6))
     for e in range(start, end):

@@ -6,7 +6,6 @@ The number of patches does not grow with the mesh, and with it the cost of rays,
 from dataclasses import dataclass
 
 import numpy as np
-from numba import njit
 
 from segcore.arrays import FloatArray, IntArray, at_least
 from segcore.clean.surface import Surface
@@ -14,6 +13,7 @@ from segcore.coarsen.grains import grains_of
 from segcore.coarsen.matching import coarsen
 from segcore.graphs.laplacian import Elimination
 from segcore.graphs.surface_graph import SurfaceGraph
+from segcore.jit.decorators import inner_kernel, kernel
 from segcore.threads import sums_of_blocks
 
 COUNT = 2000  # of patches; set by hand
@@ -66,7 +66,7 @@ class Patches:
         return _gradients(self.pairs, self.border / self.distance, self.centre, self.normal, values)
 
 
-@njit(cache=True)
+@kernel
 def _gradients(
     pairs: IntArray, weight: FloatArray, centre: FloatArray, normal: FloatArray, values: FloatArray
 ) -> FloatArray:
@@ -102,7 +102,7 @@ def _gradients(
     return gradient
 
 
-@njit(cache=True)
+@inner_kernel
 def _solve(matrix: FloatArray, right: FloatArray, solution: FloatArray) -> None:
     """Solve a symmetric positive definite 3 x 3 system by its adjugate: xx, xy, xz, yy, yz, zz."""
     a, b, c, d, e, f = matrix
@@ -147,7 +147,7 @@ def _smoothing(pairs: IntArray, count: int) -> Elimination:
     return Elimination.of(np.concatenate([pairs, spokes]), count + 1)
 
 
-@njit(cache=True, nogil=True)
+@kernel
 def _centres_and_normals(start, end, group, weight, vertices, faces, normals, count):  # type: ignore[no-untyped-def]
     """(count, 6) the weighted sums of the centroids and the normals of some faces over groups."""
     sums = np.zeros((count, 6))

@@ -11,12 +11,12 @@ intersection, 1997.
 from typing import NamedTuple
 
 import numpy as np
-from numba import njit
 from numpy.typing import NDArray
 
 from segcore.affinity.eight_boxes import WIDTH, enter_boxes
 from segcore.array_kernels import face_centroids
 from segcore.arrays import FloatArray, IntArray, LongArray
+from segcore.jit.decorators import inner_kernel, kernel
 from segcore.threads import in_blocks
 
 _LEAF = 4  # faces in a leaf, at most; set by hand
@@ -90,7 +90,7 @@ class _Stack(NamedTuple):
     entries: NDArray[np.float32]  # (8,) of the nodes of a group
 
 
-@njit(cache=True, nogil=True)
+@kernel
 def _arranged(centres, leaves):  # type: ignore[no-untyped-def]
     """(F,) the faces in the order of the leaves. The centres (F, 3) are reordered in place."""
     count = len(centres)
@@ -108,7 +108,7 @@ def _arranged(centres, leaves):  # type: ignore[no-untyped-def]
     return order
 
 
-@njit(cache=True, nogil=True)
+@inner_kernel
 def _widest_axis(centres, low, high):  # type: ignore[no-untyped-def]
     """The axis of the largest spread of the centres low..high - 1."""
     best, widest = 0, np.float32(-1.0)
@@ -121,7 +121,7 @@ def _widest_axis(centres, low, high):  # type: ignore[no-untyped-def]
     return best
 
 
-@njit(cache=True, nogil=True)
+@inner_kernel
 def _halve(centres, order, low, high, middle, axis):  # type: ignore[no-untyped-def]
     """Quickselect: reorder so that centres before ``middle`` are not larger along the axis than those after it."""
     last = high - 1
@@ -147,7 +147,7 @@ def _halve(centres, order, low, high, middle, axis):  # type: ignore[no-untyped-
             return
 
 
-@njit(cache=True, nogil=True)
+@kernel
 def _pack(start, end, vertices, faces, order, boxes, corner, sides):  # type: ignore[no-untyped-def]
     """Write the corners and sides of the faces of some leaves, and the boxes of these leaves."""
     count = len(order)
@@ -166,7 +166,7 @@ def _pack(start, end, vertices, faces, order, boxes, corner, sides):  # type: ig
                 box[3 + axis] = max(box[3 + axis], max(a, b, c))
 
 
-@njit(cache=True, nogil=True)
+@kernel
 def _enclose(boxes):  # type: ignore[no-untyped-def]
     """Write the boxes of the inner nodes, from those of the leaves up."""
     boxes[0] = 0.0
@@ -184,7 +184,7 @@ def _in_groups(boxes: NDArray[np.float32]) -> NDArray[np.float32]:
     return np.ascontiguousarray(groups.reshape(-1, WIDTH, 6).transpose(0, 2, 1))
 
 
-@njit(cache=True, error_model="numpy")
+@kernel
 def cast(
     caster: RayCaster, origins: FloatArray, directions: FloatArray, distances: FloatArray, left: int = VISITS_AT_FIRST
 ) -> int:
@@ -231,14 +231,14 @@ def cast(
     return left
 
 
-@njit(cache=True, error_model="numpy")
+@inner_kernel
 def _ray(origins, directions, i):  # type: ignore[no-untyped-def]
     ox, oy, oz = np.float32(origins[i, 0]), np.float32(origins[i, 1]), np.float32(origins[i, 2])
     dx, dy, dz = np.float32(directions[i, 0]), np.float32(directions[i, 1]), np.float32(directions[i, 2])
     return _Ray(ox, oy, oz, dx, dy, dz, _inverse(dx), _inverse(dy), _inverse(dz))
 
 
-@njit(cache=True)
+@inner_kernel
 def _first_nodes(leaves, stack):  # type: ignore[no-untyped-def]
     """Put the nodes of the level on the stack from which groups of three levels lead to the leaves."""
     first = leaves
@@ -250,7 +250,7 @@ def _first_nodes(leaves, stack):  # type: ignore[no-untyped-def]
     return first
 
 
-@njit(cache=True)
+@inner_kernel
 def _stacked(node, met, stack, size):  # type: ignore[no-untyped-def]
     """Put the nodes of a group whose boxes were met on the stack, the farthest first."""
     bottom = size
@@ -269,12 +269,12 @@ def _stacked(node, met, stack, size):  # type: ignore[no-untyped-def]
     return size
 
 
-@njit(cache=True, error_model="numpy")
+@inner_kernel
 def _inverse(x):  # type: ignore[no-untyped-def]
     return np.float32(1.0) / x if x != 0.0 else np.float32(_HUGE)
 
 
-@njit(cache=True, error_model="numpy")
+@inner_kernel
 def _meets(corners, sides, f, ray):  # type: ignore[no-untyped-def]
     """The determinant, negative if the ray meets the face from behind, and the distance, infinity if it misses it."""
     dx, dy, dz = ray.dx, ray.dy, ray.dz

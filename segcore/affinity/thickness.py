@@ -10,7 +10,6 @@ from functools import cache
 from typing import NamedTuple
 
 import numpy as np
-from numba import njit
 
 from segcore.affinity.frames import tangent_vectors
 from segcore.affinity.patches import Patches
@@ -18,6 +17,7 @@ from segcore.affinity.rays import VISITS_AT_FIRST, RayCaster, cast
 from segcore.array_kernels import members_by_group
 from segcore.arrays import FloatArray, IntArray, LongArray, at_least
 from segcore.clean.surface import Surface
+from segcore.jit.decorators import inner_kernel, kernel
 
 RAYS = 24  # per patch; with 8 or 12 1-Rand is 0.000 to 0.003 worse, see "What helped" in bench/RESULTS.md
 _MANY_PATCHES = 10_000  # five times as many as of a surface with few components; set by hand
@@ -120,7 +120,7 @@ def _distances(surface: Surface, patches: Patches, chosen: LongArray, size: floa
     return _cast(RayCaster.of(surface.vertices, surface.faces), faces, samples, _disc())
 
 
-@njit(cache=True, error_model="numpy")
+@kernel
 def _cast(caster: RayCaster, faces: _Faces, samples: _Samples, disc: FloatArray) -> FloatArray:
     """``_distances``: the rays of a patch start at equal steps of area through its faces.
 
@@ -162,7 +162,7 @@ def _cast(caster: RayCaster, faces: _Faces, samples: _Samples, disc: FloatArray)
     return distance
 
 
-@njit(cache=True, nogil=True)
+@kernel
 def _typical(distances: FloatArray, cosines: FloatArray) -> tuple[FloatArray, FloatArray]:
     """(P,) the weighted mean of the distances near their median, 0 if there are none, and (P,) the share of hits.
 
@@ -195,7 +195,7 @@ def _typical(distances: FloatArray, cosines: FloatArray) -> tuple[FloatArray, Fl
     return value, confidence
 
 
-@njit(cache=True)
+@inner_kernel
 def _median(values: FloatArray, count: int) -> float:
     """The median of the first numbers of an array, which are sorted in place."""
     for i in range(1, count):
@@ -207,7 +207,7 @@ def _median(values: FloatArray, count: int) -> float:
     return 0.5 * (values[(count - 1) // 2] + values[count // 2])
 
 
-@njit(cache=True)
+@inner_kernel
 def _deviation(values: FloatArray, count: int) -> float:
     """The standard deviation of the first numbers of an array."""
     mean = 0.0

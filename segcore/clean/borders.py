@@ -1,10 +1,10 @@
 """The open edges of a surface."""
 
 import numpy as np
-from numba import njit
 
 from segcore.arrays import BoolArray, IntArray
 from segcore.clean.topology import DualEdges
+from segcore.jit.decorators import kernel
 
 
 def open_edges(faces: IntArray, dual: DualEdges) -> IntArray:
@@ -26,7 +26,7 @@ def ends_of(borders: IntArray, faces: IntArray) -> IntArray:
     return np.stack([faces[face, corner], faces[face, (corner + 1) % 3]], axis=1)
 
 
-@njit(cache=True, nogil=True)
+@kernel
 def _paired(faces: IntArray, pairs: IntArray, ends: IntArray) -> BoolArray:
     """(F, 3) True for the edges, each beginning at a corner, that another face has as well."""
     paired = np.zeros((len(faces), 3), np.bool_)

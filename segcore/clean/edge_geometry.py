@@ -4,11 +4,11 @@ from dataclasses import dataclass
 from typing import NamedTuple
 
 import numpy as np
-from numba import njit
 
 from segcore.array_kernels import dot
 from segcore.arrays import FloatArray, IntArray, LongArray, at_least
 from segcore.clean.surface import Surface
+from segcore.jit.decorators import inner_kernel, kernel
 from segcore.threads import in_blocks
 
 _TINY = float(np.finfo(float).tiny)
@@ -83,7 +83,7 @@ class EdgeArrays(NamedTuple):
         return cls(surface.vertices, surface.normals, surface.edge_vertices, surface.edge_faces)
 
 
-@njit(cache=True, nogil=True, error_model="numpy")
+@inner_kernel
 def across_edge(arrays, e):  # type: ignore[no-untyped-def]
     """The three components of the unit vector in the surface that is perpendicular to an edge, see ``across_edges``."""
     p, q = arrays.vertices[arrays.ends[e, 0]], arrays.vertices[arrays.ends[e, 1]]
@@ -95,20 +95,20 @@ def across_edge(arrays, e):  # type: ignore[no-untyped-def]
     return (x / size, y / size, z / size) if size > 0.0 else (0.0, 0.0, 0.0)
 
 
-@njit(cache=True, nogil=True)
+@kernel
 def _write_across(start, end, arrays, across):  # type: ignore[no-untyped-def]
     for e in range(start, end):
         across[e, 0], across[e, 1], across[e, 2] = across_edge(arrays, e)
 
 
-@njit(cache=True, nogil=True)
+@kernel
 def _write_lengths(start, end, vertices, ends, length):  # type: ignore[no-untyped-def]
     for e in range(start, end):
         p, q = vertices[ends[e, 0]], vertices[ends[e, 1]]
         length[e] = np.sqrt((q[0] - p[0]) ** 2 + (q[1] - p[1]) ** 2 + (q[2] - p[2]) ** 2)
 
 
-@njit(cache=True, nogil=True)
+@kernel
 def _write_dihedral_angles(start, end, vertices, faces, normals, sides, theta):  # type: ignore[no-untyped-def]
     for e in range(start, end):
         f, g = sides[e, 0], sides[e, 1]

@@ -8,12 +8,12 @@ beside each other, they are near for their length and their faces continue each 
 from typing import NamedTuple
 
 import numpy as np
-from numba import njit
 
 from segcore.arrays import BoolArray, FloatArray, IntArray, LongArray, pair_keys
 from segcore.clean.borders import ends_of
 from segcore.clean.near_segments import near_segments
 from segcore.clean.topology import DualEdges
+from segcore.jit.decorators import kernel
 
 # Set by hand.
 LARGEST_GAP = 3e-3  # of the extent, the largest tolerance of a run; matches are found up to twice of it
@@ -119,7 +119,7 @@ def _measured(
     return matches.select(is_match), cost[is_match], intervals[is_match]
 
 
-@njit(cache=True)
+@kernel
 def _measure(pairs, segments, far, ends):  # type: ignore[no-untyped-def]
     count = len(pairs)
     is_match = np.zeros(count, np.bool_)
@@ -177,7 +177,7 @@ def _measure(pairs, segments, far, ends):  # type: ignore[no-untyped-def]
     return is_match, gap, length, disagrees, bounds, intervals, cost
 
 
-@njit(cache=True)
+@kernel
 def _uncovered(edges: IntArray, intervals: FloatArray, count: int) -> LongArray:
     """The matches, in their order, of which at least half lies where both edges have no partner yet.
 

@@ -3,9 +3,9 @@
 from typing import NamedTuple
 
 import numpy as np
-from numba import njit
 
 from segcore.arrays import BoolArray, FloatArray, IntArray, LongArray
+from segcore.jit.decorators import inner_kernel, kernel
 
 _SMALLEST_CELL = 1e-6  # of the extent, so that the number of a cell of the whole grid fits 64 bits
 _MOST_SEGMENTS = 32  # beside one point; set by hand, at cracks and T-junctions there are less than ten
@@ -77,7 +77,7 @@ def _in_grid(points: FloatArray, ends: IntArray, radius: FloatArray, cell: float
     return np.stack([segment, point], axis=1)[np.lexsort((point, cells[place], sample, segment))]
 
 
-@njit(cache=True)
+@kernel
 def _cells(points: FloatArray, grid: _Grid) -> LongArray:
     """(N,) the number of the cell of every point."""
     cells = np.zeros(len(points), np.int64)
@@ -88,12 +88,12 @@ def _cells(points: FloatArray, grid: _Grid) -> LongArray:
     return cells
 
 
-@njit(cache=True)
+@inner_kernel
 def _squared(step: FloatArray) -> float:
     return step[0] * step[0] + step[1] * step[1] + step[2] * step[2]
 
 
-@njit(cache=True)
+@kernel
 def _beside(points: FloatArray, cells: LongArray, ends: IntArray, radius: FloatArray, grid: _Grid) -> LongArray:
     """(M, 3) a segment, the number of its sample that is nearest to the foot of a point, and this point.
 
@@ -135,7 +135,7 @@ def _beside(points: FloatArray, cells: LongArray, ends: IntArray, radius: FloatA
     return found[:count][is_sparse]
 
 
-@njit(cache=True)
+@inner_kernel
 def _segments_that_end(points: FloatArray, ends: IntArray) -> IntArray:
     """(N,) the number of segments with a length that end at every point."""
     count = np.zeros(len(points), np.int32)
@@ -146,7 +146,7 @@ def _segments_that_end(points: FloatArray, ends: IntArray) -> IntArray:
     return count
 
 
-@njit(cache=True)
+@inner_kernel
 def _cell_of(begin: FloatArray, step: FloatArray, share: float, grid: _Grid) -> int:
     """The cell of the place at a share of a segment."""
     cell = 0
@@ -155,7 +155,7 @@ def _cell_of(begin: FloatArray, step: FloatArray, share: float, grid: _Grid) -> 
     return cell
 
 
-@njit(cache=True)
+@inner_kernel
 def _first_from(cells: LongArray, least: int, p: int) -> int:
     """The first place at which ascending cells are at least ``least``, in steps that double from the place p."""
     low, high, step = p, p, 1
@@ -173,7 +173,7 @@ def _first_from(cells: LongArray, least: int, p: int) -> int:
     return low
 
 
-@njit(cache=True)
+@inner_kernel
 def _foot(point, begin, step):  # type: ignore[no-untyped-def]
     """The foot of a point as a share of a segment, and its squared distance, infinity if it is beyond the ends."""
     squared = _squared(step)

@@ -1,15 +1,15 @@
 """Compiled kernels for normals, areas, enclosed volumes and the orientation of faces."""
 
 import numpy as np
-from numba import njit
 
 from segcore.arrays import BoolArray, FloatArray, IntArray
+from segcore.jit.decorators import inner_kernel, kernel
 from segcore.threads import in_blocks
 
 _SLIVER = 1e-6  # area over squared longest edge below which the normal is rounding noise; set by hand
 
 
-@njit(cache=True, nogil=True)
+@kernel
 def patch_volumes(
     vertices: FloatArray, faces: IntArray, patch: IntArray, is_flipped: BoolArray, count: int
 ) -> tuple[FloatArray, FloatArray]:
@@ -47,7 +47,7 @@ def patch_volumes(
     return area, volume
 
 
-@njit(cache=True, nogil=True)
+@kernel
 def flipped(faces: IntArray, is_flipped: BoolArray) -> IntArray:
     """(F, 3) the faces, some of them with their last two corners exchanged."""
     oriented = faces.copy()
@@ -65,7 +65,7 @@ def reliable_normals(vertices: FloatArray, faces: IntArray) -> tuple[FloatArray,
     return normals, areas
 
 
-@njit(cache=True, nogil=True)
+@kernel
 def _write_normals(start, end, vertices, faces, normals, areas):  # type: ignore[no-untyped-def]
     for f in range(start, end):
         _, (nx, ny, nz) = _centroid_and_cross(vertices, faces[f])
@@ -82,7 +82,7 @@ def _write_normals(start, end, vertices, faces, normals, areas):  # type: ignore
             normals[f, 0], normals[f, 1], normals[f, 2] = nx / doubled, ny / doubled, nz / doubled
 
 
-@njit(cache=True, nogil=True)
+@inner_kernel
 def _centroid_and_cross(vertices, face):  # type: ignore[no-untyped-def]
     """The centroid of a face, and the cross product of two of its edges."""
     a, b, c = vertices[face[0]], vertices[face[1]], vertices[face[2]]

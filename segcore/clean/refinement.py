@@ -3,7 +3,6 @@
 from dataclasses import dataclass, replace
 
 import numpy as np
-from numba import njit
 
 from segcore.array_kernels import distinct_pairs
 from segcore.arrays import BoolArray, FloatArray, IntArray, group_sums
@@ -12,6 +11,7 @@ from segcore.clean.stitching import stitch
 from segcore.clean.surface import Surface
 from segcore.clean.topology import dual_edges
 from segcore.graphs.surface_graph import connected_components
+from segcore.jit.decorators import inner_kernel, kernel
 from segcore.threads import in_blocks
 
 # Longest edges that are not divided, set by hand.
@@ -119,7 +119,7 @@ def _surface_of_pieces(surface: Surface, vertices: FloatArray, faces: IntArray, 
     )
 
 
-@njit(cache=True, nogil=True)
+@inner_kernel
 def _length(vertices, p, q):  # type: ignore[no-untyped-def]
     squared = 0.0
     for axis in range(3):
@@ -127,7 +127,7 @@ def _length(vertices, p, q):  # type: ignore[no-untyped-def]
     return np.sqrt(squared)
 
 
-@njit(cache=True, nogil=True)
+@kernel
 def _longest_edge(vertices: FloatArray, faces: IntArray, allowed: FloatArray) -> float:
     """The largest ratio of an edge to the length allowed to its face."""
     longest = 0.0
@@ -137,7 +137,7 @@ def _longest_edge(vertices: FloatArray, faces: IntArray, allowed: FloatArray) ->
     return longest
 
 
-@njit(cache=True, nogil=True)
+@kernel
 def _find_long_edges(start, end, vertices, faces, allowed, component, found):  # type: ignore[no-untyped-def]
     """Write whether one of the edges of a face is longer than its component (C,) allows."""
     for f in range(start, end):
@@ -146,7 +146,7 @@ def _find_long_edges(start, end, vertices, faces, allowed, component, found):  #
             found[f] |= _length(vertices, faces[f, k], faces[f, (k + 1) % 3]) > allowed[component[f]]
 
 
-@njit(cache=True, nogil=True)
+@kernel
 def _long_edges(vertices: FloatArray, faces: IntArray, allowed: FloatArray) -> BoolArray:
     """(F, 3) True if the edge from a corner to the next is longer than its face is allowed."""
     is_long = np.empty(faces.shape, np.bool_)
@@ -156,7 +156,7 @@ def _long_edges(vertices: FloatArray, faces: IntArray, allowed: FloatArray) -> B
     return is_long
 
 
-@njit(cache=True, nogil=True)
+@kernel
 def _divided(vertices: FloatArray, faces: IntArray, middle: IntArray) -> tuple[IntArray, IntArray]:
     """The faces cut between the midpoints of their edges (M, 3), and (M,) the face that each is part of.
 
@@ -201,11 +201,12 @@ def _divided(vertices: FloatArray, faces: IntArray, middle: IntArray) -> tuple[I
             n = _put(pieces, n, ab, b, bc)
             n = _put(pieces, n, ca, bc, c)
             n = _put(pieces, n, ab, bc, ca)
-        origin[start:n] = f
+        for piece in range(start, n):
+            origin[piece] = f
     return pieces, origin
 
 
-@njit(cache=True, nogil=True)
+@inner_kernel
 def _put(pieces, n, a, b, c):  # type: ignore[no-untyped-def]
     pieces[n, 0], pieces[n, 1], pieces[n, 2] = a, b, c
     return n + 1

@@ -1,7 +1,6 @@
 """Which matches of open edges join parts of one surface, and which are borders that happen to pass each other."""
 
 import numpy as np
-from numba import njit
 
 from segcore.arrays import BoolArray, FloatArray, IntArray, LongArray, group_sums
 from segcore.clean.borders import ends_of
@@ -9,6 +8,7 @@ from segcore.clean.matches import LARGEST_GAP, Matches
 from segcore.clean.topology import DualEdges, consistent_orientation
 from segcore.clean.welding import WELD_TOLERANCE
 from segcore.graphs.surface_graph import connected_components, rows_of
+from segcore.jit.decorators import inner_kernel, kernel
 
 _LARGEST_GROWTH = 0.1  # share by which a run may become longer if its tolerance is doubled; set by hand
 # Set by hand: the least length of a run in mean gaps, also if one of its patches has to be turned, unless the runs of
@@ -92,7 +92,7 @@ def _runs(matches: Matches, between: IntArray, faces: IntArray, borders: IntArra
     return connected_components(links, len(pair) + len(different))[: len(pair)]
 
 
-@njit(cache=True)
+@kernel
 def _within_tolerance(run: IntArray, gap: FloatArray, length: FloatArray) -> BoolArray:
     """(M,) True for the matches within the tolerance of their run; sorted by run, then by gap."""
     is_within = np.zeros(len(run), np.bool_)
@@ -137,7 +137,7 @@ def _orientable(between: IntArray, turned: BoolArray, length: FloatArray) -> Boo
     return fits[pair]
 
 
-@njit(cache=True)
+@kernel
 def _without_contradiction(pairs: LongArray, count: int) -> BoolArray:
     """(S,) True for pairs, in their order, that fit the ones before: a union of sets with a parity to the root.
 
@@ -159,7 +159,7 @@ def _without_contradiction(pairs: LongArray, count: int) -> BoolArray:
     return fits
 
 
-@njit(cache=True)
+@inner_kernel
 def _root(root, parity, a):  # type: ignore[no-untyped-def]
     """The root of the set of an element, and its parity to it; the path to it is halved."""
     turned = 0

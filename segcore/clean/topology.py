@@ -3,10 +3,11 @@
 from typing import NamedTuple
 
 import numpy as np
-from numba import njit
 
+from segcore.array_kernels import ascending
 from segcore.arrays import BoolArray, FloatArray, IntArray, LongArray
 from segcore.graphs.surface_graph import Rows
+from segcore.jit.decorators import inner_kernel, kernel
 
 _EMPTY = -1
 _FEW = 32  # edges of one lower end up to which they are sorted by insertion; set by hand
@@ -21,7 +22,7 @@ class DualEdges(NamedTuple):
     disagrees: BoolArray  # (E,) both faces run through the edge in the same direction: their orientations differ
 
 
-@njit(cache=True, nogil=True)
+@inner_kernel
 def mixed_bits(key: np.uint64) -> np.uint64:
     """The finaliser of SplitMix64: mixes the bits of a key over the whole word."""
     key = (key ^ (key >> np.uint64(30))) * np.uint64(0xBF58476D1CE4E5B9)
@@ -29,7 +30,7 @@ def mixed_bits(key: np.uint64) -> np.uint64:
     return key ^ (key >> np.uint64(31))
 
 
-@njit(cache=True, nogil=True)
+@kernel
 def first_equal_row(rows: LongArray | IntArray) -> IntArray:
     """(N,) for every row of (N, 3) the index of the first row equal to it, by a hash table with open addressing."""
     count = len(rows)
@@ -55,7 +56,7 @@ def first_equal_row(rows: LongArray | IntArray) -> IntArray:
     return first
 
 
-@njit(cache=True, nogil=True)
+@kernel
 def sorted_rows(rows: IntArray, chosen: LongArray) -> IntArray:
     """(M, 3) some rows of (N, 3), the numbers of each in ascending order."""
     ascending = np.empty((len(chosen), 3), np.int32)
@@ -66,7 +67,7 @@ def sorted_rows(rows: IntArray, chosen: LongArray) -> IntArray:
     return ascending
 
 
-@njit(cache=True, nogil=True)
+@inner_kernel
 def _first_half_edges(faces: IntArray, vertex_count: int) -> LongArray:
     """(V + 1,) the first half-edge of every vertex if half-edges are sorted by their smaller end."""
     start = np.zeros(vertex_count + 1, np.int64)
@@ -87,7 +88,7 @@ class _HalfEdges(NamedTuple):
     forward: BoolArray  # (3 F,) whether the face has the lower end first
 
 
-@njit(cache=True, nogil=True)
+@inner_kernel
 def _half_edges(faces: IntArray, vertex_count: int) -> _HalfEdges:
     """O(F log D) if D edges at most have one lower end."""
     half_edges = 3 * len(faces)
@@ -111,14 +112,15 @@ def _half_edges(faces: IntArray, vertex_count: int) -> _HalfEdges:
     for v in range(vertex_count):
         begin, end = start[v], start[v + 1]
         if end - begin > _FEW:
-            order = begin + np.argsort(far_end[begin:end], kind="mergesort")
-            ends, owners, directions = far_end[order], owner[order], forward[order]
-            for k in range(end - begin):  # assignments to slices take seconds to compile
-                far_end[begin + k], owner[begin + k], forward[begin + k] = ends[k], owners[k], directions[k]
+            ends, owners, directions = far_end[begin:end].copy(), owner[begin:end].copy(), forward[begin:end].copy()
+            order = ascending(ends.astype(np.float64))
+            for k in range(end - begin):
+                p = order[k]
+                far_end[begin + k], owner[begin + k], forward[begin + k] = ends[p], owners[p], directions[p]
     return _HalfEdges(start, far_end, owner, forward)
 
 
-@njit(cache=True, nogil=True)
+@kernel
 def dual_edges(faces: IntArray, vertex_count: int) -> DualEdges:
     """Pairs of faces (F, 3) that share an edge, ordered by the ends of the edge.
 
@@ -149,7 +151,7 @@ def dual_edges(faces: IntArray, vertex_count: int) -> DualEdges:
     return DualEdges(pairs[:count].copy(), ends[:count].copy(), is_manifold[:count].copy(), disagrees[:count].copy())
 
 
-@njit(cache=True, nogil=True)
+@kernel
 def border_vertices(faces: IntArray, vertex_count: int) -> BoolArray:
     """(V,) True for the ends of edges of exactly one face (F, 3); edges between equal corners do not count."""
     edges = _half_edges(faces, vertex_count)
@@ -167,7 +169,7 @@ def border_vertices(faces: IntArray, vertex_count: int) -> BoolArray:
     return border
 
 
-@njit(cache=True, nogil=True)
+@kernel
 def consistent_orientation(rows: Rows, dual: DualEdges) -> tuple[IntArray, BoolArray]:
     """Patches of faces that are connected by manifold edges, and the faces to flip within each.
 

@@ -1,13 +1,13 @@
 """Welding of vertices at the same place, at open borders also within a tolerance."""
 
 import numpy as np
-from numba import njit
 from scipy.sparse import coo_array
 from scipy.sparse.csgraph import connected_components
 from scipy.spatial import KDTree
 
 from segcore.arrays import BoolArray, FloatArray, IntArray
 from segcore.clean.topology import as_bits, border_vertices, first_equal_row, mixed_bits
+from segcore.jit.decorators import kernel
 
 WELD_TOLERANCE = 1e-6  # of the extent of the mesh: the resolution of numbers that are written with six digits
 _CELL = 16.0  # of the grid in which near points are looked for, in tolerances; set by hand
@@ -52,7 +52,7 @@ def _joined(points: FloatArray, tolerance: float) -> IntArray:
     return joined
 
 
-@njit(cache=True)
+@kernel
 def _may_be_near(points: FloatArray, tolerance: float) -> BoolArray:
     """(N,) False for points without another one within the tolerance, though not for all of them.
 

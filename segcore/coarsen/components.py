@@ -1,12 +1,12 @@
 """Components of a mesh: the largest ones, the nearest to each other, and groups by distance."""
 
 import numpy as np
-from numba import njit
 from scipy.cluster.hierarchy import linkage
 from scipy.spatial import KDTree
 from scipy.spatial.distance import cdist, squareform
 
 from segcore.arrays import BoolArray, FloatArray, IntArray, group_sums
+from segcore.jit.decorators import kernel
 
 _SAMPLES = 2048  # points that represent all components in the matrix of distances: 34 MB
 _NEVER_NEGLIGIBLE = 0.1  # share of the area of the largest component; set by hand
@@ -84,7 +84,7 @@ def _sample(component: IntArray, count: int) -> tuple[IntArray, IntArray]:
     return sample.astype(np.int32), start.astype(np.int32)
 
 
-@njit(cache=True)
+@kernel
 def _spanning_tree(points):  # type: ignore[no-untyped-def]
     """The edges (P - 1, 2) of a minimum spanning tree of points, and their squared lengths, by Prim's algorithm."""
     count = len(points)

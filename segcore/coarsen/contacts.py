@@ -11,11 +11,11 @@ from dataclasses import dataclass
 from typing import NamedTuple
 
 import numpy as np
-from numba import njit
 
 from segcore.array_kernels import distinct_pairs
 from segcore.arrays import FloatArray, IntArray, group_sums
 from segcore.clean.surface import Surface
+from segcore.jit.decorators import inner_kernel, kernel
 
 POINTS = 32768  # samples of the whole surface; set by hand
 # Of the size: components that are closer than this touch. Set by hand: 1.5 times the spacing of the points, which is
@@ -131,7 +131,7 @@ def _partners(position: FloatArray, component: IntArray, radius: float) -> tuple
     return order[pairs].astype(np.int32), distance
 
 
-@njit(cache=True, nogil=True)
+@kernel
 def _pairs_in_cells(position, component, key, squared_radius):  # type: ignore[no-untyped-def]
     """The search of ``_partners`` among points that are sorted by the keys of their cells."""
     count = len(position)
@@ -154,7 +154,7 @@ def _pairs_in_cells(position, component, key, squared_radius):  # type: ignore[n
     return found.pairs[:used].copy(), np.sqrt(found.squared[:used])
 
 
-@njit(cache=True, nogil=True)
+@inner_kernel
 def _keep_nearest(found, component, first, used, i, j, squared):  # type: ignore[no-untyped-def]
     """Enter j as the partner of i if it is the nearest point of its component; return the number of pairs then.
 

@@ -5,10 +5,10 @@ both are those of faces that lie beside each other on a smooth surface, and they
 """
 
 import numpy as np
-from numba import njit
 
 from segcore.arrays import IntArray, group_sums
 from segcore.graphs.surface_graph import SurfaceGraph, components_inside, edges_between
+from segcore.jit.decorators import kernel
 
 # Set by hand. There are about 16 grains or more in each of 2,500 clusters, whose outlines are drawn again afterwards.
 MANY = 1 << 17  # nodes from which on there are grains
@@ -51,7 +51,7 @@ def merged_grains(graph: SurfaceGraph, grain: IntArray) -> tuple[SurfaceGraph, I
     return SurfaceGraph.with_sums(pairs, graph.weight[edge], volume, graph.length[edge]), grain
 
 
-@njit(cache=True, nogil=True)
+@kernel
 def _grown(start, neighbour, edge, weight, length, volume, most, largest):  # type: ignore[no-untyped-def]
     grain = np.full(len(volume), -1, np.int32)
     members = np.empty(most, np.int32)

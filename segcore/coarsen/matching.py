@@ -7,12 +7,12 @@ border is high, so that clusters end at concavities and the cuts of the coarse g
 from typing import NamedTuple
 
 import numpy as np
-from numba import njit
 
 from segcore.array_kernels import ascending
 from segcore.arrays import FloatArray, IntArray, group_sums
 from segcore.coarsen.grains import merged_grains
 from segcore.graphs.surface_graph import SurfaceGraph
+from segcore.jit.decorators import kernel
 
 # The sources of these numbers are in docs/algorithm.md, "Constants" of section 3.
 _GUARD = 0.5  # mean affinity along a border below which two clusters are not merged
@@ -83,7 +83,7 @@ def coarsen(
     return SurfaceGraph(edges, adjacency.weight[once], volume, adjacency.border[once]), cluster
 
 
-@njit(cache=True, nogil=True)
+@kernel
 def _match(
     order: IntArray, graph: _Adjacency, volume: FloatArray, guard: float, largest: float, most_merges: int
 ) -> tuple[IntArray, int]:
@@ -129,7 +129,7 @@ def _match(
     return merged, count
 
 
-@njit(cache=True, nogil=True)
+@kernel
 def _contract(merged: IntArray, count: int, graph: _Adjacency) -> _Adjacency:
     """The graph of the merged nodes, at most two in each; parallel edges are summed.
 

@@ -7,13 +7,13 @@ one that is left after earlier cuts.
 from dataclasses import dataclass
 
 import numpy as np
-from numba import njit
 from scipy.sparse import coo_matrix
 from scipy.sparse.csgraph import breadth_first_order, minimum_spanning_tree
 
 from segcore.arrays import FloatArray, IntArray, group_sums
 from segcore.graphs.cheeger import Cut, cut_of
 from segcore.graphs.surface_graph import SurfaceGraph, connected_components
+from segcore.jit.decorators import kernel
 
 MOST_CUTS = 8  # between pieces, that are compared by their features; set by hand
 # A body is a speck below both of these shares, of the total area and of the area of the largest body, as in
@@ -55,7 +55,7 @@ class Bodies:
         return int(np.count_nonzero(self.area >= least))
 
 
-@njit(cache=True)
+@kernel
 def _alike(log_area: FloatArray, extent: FloatArray) -> IntArray:
     """(B,) the number of bodies whose area and relative extents (B, 3) are about the same, itself included."""
     order = np.argsort(log_area)

@@ -3,10 +3,10 @@
 from typing import NamedTuple
 
 import numpy as np
-from numba import njit
 
 from segcore.cut.cut_sums import CutSums, SideSums
 from segcore.cut.fields import Whole
+from segcore.jit.decorators import inner_kernel
 
 _TINY = 1e-12  # keeps logarithms and quotients finite; far below all values of surfaces of unit size
 _LEAST_CONTACT = 1e-4  # of the square root of an area: a contact of this length counts as none; set by hand
@@ -37,7 +37,7 @@ class BodyFeatures(NamedTuple):
     mean_affinity: float  # logarithm of the mean affinity inside the bodies of the whole surface
 
 
-@njit(cache=True)
+@inner_kernel
 def body_features(sides: SideSums, cuts: CutSums, n: int, whole: Whole) -> BodyFeatures:
     """The features of the cut ``n`` of those with the sums ``sides`` and ``cuts``."""
     small, large = sides.area[n]

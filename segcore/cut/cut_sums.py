@@ -3,11 +3,11 @@
 from typing import NamedTuple
 
 import numpy as np
-from numba import njit
 
 from segcore.arrays import BoolArray, FloatArray, IntArray
 from segcore.cut.fields import SegmentFields
 from segcore.graphs.cheeger import side_volumes
+from segcore.jit.decorators import inner_kernel
 
 _WHOLE = 1.0 - 1e-9  # share of a body that counts as all of it
 
@@ -43,7 +43,7 @@ class CutSums(NamedTuple):
     boxed: FloatArray  # (N,) area of the small side in the box around the other side, along its principal axes
 
 
-@njit(cache=True)
+@inner_kernel
 def sums_of_cuts(part: SegmentFields, chosen: BoolArray, body_area: FloatArray) -> tuple[SideSums, CutSums]:
     """The sums of cuts of a segment.
 
@@ -73,14 +73,14 @@ def sums_of_cuts(part: SegmentFields, chosen: BoolArray, body_area: FloatArray) 
     return sides, cuts
 
 
-@njit(cache=True)
+@inner_kernel
 def _smaller(part: SegmentFields, side: BoolArray) -> BoolArray:
     """(M,) the side of less area; the given one of two equals."""
     inside, outside = side_volumes(part.volume, side)
     return side if inside <= outside else ~side
 
 
-@njit(cache=True)
+@inner_kernel
 def _add_edges(part: SegmentFields, small: BoolArray, n: int, sides: SideSums, cuts: CutSums) -> None:
     for e in range(len(part.edges)):
         a, b = part.edges[e, 0], part.edges[e, 1]
@@ -99,7 +99,7 @@ def _add_edges(part: SegmentFields, small: BoolArray, n: int, sides: SideSums, c
     cuts.thickness[n] /= cuts.border[n]
 
 
-@njit(cache=True)
+@inner_kernel
 def _add_nodes(part: SegmentFields, small: BoolArray, n: int, sides: SideSums) -> None:
     for i in range(len(small)):
         row = 0 if small[i] else 1
@@ -122,7 +122,7 @@ def _add_nodes(part: SegmentFields, small: BoolArray, n: int, sides: SideSums) -
             sides.centre[n, row, k] /= area
 
 
-@njit(cache=True)
+@inner_kernel
 def _principal_axes(part: SegmentFields, small: BoolArray, n: int, sides: SideSums) -> FloatArray:
     """Fill in the variances; return the principal axes of the other side as the rows of (3, 3)."""
     covariance = np.zeros((2, 3, 3))
@@ -143,7 +143,7 @@ def _principal_axes(part: SegmentFields, small: BoolArray, n: int, sides: SideSu
     return axes
 
 
-@njit(cache=True)
+@inner_kernel
 def _area_in_box(part: SegmentFields, small: BoolArray, axes: FloatArray) -> float:
     low, high = np.full(3, np.inf), np.full(3, -np.inf)
     along = np.empty((len(small), 3))
@@ -165,7 +165,7 @@ def _area_in_box(part: SegmentFields, small: BoolArray, axes: FloatArray) -> flo
     return inside
 
 
-@njit(cache=True)
+@inner_kernel
 def _add_pieces(part: SegmentFields, small: BoolArray, n: int, sides: SideSums, cuts: CutSums) -> None:
     area = np.zeros((2, part.piece.max() + 1))
     for i in range(len(small)):
@@ -178,7 +178,7 @@ def _add_pieces(part: SegmentFields, small: BoolArray, n: int, sides: SideSums, 
             cuts.divided[n] += area[0, p] + area[1, p]
 
 
-@njit(cache=True)
+@inner_kernel
 def _add_bodies(
     part: SegmentFields, small: BoolArray, n: int, body_area: FloatArray, sides: SideSums, cuts: CutSums
 ) -> None:

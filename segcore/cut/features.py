@@ -7,12 +7,12 @@ segment is the best, which split comes next, and which split to omit.
 from typing import NamedTuple
 
 import numpy as np
-from numba import njit
 
 from segcore.arrays import BoolArray, FloatArray
 from segcore.cut.body_features import BodyFeatures, body_features
 from segcore.cut.cut_sums import CutSums, SideSums, sums_of_cuts
 from segcore.cut.fields import ClusterFields, Segment, SegmentFields, Whole
+from segcore.jit.decorators import inner_kernel, kernel
 
 _TINY = 1e-12  # keeps logarithms and quotients finite; far below all values of surfaces of unit size
 
@@ -68,7 +68,7 @@ def cut_features(fields: ClusterFields, segment: Segment, inside: SegmentFields,
     return _cut_features(inside, sides, fields.whole, segment.depth, segment.parent_ncut)
 
 
-@njit(cache=True)
+@kernel
 def _cut_features(part: SegmentFields, chosen: BoolArray, whole: Whole, depth: int, parent_ncut: float) -> FloatArray:
     sides, borders = sums_of_cuts(part, chosen, whole.body_area)
     features = np.empty((len(chosen), _COUNT))
@@ -83,7 +83,7 @@ def _cut_features(part: SegmentFields, chosen: BoolArray, whole: Whole, depth: i
     return features
 
 
-@njit(cache=True)
+@inner_kernel
 def _shape_features(
     sides: SideSums, borders: CutSums, n: int, total: float, depth: int, parent_ncut: float
 ) -> CutFeatures:

@@ -4,7 +4,6 @@ from dataclasses import dataclass
 from typing import NamedTuple
 
 import numpy as np
-from numba import njit
 
 from segcore.arrays import FloatArray, IntArray, group_sums
 from segcore.clean.edge_geometry import dihedral_angles, edge_lengths
@@ -12,6 +11,7 @@ from segcore.clean.surface import Surface
 from segcore.coarsen.clusters import Clusters
 from segcore.cut.bodies import Bodies, pieces_of
 from segcore.graphs.surface_graph import EdgeIndex, SurfaceGraph, induced_edges
+from segcore.jit.decorators import kernel
 from segcore.threads import in_blocks
 
 _COPLANAR = np.deg2rad(1.0)  # largest dihedral angle of two faces of a plane; set by hand
@@ -146,7 +146,7 @@ def _open_border(surface: Surface, length: FloatArray) -> FloatArray:
     return np.where(perimeter - shared > rounding, np.maximum(perimeter - shared, 0.0), 0.0)
 
 
-@njit(cache=True, nogil=True)
+@kernel
 def _write_perimeters(start, end, vertices, faces, perimeter):  # type: ignore[no-untyped-def]
     for f in range(start, end):
         perimeter[f] = 0.0
@@ -155,7 +155,7 @@ def _write_perimeters(start, end, vertices, faces, perimeter):  # type: ignore[n
             perimeter[f] += np.sqrt((q[0] - p[0]) ** 2 + (q[1] - p[1]) ** 2 + (q[2] - p[2]) ** 2)
 
 
-@njit(cache=True, nogil=True)
+@kernel
 def _sums_at_ends(edges: IntArray, values: FloatArray, count: int) -> FloatArray:
     """(count,) the sum of the values (E,) of the edges (E, 2) at every node."""
     sums = np.zeros(count)

@@ -21,7 +21,6 @@ from segcore.graphs.surface_graph import SurfaceGraph
 from segcore.graphs.tree import Tree
 from segcore.learned.models import learned_models
 from segcore.parameters import SegmentationParameters
-from segcore.solvers.fiedler import start_noise
 from segcore.solvers.flow import connected_sweeps
 from segcore.solvers.solvers import SOLVERS
 
@@ -213,7 +212,7 @@ class LearnedRule:
         graph = segment.graph
         if self._parameters.solver == "flow":
             order = order_inside(self._elimination, segment.nodes)
-            sides = connected_sweeps(graph, order, start_noise(graph.node_count))
+            sides = connected_sweeps(graph, order)
             cuts = [cut_of(graph, side) for side in sides]
         else:
             cuts = [with_connected_sides(graph, self._solved(graph)).canonical]

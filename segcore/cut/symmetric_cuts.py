@@ -8,15 +8,13 @@ from collections.abc import Sequence
 from typing import NamedTuple
 
 import numpy as np
-from numba import njit
 
-from segcore.array_kernels import ascending
+from segcore.array_kernels import ascending, assign
 from segcore.arrays import BoolArray, FloatArray, IntArray
-from segcore.graphs.cheeger import Cut, best_level_set, cut_of, cut_sums, level_sets, ncc_of, valley_sides
-from segcore.graphs.max_flow import network_of
+from segcore.graphs.cheeger import Cut, cut_of, ncc_of
 from segcore.graphs.surface_graph import SurfaceGraph, components_of_edges, components_within
-from segcore.solvers.fiedler import eigenvectors_of, start_noise
-from segcore.solvers.flow import VALLEYS, VECTORS, improved
+from segcore.jit.decorators import inner_kernel, kernel
+from segcore.solvers.flow import spectrum, swept_sides
 
 _LEAST_PART = 0.05  # norm of the even or odd part of an eigenvector of norm 1; a smaller one is a rounding error
 _MOST_PIECES = 8  # of a cut that are compared, the best ones; set by hand
@@ -33,7 +31,11 @@ def symmetric_sweeps(graph: SurfaceGraph, image: IntArray, order: IntArray) -> l
     image : (N,) the image of every node, an automorphism of the graph without a fixed point.
     order : (N,) of the elimination of the nodes.
     """
-    return [cut_of(graph, side) for side in _symmetric_sweeps(graph, image, order, start_noise(graph.node_count))]
+    network, vectors = spectrum(graph, order)
+    functions, signs = _symmetric_functions(graph, image, vectors)
+    improved, swept, valleys = np.split(swept_sides(network, functions), [1, 1 + len(functions)])
+    sides = np.concatenate([improved, swept, signs, valleys])
+    return [cut_of(graph, side) for side in _symmetric_cuts(graph, image, sides)]
 
 
 def symmetric_cuts(graph: SurfaceGraph, image: IntArray, sides: Sequence[BoolArray]) -> list[Cut]:
@@ -54,59 +56,23 @@ def second_of_pair(side: BoolArray, image: IntArray) -> BoolArray | None:
     return None if (side & mirrored).any() or (side | mirrored).all() else mirrored
 
 
-@njit(cache=True)
-def _symmetric_sweeps(graph: SurfaceGraph, image: IntArray, order: IntArray, noise: FloatArray) -> BoolArray:
-    """(C, N) ``symmetric_sweeps``."""
-    network = network_of(graph, order)
-    vectors = eigenvectors_of(graph, network.factor, noise, VECTORS)
-    count = len(image)
-    even = np.empty((2 * len(vectors), count))
-    signs = np.empty((len(vectors), count), dtype=np.bool_)
-    evens = odds = 0
+def _symmetric_functions(graph: SurfaceGraph, image: IntArray, vectors: FloatArray) -> tuple[FloatArray, BoolArray]:
+    """(K, N) the even parts of some vectors and the magnitudes of their odd parts, and (L, N) the signs of these.
+
+    Parts that are rounding errors are left out.
+    """
+    functions, signs = [], []
     for values in vectors:
-        mirrored = values[image]
-        if _norm(graph, 0.5 * (values + mirrored)) >= _LEAST_PART:
-            even[evens] = 0.5 * (values + mirrored)
-            evens += 1
-        part = 0.5 * (values - mirrored)
-        if _norm(graph, part) >= _LEAST_PART:
-            even[evens] = np.abs(part)
-            evens += 1
-            for i in range(count):
-                signs[odds, i] = part[i] > 0.0 or (part[i] == 0.0 and i < image[i])
-            odds += 1
-    sides = np.empty((1 + (1 + VALLEYS) * evens + odds, count), dtype=np.bool_)
-    necks = np.empty((VALLEYS * evens, count), dtype=np.bool_)
-    best, least, filled, found = 1, np.inf, 1, 0
-    for e in range(evens):
-        levels = level_sets(graph, even[e])
-        sides[filled] = best_level_set(even[e], levels, False)
-        ncc = ncc_of(*cut_sums(graph, sides[filled]))
-        if ncc < least:
-            best, least = filled, ncc
-        filled += 1
-        for neck in valley_sides(levels, VALLEYS):
-            necks[found] = neck
-            found += 1
-    for side in signs[:odds]:
-        sides[filled] = side
-        filled += 1
-    for side in necks[:found]:
-        sides[filled] = side
-        filled += 1
-    sides[0] = improved(network, sides[best]) if least < np.inf else sides[best]
-    return _symmetric_cuts(graph, image, sides[:filled])
+        even, odd = 0.5 * (values + values[image]), 0.5 * (values - values[image])
+        if (graph.volume * even**2).sum() >= _LEAST_PART**2:
+            functions.append(even)
+        if (graph.volume * odd**2).sum() >= _LEAST_PART**2:
+            functions.append(np.abs(odd))
+            signs.append((odd > 0.0) | ((odd == 0.0) & (np.arange(len(image)) < image)))
+    return np.array(functions), np.array(signs, dtype=np.bool_).reshape(-1, len(image))
 
 
-@njit(cache=True)
-def _norm(graph: SurfaceGraph, values: FloatArray) -> float:
-    total = 0.0
-    for i in range(len(values)):
-        total += graph.volume[i] * values[i] ** 2
-    return np.sqrt(total)
-
-
-@njit(cache=True)
+@kernel
 def _symmetric_cuts(graph: SurfaceGraph, image: IntArray, sides: BoolArray) -> BoolArray:
     """(C, N) ``symmetric_cuts``. Cuts that are images of each other count as one.
 
@@ -128,12 +94,12 @@ def _symmetric_cuts(graph: SurfaceGraph, image: IntArray, sides: BoolArray) -> B
                 continue
             cut = _best_star(graph, image, symmetric)
             if cut.any() and not _is_among(cut, image, found[:count]):
-                found[count] = cut
+                assign(found[count], cut)
                 count += 1
     return found[:count]
 
 
-@njit(cache=True)
+@inner_kernel
 def _is_among(side: BoolArray, image: IntArray, found: BoolArray) -> bool:
     """Whether a bipartition or its image is among others."""
     for other in found:
@@ -157,7 +123,7 @@ class _Pieces(NamedTuple):
     volume: FloatArray  # (P,)
 
 
-@njit(cache=True)
+@inner_kernel
 def _best_star(graph: SurfaceGraph, image: IntArray, side: BoolArray) -> BoolArray:
     """(N,) a set that can be cut off with its image so that the rest is connected; empty if there is none.
 
@@ -184,7 +150,7 @@ def _best_star(graph: SurfaceGraph, image: IntArray, side: BoolArray) -> BoolArr
     return np.zeros(len(side), dtype=np.bool_)
 
 
-@njit(cache=True)
+@inner_kernel
 def _pieces(graph: SurfaceGraph, image: IntArray, side: BoolArray) -> _Pieces:
     of_node, count = components_within(graph.edges, side)
     opposite = np.empty(count, dtype=np.int32)
@@ -202,7 +168,7 @@ def _pieces(graph: SurfaceGraph, image: IntArray, side: BoolArray) -> _Pieces:
     return _Pieces(of_node, opposite, edges[:filled], weight[:filled], volume)
 
 
-@njit(cache=True)
+@inner_kernel
 def _by_ncc(pieces: _Pieces, group: IntArray, count: int) -> IntArray:
     """(K,) groups 0..K - 1 of the pieces (P,) by increasing NCC; pieces of group -1 belong to none."""
     border, volume = np.zeros(count), np.zeros(count)
@@ -222,14 +188,14 @@ def _by_ncc(pieces: _Pieces, group: IntArray, count: int) -> IntArray:
     return ascending(border)
 
 
-@njit(cache=True)
+@inner_kernel
 def _components_of(pieces: _Pieces, chosen: BoolArray) -> tuple[IntArray, int]:
     """(P,) the components of the chosen pieces (P,), -1 for the others, and their number."""
     kept = np.empty((len(pieces.edges), 2), dtype=np.int32)
     filled = 0
     for e in range(len(pieces.edges)):
         if chosen[pieces.edges[e, 0]] and chosen[pieces.edges[e, 1]]:
-            kept[filled] = pieces.edges[e]
+            kept[filled, 0], kept[filled, 1] = pieces.edges[e, 0], pieces.edges[e, 1]
             filled += 1
     component = components_of_edges(kept[:filled], len(chosen))
     number = np.full(len(chosen), -1, dtype=np.int32)

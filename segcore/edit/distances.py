@@ -6,12 +6,13 @@ Shortest paths are those of Dijkstra, A note on two problems in connexion with g
 import heapq
 
 import numpy as np
-from numba import njit
+
+from segcore.jit.decorators import inner_kernel, kernel
 
 _NONE = -1  # in place of a node
 
 
-@njit(cache=True)
+@kernel
 def distances_from_border(rows, step, region, limit):  # type: ignore[no-untyped-def]
     """(N,) the distance of the nodes of a region from its border; inf outside, beyond ``limit`` and without a border.
 
@@ -37,7 +38,7 @@ def distances_from_border(rows, step, region, limit):  # type: ignore[no-untyped
     return distance
 
 
-@njit(cache=True)
+@kernel
 def distances_from(rows, step, seeds, limit):  # type: ignore[no-untyped-def]
     """(N,) the distance from the nearest of some nodes; inf beyond ``limit``."""
     count = len(rows.start) - 1
@@ -46,7 +47,7 @@ def distances_from(rows, step, seeds, limit):  # type: ignore[no-untyped-def]
     return distance
 
 
-@njit(cache=True)
+@kernel
 def nearest_seed(rows, step, region, seeds):  # type: ignore[no-untyped-def]
     """(N,) the index of the nearest seed, by a path within a region; -1 if there is none.
 
@@ -70,7 +71,7 @@ def nearest_seed(rows, step, region, seeds):  # type: ignore[no-untyped-def]
     return nearest
 
 
-@njit(cache=True)
+@kernel
 def shortest_path(rows, step, region, origin, target):  # type: ignore[no-untyped-def]
     """The nodes of the shortest path within a region between two of its nodes; these two if there is none."""
     distance = np.full(len(region), np.inf)
@@ -83,14 +84,14 @@ def shortest_path(rows, step, region, origin, target):  # type: ignore[no-untype
     return np.array(path[::-1], dtype=np.int32)
 
 
-@njit(cache=True)
+@inner_kernel
 def _empty_heap():  # type: ignore[no-untyped-def]
     heap = [(0.0, np.int64(0))]  # numba takes the type of a list from its first entry
     heap.pop()
     return heap
 
 
-@njit(cache=True)
+@inner_kernel
 def _heap_of(seeds, distance):  # type: ignore[no-untyped-def]
     """A heap of seeds, whose distances become 0."""
     heap = _empty_heap()
@@ -100,7 +101,7 @@ def _heap_of(seeds, distance):  # type: ignore[no-untyped-def]
     return heap
 
 
-@njit(cache=True)
+@inner_kernel
 def _search(rows, step, region, limit, heap, distance, target):  # type: ignore[no-untyped-def]
     """Carry distances on from the nodes of a heap, within a region, up to a limit and until a target is reached.
 
@@ -125,7 +126,7 @@ def _search(rows, step, region, limit, heap, distance, target):  # type: ignore[
     return before
 
 
-@njit(cache=True)
+@kernel
 def marked_components(rows, inside, marked):  # type: ignore[no-untyped-def]
     """(N,) the connected components of a set that contain some of its nodes.
 

@@ -1,12 +1,12 @@
 """Exact minimum cuts among some nodes of a graph; the other nodes keep their sides."""
 
 import numpy as np
-from numba import njit
 
 from segcore.arrays import BoolArray, FloatArray
 from segcore.graphs.inner_arcs import arcs_among
 from segcore.graphs.max_flow import push
 from segcore.graphs.surface_graph import Rows
+from segcore.jit.decorators import kernel
 
 
 def minimum_cut(
@@ -44,7 +44,7 @@ def minimum_cut(
     return result
 
 
-@njit(cache=True)
+@kernel
 def _network(rows, cost, inside, nodes, count):  # type: ignore[no-untyped-def]
     """The arcs between some nodes, their capacities, and the excess that the other nodes send and take."""
     start, neighbour, edge = rows

@@ -5,11 +5,11 @@ from math import inf
 from typing import Literal, NamedTuple, TypeAlias
 
 import numpy as np
-from numba import njit
 
 from segcore.array_kernels import ascending
 from segcore.arrays import BoolArray, FloatArray, IntArray
 from segcore.graphs.surface_graph import SurfaceGraph
+from segcore.jit.decorators import inner_kernel, kernel
 
 _VALLEY = 0.03  # of the volume, to either side: half the least distance of two valleys; set by hand
 
@@ -63,7 +63,7 @@ def cut_of(graph: SurfaceGraph, side: BoolArray) -> Cut:
     return Cut(side, *cut_sums(graph, side))
 
 
-@njit(cache=True)
+@kernel
 def cut_sums(graph: SurfaceGraph, side: BoolArray) -> tuple[float, float, float]:
     """Weight of the cut between a set of nodes (N,) and the rest, volume of the set, and volume of the rest."""
     weight = 0.0
@@ -74,7 +74,7 @@ def cut_sums(graph: SurfaceGraph, side: BoolArray) -> tuple[float, float, float]
     return weight, inside, outside
 
 
-@njit(cache=True)
+@inner_kernel
 def side_volumes(volume: FloatArray, side: BoolArray) -> tuple[float, float]:
     """Volume of a set of nodes (N,), and of the rest."""
     inside = outside = 0.0
@@ -86,14 +86,14 @@ def side_volumes(volume: FloatArray, side: BoolArray) -> tuple[float, float]:
     return inside, outside
 
 
-@njit(cache=True)
+@inner_kernel
 def ncc_of(weight: float, inside: float, outside: float) -> float:
     """Normalized Cheeger cut of a cut with these sums; infinity if a side is empty."""
     smaller = min(inside, outside)
     return weight / smaller if smaller > 0.0 else np.inf
 
 
-@njit(cache=True)
+@inner_kernel
 def distinct_cuts(sides: BoolArray) -> BoolArray:
     """(K, N) the different bipartitions among some sides (C, N), in their order, node 0 on each side."""
     kept = np.empty_like(sides)
@@ -109,7 +109,7 @@ def distinct_cuts(sides: BoolArray) -> BoolArray:
     return kept[:count]
 
 
-@njit(cache=True)
+@inner_kernel
 def _are_equal(side: BoolArray, canonical: BoolArray) -> bool:
     """Whether two sets are the same bipartition; node 0 is in the second."""
     is_equal = True
@@ -184,7 +184,7 @@ class LevelSets(NamedTuple):
     volume: FloatArray  # (N,) of the first r + 1 nodes
 
 
-@njit(cache=True)
+@kernel
 def level_sets(graph: SurfaceGraph, values: FloatArray) -> LevelSets:
     """The level sets of a function (N,) on the nodes.
 
@@ -209,7 +209,7 @@ def level_sets(graph: SurfaceGraph, values: FloatArray) -> LevelSets:
     return LevelSets(order, weight, volume)
 
 
-@njit(cache=True)
+@kernel
 def best_level_set(values: FloatArray, levels: LevelSets, both_sides: bool) -> BoolArray:
     """(N,) the upper level set of the least normalized cut, or of the least normalized Cheeger cut."""
     node_count = len(values)
@@ -223,10 +223,12 @@ def best_level_set(values: FloatArray, levels: LevelSets, both_sides: bool) -> B
         ratio = cut / below + cut / above if both_sides else cut / min(below, above)
         if ratio < best_ratio:
             best_ratio, best_rank = ratio, r
-    return _after(levels, best_rank)
+    side = np.zeros(node_count, dtype=np.bool_)
+    _add_after(side, levels, best_rank)
+    return side
 
 
-@njit(cache=True)
+@kernel
 def valley_sides(levels: LevelSets, most: int) -> BoolArray:
     """(K, N) the upper level sets whose weight is the least within a width of volume to both sides, K <= most.
 
@@ -263,15 +265,13 @@ def valley_sides(levels: LevelSets, most: int) -> BoolArray:
         if k < most:
             found[k] = r
             count = min(count + 1, most)
-    sides = np.empty((count, node_count), dtype=np.bool_)
+    sides = np.zeros((count, node_count), dtype=np.bool_)
     for k in range(count):
-        sides[k] = _after(levels, found[k])
+        _add_after(sides[k], levels, found[k])
     return sides
 
 
-@njit(cache=True)
-def _after(levels: LevelSets, rank: int) -> BoolArray:
-    side = np.zeros(len(levels.order), dtype=np.bool_)
+@inner_kernel
+def _add_after(side: BoolArray, levels: LevelSets, rank: int) -> None:
     for r in range(rank + 1, len(levels.order)):
         side[levels.order[r]] = True
-    return side

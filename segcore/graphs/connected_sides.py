@@ -1,11 +1,11 @@
 """Cuts whose two sides are connected."""
 
 import numpy as np
-from numba import njit
 
 from segcore.arrays import BoolArray, IntArray
 from segcore.graphs.cheeger import Cut, cut_of, ncc_of
 from segcore.graphs.surface_graph import SurfaceGraph, components_within
+from segcore.jit.decorators import inner_kernel, kernel
 
 
 def with_connected_sides(graph: SurfaceGraph, cut: Cut) -> Cut:
@@ -18,7 +18,7 @@ def with_connected_sides(graph: SurfaceGraph, cut: Cut) -> Cut:
     return cut_of(graph, connected_side(graph, cut.side))
 
 
-@njit(cache=True)
+@kernel
 def connected_side(graph: SurfaceGraph, side: BoolArray) -> BoolArray:
     """(N,) ``with_connected_sides`` of the side (N,) of a cut."""
     pieces, count = components_within(graph.edges, side)
@@ -32,7 +32,7 @@ def connected_side(graph: SurfaceGraph, side: BoolArray) -> BoolArray:
     return pieces == _best_piece(graph, pieces, count, inside)
 
 
-@njit(cache=True)
+@inner_kernel
 def _best_piece(graph: SurfaceGraph, pieces: IntArray, count: int, excluded: int) -> int:
     """The piece with the least NCC against all other nodes."""
     border, volume = np.zeros(count), np.zeros(count)

@@ -1,12 +1,12 @@
 """The arcs between some nodes of a graph, for a maximum flow that only these nodes take part in."""
 
 import numpy as np
-from numba import njit
 
 from segcore.graphs.max_flow import Arcs
+from segcore.jit.decorators import inner_kernel
 
 
-@njit(cache=True)
+@inner_kernel
 def arcs_among(nodes, rows, weight, local, arc_of):  # type: ignore[no-untyped-def]
     """The arcs between some nodes, in the order of the nodes and their rows, and their capacities.
 

@@ -3,11 +3,11 @@
 from typing import NamedTuple
 
 import numpy as np
-from numba import njit
 
 from segcore.arrays import FloatArray, IntArray, LongArray
 from segcore.graphs.ordering import minimum_degree
 from segcore.graphs.surface_graph import IndexArray, Rows, SurfaceGraph, rows_of
+from segcore.jit.decorators import inner_kernel, kernel
 
 
 class LaplacianFactor(NamedTuple):
@@ -85,7 +85,7 @@ def factorise_edges(edges: IntArray, weight: FloatArray, node_count: int) -> Lap
     return Elimination.of(edges, node_count).factorise(weight)
 
 
-@njit(cache=True)
+@inner_kernel
 def factor_of(rows: Rows, weight: FloatArray, order: IntArray) -> LaplacianFactor:
     """``factorise_edges`` of the rows of an edge list, in an order of elimination, for use in other kernels."""
     start, row = _structure(rows, order)
@@ -93,7 +93,7 @@ def factor_of(rows: Rows, weight: FloatArray, order: IntArray) -> LaplacianFacto
     return LaplacianFactor(order, start, row, share, pivot)
 
 
-@njit(cache=True)
+@kernel
 def _structure(rows, order):  # type: ignore[no-untyped-def]
     """``start`` and ``row`` of the factor: row i has entries on the tree paths from its neighbours up to i.
 
@@ -134,7 +134,7 @@ def _structure(rows, order):  # type: ignore[no-untyped-def]
     return start, row
 
 
-@njit(cache=True)
+@kernel
 def _eliminate(rows, weight, order, start, row):  # type: ignore[no-untyped-def]
     """``share`` and ``pivot`` of the factor, left-looking: column k adds up the updates from earlier columns.
 
@@ -180,7 +180,7 @@ def _eliminate(rows, weight, order, start, row):  # type: ignore[no-untyped-def]
     return share, pivot
 
 
-@njit(cache=True)
+@kernel
 def substitute(order, start, row, share, pivot, b):  # type: ignore[no-untyped-def]
     """Forward and backward substitution: ``LaplacianFactor.solve`` for use in other kernels.
 

@@ -3,12 +3,12 @@
 from typing import NamedTuple
 
 import numpy as np
-from numba import njit
 
 from segcore.arrays import BoolArray, FloatArray, IntArray
 from segcore.graphs.laplacian import LaplacianFactor, factor_of, substitute
 from segcore.graphs.ordering import minimum_degree
 from segcore.graphs.surface_graph import IndexArray, SurfaceGraph, rows_of_edges
+from segcore.jit.decorators import inner_kernel, kernel
 
 
 class Arcs(NamedTuple):
@@ -37,7 +37,7 @@ class Network(NamedTuple):
         return minimum_cut(self, supply)
 
 
-@njit(cache=True)
+@kernel
 def network_of(graph: SurfaceGraph, order: IntArray) -> Network:
     """``Network.of`` for use in other kernels, with the order (N,) in which the nodes are eliminated."""
     rows = rows_of_edges(graph.edges, len(graph.volume))
@@ -46,7 +46,7 @@ def network_of(graph: SurfaceGraph, order: IntArray) -> Network:
     return Network(graph, arcs, graph.weight[rows.edge], factor_of(rows, graph.weight, order))
 
 
-@njit(cache=True)
+@kernel
 def minimum_cut(network: Network, supply: FloatArray) -> BoolArray:
     """(N,) True for the nodes of the largest set A of least cut(A) - supply(A), up to rounding.
 
@@ -66,7 +66,7 @@ def minimum_cut(network: Network, supply: FloatArray) -> BoolArray:
     return distance == len(distance)
 
 
-@njit(cache=True)
+@inner_kernel
 def _reverse_arcs(edge, edge_count):  # type: ignore[no-untyped-def]
     """(2 E,) the other arc of the same edge, from the edge of every arc."""
     first = np.full(edge_count, -1, dtype=np.int32)
@@ -81,7 +81,7 @@ def _reverse_arcs(edge, edge_count):  # type: ignore[no-untyped-def]
     return reverse
 
 
-@njit(cache=True)
+@inner_kernel
 def _electrical_flow(arcs, capacity, potential):  # type: ignore[no-untyped-def]
     """The flow of a potential, clipped to the capacities: (2 E,) residual capacities and (N,) excess of the nodes."""
     start, target = arcs.start, arcs.target
@@ -96,7 +96,7 @@ def _electrical_flow(arcs, capacity, potential):  # type: ignore[no-untyped-def]
     return residual, excess
 
 
-@njit(cache=True)
+@kernel
 def push(arcs, residual, excess):  # type: ignore[no-untyped-def]
     """Move excess to deficits (negative excess) by push-relabel until the remaining excess cannot reach any.
 
@@ -171,7 +171,7 @@ def push(arcs, residual, excess):  # type: ignore[no-untyped-def]
                     current[i] += 1
 
 
-@njit(cache=True)
+@inner_kernel
 def _measure_distances(arcs, residual, excess, distance, queue, everywhere):  # type: ignore[no-untyped-def]
     """Measure distances to the nearest deficit in the residual graph, breadth first; returns how many were measured.
 

@@ -3,10 +3,10 @@
 from typing import NamedTuple
 
 import numpy as np
-from numba import njit
 
 from segcore.arrays import BoolArray, IntArray, LongArray
 from segcore.graphs.surface_graph import Rows
+from segcore.jit.decorators import inner_kernel, kernel
 
 # A row is dense, and eliminated last, from this many entries and from 10 sqrt(N) entries on: the limit of AMD, the
 # authors' own code (Amestoy, Davis and Duff, Algorithm 837, ACM Trans. Math. Softw. 30, 2004).
@@ -70,7 +70,7 @@ def minimum_degree(rows: Rows) -> IntArray:
     return _minimum_degree(rows, dense)
 
 
-@njit(cache=True)
+@kernel
 def order_inside(order: IntArray, nodes: IntArray) -> IntArray:
     """(M,) the places in ``nodes`` (M,) of some nodes, in an order (N,) of all nodes.
 
@@ -88,7 +88,7 @@ def order_inside(order: IntArray, nodes: IntArray) -> IntArray:
     return inside
 
 
-@njit(cache=True)
+@kernel
 def _minimum_degree(rows, dense):  # type: ignore[no-untyped-def]
     node_count = len(rows.start) - 1
     memory = rows.neighbour.copy()
@@ -175,7 +175,7 @@ def _minimum_degree(rows, dense):  # type: ignore[no-untyped-def]
     return order
 
 
-@njit(cache=True)
+@inner_kernel
 def _row_lengths(start):  # type: ignore[no-untyped-def]
     """``np.diff``, whose compilation takes two seconds."""
     length = np.empty(len(start) - 1, dtype=np.int32)
@@ -184,7 +184,7 @@ def _row_lengths(start):  # type: ignore[no-untyped-def]
     return length
 
 
-@njit(cache=True)
+@inner_kernel
 def _enter(variables, graph, lists):  # type: ignore[no-untyped-def]
     """Put variables at the heads of the lists of their degrees."""
     size, degree = graph.size, graph.degree
@@ -198,7 +198,7 @@ def _enter(variables, graph, lists):  # type: ignore[no-untyped-def]
             first[degree[i]] = i
 
 
-@njit(cache=True)
+@inner_kernel
 def _leave(variables, graph, lists):  # type: ignore[no-untyped-def]
     """Take variables out of the lists of their degrees."""
     degree = graph.degree
@@ -212,7 +212,7 @@ def _leave(variables, graph, lists):  # type: ignore[no-untyped-def]
             first[degree[i]] = following[i]
 
 
-@njit(cache=True)
+@inner_kernel
 def _form_clique(pivot, free, memory, graph):  # type: ignore[no-untyped-def]
     """Write the variables around the pivot to ``memory`` from ``free`` on, and absorb its elements."""
     begin, length, size = graph.begin, graph.length, graph.size
@@ -237,7 +237,7 @@ def _form_clique(pivot, free, memory, graph):  # type: ignore[no-untyped-def]
     return free
 
 
-@njit(cache=True)
+@inner_kernel
 def _count_outside(pivot, clique, memory, graph, scratch):  # type: ignore[no-untyped-def]
     """Count the nodes outside the clique of the pivot for every element next to it, in ``outside``."""
     begin, elements, size, outside = graph.begin, graph.elements, graph.size, graph.outside
@@ -252,7 +252,7 @@ def _count_outside(pivot, clique, memory, graph, scratch):  # type: ignore[no-un
                 outside[e] -= size[i]
 
 
-@njit(cache=True)
+@inner_kernel
 def _shorten(pivot, clique, memory, graph, scratch):  # type: ignore[no-untyped-def]
     """Remove from the lists of the clique's variables what the clique covers, and add the pivot; hash the lists.
 
@@ -295,7 +295,7 @@ def _shorten(pivot, clique, memory, graph, scratch):  # type: ignore[no-untyped-
         scratch.hashed[i] = total % len(size)
 
 
-@njit(cache=True)
+@inner_kernel
 def _merge_twins(clique, memory, graph, members, scratch):  # type: ignore[no-untyped-def]
     """Merge the variables of the pivot's clique that have equal lists; variables of one hash share a bucket."""
     begin, length, elements, size = graph.begin, graph.length, graph.elements, graph.size

@@ -4,12 +4,12 @@ from dataclasses import dataclass
 from typing import Any, NamedTuple, TypeAlias
 
 import numpy as np
-from numba import njit
 from numpy.typing import NDArray
 from scipy.sparse import csr_matrix
 
 from segcore.array_kernels import distinct_pairs
 from segcore.arrays import BoolArray, FloatArray, IntArray, LongArray, group_sums, pair_keys
+from segcore.jit.decorators import inner_kernel, kernel
 
 IndexArray: TypeAlias = NDArray[np.uint32]  # unsigned: compiled loops then need no test for negative indices
 
@@ -144,7 +144,7 @@ def components_inside(edges: IntArray, group: IntArray) -> IntArray:
     return components_within(edges, group)[0]
 
 
-@njit(cache=True, nogil=True)
+@kernel
 def rows_of_edges(edges: IntArray, node_count: int) -> Rows:
     """``rows_of`` for use in other kernels."""
     start = np.zeros(node_count + 1, dtype=np.int32)
@@ -165,7 +165,7 @@ def rows_of_edges(edges: IntArray, node_count: int) -> Rows:
     return Rows(start, neighbour, edge)
 
 
-@njit(cache=True, nogil=True)
+@kernel
 def induced_edges(edges: IntArray, nodes: IntArray, node_count: int) -> tuple[IntArray, IntArray]:
     """(M, 2) edges inside a set of nodes, numbered as in ``nodes``, and (M,) their indices in ``edges``."""
     local = np.full(node_count, -1, dtype=np.int32)
@@ -186,7 +186,7 @@ def induced_edges(edges: IntArray, nodes: IntArray, node_count: int) -> tuple[In
     return induced, kept[:count]
 
 
-@njit(cache=True, nogil=True)
+@kernel
 def edges_between(edges: IntArray, group: IntArray | BoolArray) -> IntArray:
     """The edges between nodes of different groups (N,)."""
     found = np.empty(len(edges), np.int32)
@@ -198,7 +198,7 @@ def edges_between(edges: IntArray, group: IntArray | BoolArray) -> IntArray:
     return found[:count].copy()
 
 
-@njit(cache=True, nogil=True)
+@kernel
 def components_within(edges: IntArray, group: IntArray | BoolArray) -> tuple[IntArray, int]:
     """(N,) the components of a graph without the edges between groups of nodes (N,), and their number."""
     parent = np.arange(len(group)).astype(np.int32)
@@ -208,7 +208,7 @@ def components_within(edges: IntArray, group: IntArray | BoolArray) -> tuple[Int
     return _numbered(parent)
 
 
-@njit(cache=True, nogil=True)
+@kernel
 def components_of_edges(edges: IntArray, node_count: int) -> IntArray:
     """``connected_components`` for use in other kernels."""
     parent = np.arange(node_count).astype(np.int32)
@@ -217,7 +217,7 @@ def components_of_edges(edges: IntArray, node_count: int) -> IntArray:
     return _numbered(parent)[0]
 
 
-@njit(cache=True, nogil=True)
+@inner_kernel
 def _join(parent, a, b):  # type: ignore[no-untyped-def]
     """Union-find with path halving; the root of a component is its smallest node."""
     while parent[a] != a:
@@ -232,7 +232,7 @@ def _join(parent, a, b):  # type: ignore[no-untyped-def]
         parent[a] = b
 
 
-@njit(cache=True, nogil=True)
+@inner_kernel
 def _numbered(parent):  # type: ignore[no-untyped-def]
     """(N,) the components 0, 1, ... by their smallest nodes, and their number."""
     count = 0

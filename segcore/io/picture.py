@@ -6,12 +6,12 @@ from dataclasses import dataclass
 from typing import BinaryIO
 
 import numpy as np
-from numba import njit
 from numpy.typing import NDArray
 
 from segcore.arrays import FloatArray, IntArray, transformed
 from segcore.coordinates import Coordinates
 from segcore.io.palette import SegmentColors, segment_colors
+from segcore.jit.decorators import kernel
 from segcore.mesh import Mesh, face_normals_and_areas
 
 ByteArray = np.ndarray[tuple[int, ...], np.dtype[np.uint8]]
@@ -112,7 +112,7 @@ def shaded(seen: Seen, labels: IntArray, part_colors: SegmentColors | None = Non
     return pixels
 
 
-@njit(cache=True, nogil=True)
+@kernel
 def _corner_normals(faces: IntArray, normals: FloatArray, vertex_count: int) -> FloatArray:
     """(F, 3, 3) at each corner the mean normal of the faces at its vertex that are within the crease angle."""
     start = np.zeros(vertex_count + 1, np.int64)
@@ -142,7 +142,7 @@ def _corner_normals(faces: IntArray, normals: FloatArray, vertex_count: int) -> 
     return result
 
 
-@njit(cache=True, nogil=True)
+@kernel
 def _rasterize(
     screen: FloatArray, faces: IntArray, labels: IntArray, normals: FloatArray, resolution: int
 ) -> tuple[IntArray, FloatArray]:

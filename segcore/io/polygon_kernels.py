@@ -3,10 +3,10 @@
 from typing import Any, NamedTuple
 
 import numpy as np
-from numba import njit
 from numpy.typing import NDArray
 
 from segcore.arrays import FloatArray, LongArray
+from segcore.jit.decorators import inner_kernel, kernel
 
 _EPSILON = 2.0**-52
 _OPPOSITE = 1e-6  # of the area of the polygon: what a fan may have of triangles opposite to it, by rounding
@@ -24,7 +24,7 @@ class Ring(NamedTuple):
     flat: float  # twice the area up to which a triangle counts as flat
 
 
-@njit(cache=True)
+@kernel
 def clip_concave_polygons(
     vertices: FloatArray, corners: NDArray[np.signedinteger[Any]], sizes: LongArray, faces: LongArray, steps: int
 ) -> int:
@@ -50,7 +50,7 @@ def clip_concave_polygons(
     return left_out
 
 
-@njit(cache=True)
+@inner_kernel
 def _has_right_fan(vertices: FloatArray, corners: NDArray[np.signedinteger[Any]], begin: int, size: int) -> bool:
     """Whether all triangles of the fan clearly have the side of the normal of the polygon: most polygons are convex."""
     for corner in range(begin, begin + size):
@@ -67,7 +67,7 @@ def _has_right_fan(vertices: FloatArray, corners: NDArray[np.signedinteger[Any]]
     return True
 
 
-@njit(cache=True)
+@inner_kernel
 def _fan_cross(
     vertices: FloatArray, corners: NDArray[np.signedinteger[Any]], begin: int, i: int
 ) -> tuple[float, float, float]:
@@ -78,7 +78,7 @@ def _fan_cross(
     return p1 * q2 - p2 * q1, p2 * q0 - p0 * q2, p0 * q1 - p1 * q0
 
 
-@njit(cache=True)
+@inner_kernel
 def _concave_ring(vertices: FloatArray, corners: NDArray[np.signedinteger[Any]]) -> Ring:
     """The polygon in its plane; without corners if its fan is right, or if it has no area."""
     size = len(corners)
@@ -124,7 +124,7 @@ def _concave_ring(vertices: FloatArray, corners: NDArray[np.signedinteger[Any]])
     return Ring(x, y, before, after, _FLAT + 4.0 * noise)
 
 
-@njit(cache=True)
+@inner_kernel
 def _cross(
     vertices: FloatArray, corners: NDArray[np.signedinteger[Any]], i: int, extent: float
 ) -> tuple[float, float, float]:
@@ -135,7 +135,7 @@ def _cross(
     return p1 * q2 - p2 * q1, p2 * q0 - p0 * q2, p0 * q1 - p1 * q0
 
 
-@njit(cache=True)
+@inner_kernel
 def _clip(ring: Ring, begin: int, faces: LongArray, steps: int) -> int:
     """Fill ``faces`` (N - 2, 3) with ears of the ring, counted from ``begin``; return the steps that are left.
 
@@ -181,7 +181,7 @@ def _clip(ring: Ring, begin: int, faces: LongArray, steps: int) -> int:
     return steps
 
 
-@njit(cache=True)
+@inner_kernel
 def _is_free(
     ring: Ring, at: int, order: LongArray, places: FloatArray, is_blocking: NDArray[np.bool_], steps: int
 ) -> tuple[bool, int]:
@@ -210,7 +210,7 @@ def _is_free(
     return True, steps
 
 
-@njit(cache=True)
+@inner_kernel
 def _coincides(ring: Ring, i: int, a: int, b: int, c: int) -> bool:
     """Whether corner i has the position of another one, as at the bridge from a border to a hole."""
     x, y = ring.x[i], ring.y[i]
@@ -221,7 +221,7 @@ def _coincides(ring: Ring, i: int, a: int, b: int, c: int) -> bool:
     )
 
 
-@njit(cache=True)
+@inner_kernel
 def _double_area(ring: Ring, a: int, b: int, c: int) -> float:
     """Twice the signed area of a triangle."""
     return (ring.x[b] - ring.x[a]) * (ring.y[c] - ring.y[a]) - (ring.y[b] - ring.y[a]) * (ring.x[c] - ring.x[a])

@@ -3,11 +3,11 @@
 from typing import NamedTuple
 
 import numpy as np
-from numba import njit
 
 from segcore.arrays import FloatArray, IntArray
 from segcore.graphs.inner_arcs import arcs_among
 from segcore.graphs.max_flow import Arcs
+from segcore.jit.decorators import inner_kernel, kernel
 
 
 class Geometry(NamedTuple):
@@ -41,7 +41,7 @@ class _Queue(NamedTuple):
     distance: FloatArray
 
 
-@njit(cache=True)
+@kernel
 def grow_band(boundary, graph, geometry, place, bounds, width, local):  # type: ignore[no-untyped-def]
     """The faces of both sides of a split whose centres are within a distance from its boundary.
 
@@ -104,12 +104,12 @@ def grow_band(boundary, graph, geometry, place, bounds, width, local):  # type: 
     return Band(found.faces[:count].copy(), found.distance[:count].copy())
 
 
-@njit(cache=True)
+@inner_kernel
 def _distance(centres, f, x, y, z):  # type: ignore[no-untyped-def]
     return np.sqrt((centres[f, 0] - x) ** 2 + (centres[f, 1] - y) ** 2 + (centres[f, 2] - z) ** 2)
 
 
-@njit(cache=True)
+@inner_kernel
 def _doubled(found):  # type: ignore[no-untyped-def]
     """The queue with arrays of twice the size."""
     count = len(found.faces)
@@ -121,7 +121,7 @@ def _doubled(found):  # type: ignore[no-untyped-def]
     return larger
 
 
-@njit(cache=True)
+@kernel
 def free_faces(band, place, size, pinned):  # type: ignore[no-untyped-def]
     """The faces of a band that may change sides: all but the cores of its leaves.
 
@@ -151,7 +151,7 @@ def free_faces(band, place, size, pinned):  # type: ignore[no-untyped-def]
     return free[:count].copy()
 
 
-@njit(cache=True)
+@kernel
 def band_network(free, graph, place, bounds, local, arc_of):  # type: ignore[no-untyped-def]
     """The flow network of the free faces: faces beyond them are sources on the lower side and sinks on the upper one.
 

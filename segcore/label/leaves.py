@@ -6,10 +6,10 @@ A *place* is the number of a leaf; the leaves of every node of the tree have con
 from typing import NamedTuple
 
 import numpy as np
-from numba import njit
 
 from segcore.arrays import FloatArray, IntArray, LongArray
 from segcore.graphs.surface_graph import Rows
+from segcore.jit.decorators import kernel
 
 
 class FaceGraph(NamedTuple):
@@ -37,7 +37,7 @@ class Placement(NamedTuple):
     split_at: IntArray  # (K,) the split between the leaves at the places i - 1 and i; constant
 
 
-@njit(cache=True)
+@kernel
 def split_between(one, other, split_at):  # type: ignore[no-untyped-def]
     """The split between two different places: the first one in the tree of those at the gaps between them."""
     low, high = min(one, other), max(one, other)
@@ -47,7 +47,7 @@ def split_between(one, other, split_at):  # type: ignore[no-untyped-def]
     return split
 
 
-@njit(cache=True)
+@kernel
 def crossing_edges(pairs, place, split_at):  # type: ignore[no-untyped-def]
     """(M,) edges between different places, and (M,) the split that each of them crosses."""
     count = 0
@@ -66,7 +66,7 @@ def crossing_edges(pairs, place, split_at):  # type: ignore[no-untyped-def]
     return crossing, split
 
 
-@njit(cache=True)
+@kernel
 def changed_places(free, lower, graph, place, bounds, local):  # type: ignore[no-untyped-def]
     """(M,) faces that change sides, and (M,) the new place of each: that of a neighbour on its new side.
 
@@ -120,7 +120,7 @@ def changed_places(free, lower, graph, place, bounds, local):  # type: ignore[no
     return moved[:count][reached], new_place[reached]
 
 
-@njit(cache=True)
+@kernel
 def move(faces, new_place, placement, rows):  # type: ignore[no-untyped-def]
     """Give faces other places, and update the counts of faces and of crossing edges."""
     start, neighbour = rows.start, rows.neighbour
@@ -138,7 +138,7 @@ def move(faces, new_place, placement, rows):  # type: ignore[no-untyped-def]
         place[f] = new_place[k]
 
 
-@njit(cache=True)
+@kernel
 def broken_leaves(faces, old_place, placement, least, rows, visited):  # type: ignore[no-untyped-def]
     """(K,) True for the leaves that have lost faces and are now too small or not connected.
 
@@ -186,7 +186,7 @@ def broken_leaves(faces, old_place, placement, least, rows, visited):  # type: i
     return broken
 
 
-@njit(cache=True)
+@kernel
 def edges_around(faces, rows):  # type: ignore[no-untyped-def]
     """The edges of some faces, with repetitions."""
     start, edge_of = rows.start, rows.edge

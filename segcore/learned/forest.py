@@ -7,9 +7,9 @@ from typing import Any
 
 import numpy as np
 import numpy.typing as npt
-from numba import njit
 
 from segcore.arrays import FloatArray
+from segcore.jit.decorators import kernel
 
 LEAF = -1  # in place of a feature
 # A node is followed by its first child, to which rows of at most ``number`` of the feature go.
@@ -49,7 +49,7 @@ class Forest:
         return _means(features, *(np.ascontiguousarray(nodes[name]) for name in ("feature", "second", "number")))
 
 
-@njit(cache=True)
+@kernel
 def _means(features, feature, second, number):  # type: ignore[no-untyped-def]
     trees = len(feature)
     mean = np.zeros(len(features))

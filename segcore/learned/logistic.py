@@ -5,9 +5,9 @@ from dataclasses import dataclass
 from typing import Any, NamedTuple
 
 import numpy as np
-from numba import njit
 
 from segcore.arrays import FloatArray
+from segcore.jit.decorators import kernel
 
 _CLIP = 4.0  # standard deviations at which features are clipped: a limit on extrapolation, set by hand
 _HINGE = 1.0  # standard deviations at which the hinges begin; set by hand
@@ -66,7 +66,7 @@ def basis(standardised: FloatArray) -> FloatArray:
     return np.concatenate([z, z * z, np.maximum(z - _HINGE, 0.0), np.maximum(-z - _HINGE, 0.0)], axis=1)
 
 
-@njit(cache=True, nogil=True, error_model="numpy")
+@kernel
 def write_probabilities(columns, model, probability):  # type: ignore[no-untyped-def]
     """The logistic function of bias + weight . basis, without an array of the basis, for columns (M, N) of features.
 

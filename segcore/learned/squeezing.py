@@ -1,7 +1,8 @@
 """A compiled logarithm for long rows of numbers."""
 
 import numpy as np
-from numba import njit
+
+from segcore.jit.decorators import kernel
 
 _SQRT_HALF = np.uint64(0x3FE6A09E667F3BCD)  # the bits of sqrt(1/2)
 _EXPONENT = np.uint64(52)  # bits of a float64 below its exponent
@@ -10,7 +11,7 @@ _TWO_52 = 2.0**52
 _LN_2 = 0.6931471805599453
 
 
-@njit(cache=True, nogil=True, error_model="numpy")
+@kernel
 def squeeze(row, work):  # type: ignore[no-untyped-def]
     """Replace numbers (N,) by sign(x) log(1 + |x|), within 1e-15.
 

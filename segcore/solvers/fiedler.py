@@ -4,12 +4,12 @@ from functools import cache
 from math import frexp, sqrt
 
 import numpy as np
-from numba import njit
 
 from segcore.array_kernels import dot
 from segcore.arrays import FloatArray
 from segcore.graphs.laplacian import LaplacianFactor, factorise, substitute
 from segcore.graphs.surface_graph import SurfaceGraph
+from segcore.jit.decorators import inner_kernel, kernel
 from segcore.solvers.tridiagonal import diagonalise
 
 # Set by hand. TOLERANCE and CHECK_EVERY are compared with their neighbours in bench/RESULTS.md, "Constants and their
@@ -72,7 +72,7 @@ def _noise(length: int) -> FloatArray:
     return np.random.default_rng(START_SEED).standard_normal(length)
 
 
-@njit(cache=True)
+@kernel
 def eigenvectors_of(graph: SurfaceGraph, factor: LaplacianFactor, noise: FloatArray, count: int) -> FloatArray:
     """(min(count, N - 1), N) ``fiedler_vectors`` of a connected graph, as rows, from random numbers."""
     root_volume = np.sqrt(graph.volume)
@@ -89,7 +89,7 @@ def eigenvectors_of(graph: SurfaceGraph, factor: LaplacianFactor, noise: FloatAr
     return vectors
 
 
-@njit(cache=True)
+@inner_kernel
 def _lanczos(factor, root_volume, noise, count):  # type: ignore[no-untyped-def]
     """(count, N) eigenvectors of D^1/2 L^+ D^1/2 orthogonal to the constant functions, largest eigenvalue first.
 
@@ -120,7 +120,7 @@ def _lanczos(factor, root_volume, noise, count):  # type: ignore[no-untyped-def]
     return _combined(diagonal[:step], beside[:step], basis, count)
 
 
-@njit(cache=True)
+@inner_kernel
 def _in_range(factor):  # type: ignore[no-untyped-def]
     """The factor times a power of two, which changes no digit, if squares of solutions would leave the range."""
     order, start, row, share, pivot = factor
@@ -134,7 +134,7 @@ def _in_range(factor):  # type: ignore[no-untyped-def]
     return LaplacianFactor(order, start, row, share, pivot)
 
 
-@njit(cache=True)
+@inner_kernel
 def _largest(values, count):  # type: ignore[no-untyped-def]
     """(min(count, N),) the places of the largest numbers (N,), the largest first."""
     chosen = np.empty(min(count, len(values)), dtype=np.int64)
@@ -151,7 +151,7 @@ def _largest(values, count):  # type: ignore[no-untyped-def]
     return chosen
 
 
-@njit(cache=True)
+@inner_kernel
 def _has_converged(diagonal, beside, count):  # type: ignore[no-untyped-def]
     """Whether the residuals of the eigenvectors of the largest eigenvalues are below the tolerance."""
     steps = len(diagonal)
@@ -164,7 +164,7 @@ def _has_converged(diagonal, beside, count):  # type: ignore[no-untyped-def]
     return has_converged
 
 
-@njit(cache=True)
+@inner_kernel
 def _combined(diagonal, beside, basis, count):  # type: ignore[no-untyped-def]
     """(count, N) the eigenvectors of the largest eigenvalues in the space of the rows of the basis after the first."""
     steps = len(diagonal)
@@ -180,7 +180,7 @@ def _combined(diagonal, beside, basis, count):  # type: ignore[no-untyped-def]
     return vectors
 
 
-@njit(cache=True)
+@inner_kernel
 def _advance(factor, root_volume, basis, step, image):  # type: ignore[no-untyped-def]
     """A step of Lanczos from an image, orthogonal to the rows of the basis before ``step``, which becomes that row.
 
@@ -202,7 +202,7 @@ def _advance(factor, root_volume, basis, step, image):  # type: ignore[no-untype
     return image, along, 0.0 if exhausted else beside, exhausted
 
 
-@njit(cache=True)
+@inner_kernel
 def _orthogonalise(vector: FloatArray, basis: FloatArray) -> float:
     """Subtract from a vector, in place, its projection on orthonormal rows; return the coefficient of the last row."""
     last = 0.0

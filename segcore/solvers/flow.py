@@ -3,8 +3,8 @@
 from itertools import islice
 
 import numpy as np
-from numba import njit
 
+from segcore.array_kernels import assign
 from segcore.arrays import BoolArray, FloatArray, IntArray
 from segcore.graphs.cheeger import (
     Cut,
@@ -19,7 +19,8 @@ from segcore.graphs.cheeger import (
 from segcore.graphs.connected_sides import connected_side
 from segcore.graphs.max_flow import Network, minimum_cut, network_of
 from segcore.graphs.surface_graph import SurfaceGraph
-from segcore.solvers.fiedler import eigenvectors, eigenvectors_of
+from segcore.jit.decorators import kernel
+from segcore.solvers.fiedler import eigenvectors, eigenvectors_of, start_noise
 from segcore.solvers.total_variation import TotalVariationFlow
 
 # Set by hand. The first three are compared with their neighbours in bench/RESULTS.md, "Constants and their neighbours".
@@ -68,36 +69,64 @@ def flow_cut(graph: SurfaceGraph, *, count: int = 2) -> Cut:
     return min([best, *(improve(network, cut) for cut in promising)], key=_ncc).canonical
 
 
-@njit(cache=True)
-def connected_sweeps(graph: SurfaceGraph, order: IntArray, noise: FloatArray) -> BoolArray:
+def connected_sweeps(graph: SurfaceGraph, order: IntArray) -> BoolArray:
     """(C, N) different cuts of a connected graph with connected sides; node 0 is on the side of each.
 
-    They are made of the best of the sweeps of several eigenvectors, improved by maximum flows, of the sweeps, and of
-    their valleys.
+    They are the ``swept_sides`` of several eigenvectors.
 
     Parameters
     ----------
     graph : connected, at least two nodes.
     order : (N,) of the elimination of the nodes.
-    noise : see ``segcore.solvers.fiedler.start_noise``.
+    """
+    network, vectors = spectrum(graph, order)
+    sides: BoolArray = _with_connected_sides(graph, swept_sides(network, vectors))
+    return sides
+
+
+def spectrum(graph: SurfaceGraph, order: IntArray) -> tuple[Network, FloatArray]:
+    """The network of a connected graph, and (K, N) its first eigenvectors after the constant one.
+
+    Parameters
+    ----------
+    order : (N,) of the elimination of the nodes.
     """
     network = network_of(graph, order)
-    vectors = eigenvectors_of(graph, network.factor, noise, VECTORS)
-    sides = np.empty((1 + (1 + VALLEYS) * len(vectors), len(graph.volume)), dtype=np.bool_)
-    best, least, filled = 1, np.inf, 1 + len(vectors)
-    for v in range(len(vectors)):
-        levels = level_sets(graph, vectors[v])
-        sides[1 + v] = best_level_set(vectors[v], levels, False)
-        ncc = ncc_of(*cut_sums(graph, sides[1 + v]))
+    return network, eigenvectors_of(graph, network.factor, start_noise(graph.node_count), VECTORS)
+
+
+@kernel
+def swept_sides(network: Network, functions: FloatArray) -> BoolArray:
+    """(C, N) sides of cuts: the best of the sweeps of K functions improved by maximum flows, the sweeps, their valleys.
+
+    Parameters
+    ----------
+    network : of a connected graph.
+    functions : (K, N)
+    """
+    graph, count = network.graph, len(functions)
+    sides = np.empty((1 + (1 + VALLEYS) * count, functions.shape[1]), dtype=np.bool_)
+    best, least, filled = 1, np.inf, 1 + count
+    for k in range(count):
+        levels = level_sets(graph, functions[k])
+        assign(sides[1 + k], best_level_set(functions[k], levels, False))
+        ncc = ncc_of(*cut_sums(graph, sides[1 + k]))
         if ncc < least:
-            best, least = 1 + v, ncc
-        for valley in valley_sides(levels, VALLEYS):
-            sides[filled] = valley
+            best, least = 1 + k, ncc
+        valleys = valley_sides(levels, VALLEYS)
+        for v in range(len(valleys)):
+            assign(sides[filled], valleys[v])
             filled += 1
-    sides[0] = improved(network, sides[best])
-    different = distinct_cuts(sides[:filled])
+    assign(sides[0], improved(network, sides[best]) if least < np.inf else sides[best])
+    return sides[:filled]
+
+
+@kernel
+def _with_connected_sides(graph: SurfaceGraph, sides: BoolArray) -> BoolArray:
+    """(K, N) the different cuts among some (C, N), with connected sides."""
+    different = distinct_cuts(sides)
     for k in range(len(different)):
-        different[k] = connected_side(graph, different[k])
+        assign(different[k], connected_side(graph, different[k]))
     return distinct_cuts(different)
 
 
@@ -124,7 +153,7 @@ def improve(network: Network, cut: Cut) -> Cut:
     return cut_of(network.graph, improved(network, cut.side))
 
 
-@njit(cache=True)
+@kernel
 def improved(network: Network, side: BoolArray) -> BoolArray:
     """(N,) ``improve`` of the side (N,) of a cut."""
     graph = network.graph

@@ -4,12 +4,12 @@ from dataclasses import dataclass
 from typing import NamedTuple
 
 import numpy as np
-from numba import njit
 
 from segcore.array_kernels import dot
 from segcore.arrays import FloatArray
 from segcore.graphs.laplacian import LaplacianFactor, factorise
 from segcore.graphs.surface_graph import IndexArray, SurfaceGraph
+from segcore.jit.decorators import kernel
 
 
 class DualProblem(NamedTuple):
@@ -108,7 +108,7 @@ class InnerProblem:
         return float(np.maximum(self.supply - self.flow.divergence, 0).sum())
 
 
-@njit(cache=True)
+@kernel
 def _add_flow(dual, potential, flow):  # type: ignore[no-untyped-def]
     """Add the flow of a potential, clip the sum to the capacities, and forget the last iteration."""
     start, other, weight = dual.start, dual.other, dual.weight
@@ -126,7 +126,7 @@ def _add_flow(dual, potential, flow):  # type: ignore[no-untyped-def]
     flow.last_divergence[:] = divergence
 
 
-@njit(cache=True)
+@kernel
 def _fista(dual, supply, flow, t, iterations):  # type: ignore[no-untyped-def]
     """Accelerated projected gradient descent, restarted if the momentum leads uphill; returns the next t.
 

@@ -4,7 +4,6 @@ from collections import deque
 from collections.abc import Iterator
 
 import numpy as np
-from numba import njit
 
 from segcore.array_kernels import dot
 from segcore.arrays import FloatArray
@@ -12,6 +11,7 @@ from segcore.errors import InvalidParameters
 from segcore.graphs.cheeger import Cut, sweep
 from segcore.graphs.laplacian import LaplacianFactor, factorise, factorise_edges
 from segcore.graphs.surface_graph import SurfaceGraph
+from segcore.jit.decorators import kernel
 from segcore.solvers.starts import start_functions
 
 # MEMORY and SUFFICIENT_DECREASE are the usual values of L-BFGS and of the Armijo rule (Nocedal and Wright, Numerical
@@ -141,7 +141,7 @@ def _quadratic_weights(graph: SurfaceGraph, f: FloatArray, p: float) -> FloatArr
     return weights
 
 
-@njit(cache=True)
+@kernel
 def _center(f, volume, p, balanced):  # type: ignore[no-untyped-def]
     """The c that minimises sum vol[i] |f[i] - c|^p: there the pulls of the values above and below c are equal.
 
@@ -179,7 +179,7 @@ def _center(f, volume, p, balanced):  # type: ignore[no-untyped-def]
     return c
 
 
-@njit(cache=True)
+@kernel
 def _quotient(edges, weight, volume, f, center, p, gradient):  # type: ignore[no-untyped-def]
     """Return R / B and fill its gradient (N,); the gradient of B is that at a fixed c, because c is optimal.
 

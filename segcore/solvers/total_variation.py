@@ -5,13 +5,13 @@ from dataclasses import dataclass
 from typing import NamedTuple
 
 import numpy as np
-from numba import njit
 
 from segcore.array_kernels import dot
 from segcore.arrays import FloatArray
 from segcore.graphs.cheeger import Cut, sweep
 from segcore.graphs.laplacian import LaplacianFactor, factorise_edges, substitute
 from segcore.graphs.surface_graph import IndexArray, SurfaceGraph
+from segcore.jit.decorators import kernel
 
 # Set by hand, and compared with their neighbours in bench/RESULTS.md, "Constants and their neighbours".
 TIME_STEP = 30.0  # of the flow, for functions of mean magnitude 1
@@ -123,7 +123,7 @@ def _grounded_factor(graph: SurfaceGraph, conductance: FloatArray) -> LaplacianF
     return factorise_edges(edges, np.concatenate([conductance, graph.volume / TIME_STEP]), graph.node_count + 1)
 
 
-@njit(cache=True)
+@kernel
 def split_bregman_steps(system, source, threshold, variables, iterations):  # type: ignore[no-untyped-def]
     """(N,) u after some split Bregman iterations from the state in ``variables``, which they change.
 

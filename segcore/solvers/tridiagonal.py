@@ -1,15 +1,15 @@
 """Eigenvalues and eigenvectors of symmetric tridiagonal matrices, without BLAS."""
 
 import numpy as np
-from numba import njit
 
 from segcore.arrays import FloatArray
+from segcore.jit.decorators import inner_kernel
 
 _EPS = float(np.finfo(np.float64).eps)
 _MOST_SWEEPS = 60  # for one eigenvalue; two are the rule
 
 
-@njit(cache=True)
+@inner_kernel
 def diagonalise(diagonal: FloatArray, beside: FloatArray, rows: FloatArray) -> None:
     """Find the eigenvalues of a tridiagonal matrix T by the implicit QL method. O(N^2 (N + R)) at most.
 
@@ -40,7 +40,7 @@ def diagonalise(diagonal: FloatArray, beside: FloatArray, rows: FloatArray) -> N
             _sweep(diagonal, beside, rows, first, last)
 
 
-@njit(cache=True)
+@inner_kernel
 def _sweep(diagonal, beside, rows, first, last):  # type: ignore[no-untyped-def]
     """One implicit QL step with Wilkinson's shift on the block first..last, of which no entry beside vanishes."""
     slope = 0.5 * (diagonal[first + 1] - diagonal[first]) / beside[first]

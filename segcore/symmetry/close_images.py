@@ -3,9 +3,9 @@
 from typing import NamedTuple
 
 import numpy as np
-from numba import njit
 
 from segcore.arrays import BoolArray, FloatArray, IntArray
+from segcore.jit.decorators import inner_kernel, kernel
 from segcore.threads import in_blocks
 
 CLOSE = 0.1  # distance of an image from its face, in sqrt(area of the face), up to which the two coincide; set by hand
@@ -55,7 +55,7 @@ def close_images(halves: Halves, faces: IntArray, among: IntArray) -> IntArray:
     return found
 
 
-@njit(cache=True, nogil=True, error_model="numpy")
+@kernel
 def _in_cells(centre: FloatArray, faces: IntArray, size: float) -> _Cells:
     slots = 16
     while slots < len(faces):
@@ -76,18 +76,18 @@ def _in_cells(centre: FloatArray, faces: IntArray, size: float) -> _Cells:
     return _Cells(size, start, sorted_faces)
 
 
-@njit(cache=True, nogil=True, error_model="numpy")
+@inner_kernel
 def _cell(coordinate, size):  # type: ignore[no-untyped-def]
     return int(np.floor(coordinate / size))
 
 
-@njit(cache=True, nogil=True, error_model="numpy")
+@inner_kernel
 def _slot(i, j, k, slots):  # type: ignore[no-untyped-def]
     """The slot of a cell; cells that follow each other along the last axis have slots that do so."""
     return (i * _STEP_I + j * _STEP_J + k) & (slots - 1)
 
 
-@njit(cache=True, nogil=True, error_model="numpy")
+@kernel
 def _find(start, end, faces, cells, halves, found):  # type: ignore[no-untyped-def]
     px, py, pz, offset = halves.plane
     slots = len(cells.start) - 1
@@ -125,7 +125,7 @@ def _find(start, end, faces, cells, halves, found):  # type: ignore[no-untyped-d
             found[m] = best
 
 
-@njit(cache=True, nogil=True, error_model="numpy")
+@kernel
 def coinciding_area(start, end, halves, image):  # type: ignore[no-untyped-def]
     """(2,) the area of some faces whose centres coincide with those of their images (F,), and of all of them."""
     px, py, pz, offset = halves.plane

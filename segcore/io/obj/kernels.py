@@ -2,11 +2,10 @@
 
 from typing import NamedTuple
 
-from numba import njit
-
 from segcore.arrays import BoolArray, FloatArray, IntArray, LongArray
 from segcore.io.text.number_kernels import decimal_number, whole_number
 from segcore.io.text.word_kernels import SPACE, Bytes, Lines
+from segcore.jit.decorators import inner_kernel, kernel
 
 _MINUS, _SLASH, _ZERO, _NINE = 45, 47, 48, 57
 
@@ -19,7 +18,7 @@ class FaceLines(NamedTuple):
     vertex_count: int  # of the file
 
 
-@njit(cache=True)
+@kernel
 def parse_vertex_lines(text: Lines, lines: LongArray, vertices: FloatArray, unread: BoolArray) -> int:
     """Fill ``vertices`` (N, 3) with the first three numbers after the keyword of each of ``lines`` (N,).
 
@@ -41,7 +40,7 @@ def parse_vertex_lines(text: Lines, lines: LongArray, vertices: FloatArray, unre
     return count
 
 
-@njit(cache=True)
+@kernel
 def parse_face_lines(text: Lines, faces: FaceLines, corners: IntArray) -> int:
     """Fill ``corners`` (C,) with the vertices, counted from 0, of corners such as ``7``, ``-1``, ``7/8`` or ``7//9``.
 
@@ -65,7 +64,7 @@ def parse_face_lines(text: Lines, faces: FaceLines, corners: IntArray) -> int:
     return -1
 
 
-@njit(cache=True)
+@kernel
 def parse_corner_picks(text: Lines, lines: LongArray, picks: LongArray) -> None:
     """Fill ``picks`` (C, 2) with the numbers after the first and second slash of the corners; 0 if there is none."""
     characters, start, line_start = text
@@ -83,7 +82,7 @@ def parse_corner_picks(text: Lines, lines: LongArray, picks: LongArray) -> None:
             corner += 1
 
 
-@njit(cache=True)
+@inner_kernel
 def _is_suffix(text: Bytes, at: int) -> bool:
     """Whether the rest of a word is at most two numbers, each after a slash and possibly empty."""
     slashes = 0

@@ -1,9 +1,9 @@
 """Whether points are inside a surface."""
 
 import numpy as np
-from numba import njit
 
 from segcore.arrays import BoolArray, FloatArray, IntArray
+from segcore.jit.decorators import inner_kernel, kernel
 
 _MOST_ANGLES = 10**9  # solid angles that are computed for one model: 20 s
 
@@ -32,7 +32,7 @@ class InsideTest:
         return inside
 
 
-@njit(cache=True)
+@kernel
 def winding_numbers(points: FloatArray, vertices: FloatArray, faces: IntArray) -> FloatArray:
     """(N,) the sum of the solid angles of faces (F, 3) at points (N, 3), over 4 pi. O(N F)."""
     numbers = np.zeros(len(points))
@@ -46,7 +46,7 @@ def winding_numbers(points: FloatArray, vertices: FloatArray, faces: IntArray) -
     return numbers / (2.0 * np.pi)
 
 
-@njit(cache=True)
+@inner_kernel
 def _half_angle(corners: FloatArray) -> float:
     """Half the solid angle of a triangle at the origin."""
     a, b, c = corners[0], corners[1], corners[2]

@@ -3,9 +3,9 @@
 from dataclasses import dataclass
 
 import numpy as np
-from numba import njit
 
 from segcore.arrays import FloatArray, IntArray, LongArray, plane_axes, transformed
+from segcore.jit.decorators import inner_kernel, kernel
 
 # The number of ears, each with a shorter base than the one before, that end the search. Set by hand: one is enough for
 # a valid cap, more avoid long thin triangles.
@@ -89,7 +89,7 @@ def _projected(points: FloatArray) -> FloatArray:
     return transformed(relative, plane_axes(normal))
 
 
-@njit(cache=True)
+@kernel
 def ribbon(one: FloatArray, other: FloatArray) -> LongArray:
     """(N + M - 2, 3) the triangles of least area between the ends of two chains (N, 3) and (M, 3). O(N M).
 
@@ -120,7 +120,7 @@ def ribbon(one: FloatArray, other: FloatArray) -> LongArray:
     return triangles
 
 
-@njit(cache=True)
+@inner_kernel
 def _triangle_area(a: FloatArray, b: FloatArray, c: FloatArray) -> float:
     ux, uy, uz = b[0] - a[0], b[1] - a[1], b[2] - a[2]
     vx, vy, vz = c[0] - a[0], c[1] - a[1], c[2] - a[2]
@@ -128,7 +128,7 @@ def _triangle_area(a: FloatArray, b: FloatArray, c: FloatArray) -> float:
     return 0.5 * np.sqrt(x * x + y * y + z * z)
 
 
-@njit(cache=True)
+@kernel
 def cut_ears(points: FloatArray) -> LongArray:
     """(N - 2, 3) triangles of a counter-clockwise polygon (N, 2), by ear clipping.
 
@@ -164,7 +164,7 @@ def cut_ears(points: FloatArray) -> LongArray:
     return triangles
 
 
-@njit(cache=True)
+@inner_kernel
 def _is_ear(points: FloatArray, after: LongArray, a: int, b: int, c: int) -> bool:
     if _turn(points, a, b, c) <= 0:
         return False
@@ -178,12 +178,12 @@ def _is_ear(points: FloatArray, after: LongArray, a: int, b: int, c: int) -> boo
     return True
 
 
-@njit(cache=True)
+@inner_kernel
 def _same(points: FloatArray, a: int, b: int) -> bool:
     return points[a, 0] == points[b, 0] and points[a, 1] == points[b, 1]
 
 
-@njit(cache=True)
+@inner_kernel
 def _turn(points: FloatArray, a: int, b: int, c: int) -> float:
     """Twice the signed area of a triangle."""
     return (points[b, 0] - points[a, 0]) * (points[c, 1] - points[a, 1]) - (points[b, 1] - points[a, 1]) * (

@@ -1,12 +1,11 @@
 """A compiled kernel that finds the faces of binary STL files whose attributes are followed by more bytes."""
 
-from numba import njit
-
 from segcore.arrays import LongArray
 from segcore.io.text.word_kernels import Bytes
+from segcore.jit.decorators import kernel
 
 
-@njit(cache=True)
+@kernel
 def walk_faces(data: Bytes, begin: int, face: int, starts: LongArray) -> int:
     """Fill ``starts`` (N,) with the offset of each face; the last two of its ``face`` bytes count the bytes after it.
 

@@ -1,10 +1,10 @@
 """Compiled kernels that parse the words of a text as numbers, correctly rounded."""
 
 import numpy as np
-from numba import njit
 
 from segcore.arrays import BoolArray, FloatArray, LongArray
 from segcore.io.text.word_kernels import SPACE, Bytes, Offsets
+from segcore.jit.decorators import inner_kernel, kernel
 
 _PLUS, _MINUS, _POINT, _ZERO, _NINE = 43, 45, 46, 48, 57
 _UPPER_E, _LOWER_E = 69, 101
@@ -27,7 +27,7 @@ def _power_of_ten(power: int) -> tuple[float, float]:
 _POWER, _POWER_REST = np.array([_power_of_ten(k) for k in range(-_LARGEST_POWER, _LARGEST_POWER + 1)]).T.copy()
 
 
-@njit(cache=True)
+@kernel
 def parse_integers(text: Bytes, start: Offsets, values: LongArray) -> bool:
     """Fill ``values`` (N,) with the whole numbers at ``start`` (N,); return False if a word is not one."""
     for i in range(len(start)):
@@ -38,7 +38,7 @@ def parse_integers(text: Bytes, start: Offsets, values: LongArray) -> bool:
     return True
 
 
-@njit(cache=True)
+@kernel
 def parse_floats(text: Bytes, start: Offsets, values: FloatArray, unread: BoolArray) -> int:
     """Fill ``values`` (N,) with the floats nearest to the decimal numbers at ``start`` (N,).
 
@@ -56,7 +56,7 @@ def parse_floats(text: Bytes, start: Offsets, values: FloatArray, unread: BoolAr
     return count
 
 
-@njit(cache=True)
+@inner_kernel
 def whole_number(text: Bytes, at: int) -> tuple[int, int]:
     """The end of a whole number of at most 18 digits at ``at``, and the number; the end is -1 if there is none."""
     negative = text[at] == _MINUS
@@ -73,7 +73,7 @@ def whole_number(text: Bytes, at: int) -> tuple[int, int]:
     return at, -value if negative else value
 
 
-@njit(cache=True)
+@inner_kernel
 def decimal_number(text: Bytes, at: int) -> tuple[bool, float]:
     """Whether the word at ``at`` could be parsed as a decimal number, and the float nearest to it."""
     negative = text[at] == _MINUS
@@ -107,7 +107,7 @@ def decimal_number(text: Bytes, at: int) -> tuple[bool, float]:
     return is_read, -value if negative else value
 
 
-@njit(cache=True)
+@inner_kernel
 def _scaled(mantissa: int, power: int) -> tuple[bool, float]:
     """Whether the float nearest to mantissa * 10**power is certain, and that float.
 
@@ -136,7 +136,7 @@ def _scaled(mantissa: int, power: int) -> tuple[bool, float]:
     return value + (tail + doubt) == value and value + (tail - doubt) == value, value
 
 
-@njit(cache=True)
+@inner_kernel
 def _product_error(a: float, b: float, product: float) -> float:
     """a * b - product, exact (Dekker 1971)."""
     a_high = a * _SPLIT - (a * _SPLIT - a)

@@ -3,10 +3,10 @@
 from typing import Any, NamedTuple, TypeAlias
 
 import numpy as np
-from numba import njit
 from numpy.typing import NDArray
 
 from segcore.arrays import BoolArray
+from segcore.jit.decorators import kernel
 
 Bytes: TypeAlias = NDArray[np.uint8]
 Offsets: TypeAlias = NDArray[np.signedinteger[Any]]
@@ -24,7 +24,7 @@ class Lines(NamedTuple):
     line_start: Offsets  # (L + 1,) the first word of each line, then W
 
 
-@njit(cache=True)
+@kernel
 def has_controls(text: Bytes) -> bool:
     """Whether a text contains control characters other than white space."""
     found = np.uint8(0)
@@ -33,7 +33,7 @@ def has_controls(text: Bytes) -> bool:
     return found != 0
 
 
-@njit(cache=True)
+@kernel
 def count_words(text: Bytes) -> tuple[int, int]:
     """The number of words and the number of newlines.
 
@@ -51,7 +51,7 @@ def count_words(text: Bytes) -> tuple[int, int]:
     return words, newlines
 
 
-@njit(cache=True)
+@kernel
 def find_word_starts(text: Bytes, begin: int, start: Offsets, line_start: Offsets) -> int:
     """Find the words of a text from byte ``begin`` on.
 
@@ -83,7 +83,7 @@ def find_word_starts(text: Bytes, begin: int, start: Offsets, line_start: Offset
     return lines
 
 
-@njit(cache=True)
+@kernel
 def find_equal(text: Bytes, start: Offsets, indices: Offsets, word: Bytes, found: BoolArray) -> None:
     """Set ``found`` (N,) to whether the words ``indices`` (N,) are equal to ``word``."""
     for i in range(len(found)):

@@ -8,8 +8,9 @@ The glTF extensions EXT_meshopt_compression and KHR_meshopt_compression, appendi
 from typing import TypeAlias
 
 import numpy as np
-from numba import njit
 from numpy.typing import NDArray
+
+from segcore.jit.decorators import inner_kernel, kernel
 
 Bytes: TypeAlias = NDArray[np.uint8]
 
@@ -20,7 +21,7 @@ _BLOCK_BYTES, _BLOCK_ELEMENTS = 8192, 256  # the largest block
 _SHORTEST_TAILS = (32, 24)  # bytes, of version 0 and 1
 
 
-@njit(cache=True)
+@kernel
 def decode_attributes(source: Bytes, target: Bytes) -> bool:
     """Fill ``target`` (count, stride) with the rows of ``source``; return False if the data is damaged."""
     count, stride = target.shape
@@ -46,7 +47,7 @@ def decode_attributes(source: Bytes, target: Bytes) -> bool:
     return at == end
 
 
-@njit(cache=True)
+@inner_kernel
 def _unpack_block(source: Bytes, at: int, end: int, version: int, deltas: Bytes, size: int) -> int:
     """Fill ``deltas`` (stride, size or more); return the end of the data of the block, or -1."""
     stride = len(deltas)
@@ -76,7 +77,7 @@ def _unpack_block(source: Bytes, at: int, end: int, version: int, deltas: Bytes,
     return at if at <= end else -1
 
 
-@njit(cache=True)
+@inner_kernel
 def _bits(version: int, control: int, mode: int) -> int:
     """The number of bits of each number of a group: 0, 1, 2, 4 or 8."""
     if version == 1 and control == 1:
@@ -86,7 +87,7 @@ def _bits(version: int, control: int, mode: int) -> int:
     return 0 if mode == 0 else 1 << mode
 
 
-@njit(cache=True)
+@inner_kernel
 def _unpack_group(source: Bytes, at: int, bits: int, deltas: Bytes, first: int) -> int:
     """Fill 16 deltas from ``first`` on; return the end of the data of the group.
 
@@ -111,7 +112,7 @@ def _unpack_group(source: Bytes, at: int, bits: int, deltas: Bytes, first: int) 
     return following
 
 
-@njit(cache=True)
+@inner_kernel
 def _add_deltas(deltas: Bytes, last: Bytes, channels: Bytes, rows: Bytes) -> bool:
     """Fill ``rows`` (size, stride) with the sums of the deltas; return False for an unknown channel.
 

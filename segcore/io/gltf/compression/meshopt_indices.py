@@ -8,10 +8,10 @@ The glTF extensions EXT_meshopt_compression and KHR_meshopt_compression, appendi
 from typing import NamedTuple
 
 import numpy as np
-from numba import njit
 
 from segcore.arrays import LongArray
 from segcore.io.gltf.compression.meshopt_attributes import Bytes
+from segcore.jit.decorators import inlined_kernel, inner_kernel, kernel
 
 _TRIANGLES, _INDICES = 0xE1, 0xD1  # the first byte of the data
 _TRIANGLE_TAIL, _INDEX_TAIL = 16, 4  # bytes at the end: a table of codes, and padding
@@ -26,7 +26,7 @@ class Cursor(NamedTuple):
     last: int  # the last vertex that was coded as a difference
 
 
-@njit(cache=True)
+@kernel
 def decode_triangles(source: Bytes, target: LongArray) -> bool:
     """Fill ``target`` (3 T,) with vertices of triangles; return False if the data is damaged."""
     triangles = len(target) // 3
@@ -72,7 +72,7 @@ def decode_triangles(source: Bytes, target: LongArray) -> bool:
     return cursor.at == end
 
 
-@njit(cache=True, inline="always")
+@inlined_kernel
 def _third_corner(source: Bytes, cursor: Cursor, code: int, known: int) -> tuple[int, Cursor]:
     """The corner opposite to an edge of an earlier triangle; ``known`` is the one for the codes 1 to 12."""
     if code == 0:
@@ -85,7 +85,7 @@ def _third_corner(source: Bytes, cursor: Cursor, code: int, known: int) -> tuple
     return _coded_corner(source, cursor)
 
 
-@njit(cache=True)
+@inner_kernel
 def _corner(source: Bytes, cursor: Cursor, code: int, is_listed: bool, known: int) -> tuple[int, Cursor]:
     """The second or third corner of a triangle without an earlier edge; ``known`` is the one for the codes 1 to 14."""
     if code == 0:
@@ -95,12 +95,12 @@ def _corner(source: Bytes, cursor: Cursor, code: int, is_listed: bool, known: in
     return known, cursor
 
 
-@njit(cache=True, inline="always")
+@inlined_kernel
 def _new_corner(cursor: Cursor) -> tuple[int, Cursor]:
     return cursor.following, Cursor(cursor.at, cursor.following + 1, cursor.last)
 
 
-@njit(cache=True)
+@inner_kernel
 def _coded_corner(source: Bytes, cursor: Cursor) -> tuple[int, Cursor]:
     """A corner that is coded as the difference to the last one that was."""
     at, value = _number(source, cursor.at, len(source))
@@ -108,7 +108,7 @@ def _coded_corner(source: Bytes, cursor: Cursor) -> tuple[int, Cursor]:
     return last, Cursor(at, cursor.following, last)
 
 
-@njit(cache=True)
+@kernel
 def decode_indices(source: Bytes, target: LongArray) -> bool:
     """Fill ``target`` (N,) with indices in any order; return False if the data is damaged."""
     at, end = 1, len(source) - _INDEX_TAIL
@@ -125,7 +125,7 @@ def decode_indices(source: Bytes, target: LongArray) -> bool:
     return at == end
 
 
-@njit(cache=True)
+@inner_kernel
 def _number(source: Bytes, at: int, end: int) -> tuple[int, int]:
     """The end of a number of at most five bytes with seven bits each, and the number."""
     value = 0

@@ -1,0 +1,1 @@
+"""Kernels: functions that numba compiles, and the cache in which it keeps them."""
