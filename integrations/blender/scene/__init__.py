@@ -1,0 +1,1 @@
+"""Meshes of Blender: what is read of them, and what is written."""

@@ -1,0 +1,1 @@
+"""Operators, panel and preferences."""
