@@ -1,5 +1,5 @@
 .DEFAULT_GOAL := help
-.PHONY: packages help check static format lint types imports security audit containers viewer test image-check
+.PHONY: blender packages help check static format lint types imports security audit containers viewer test image-check
 
 # The root that replaces the base image of the Dockerfile, and the files of this machine that pip needs to find packages.
 IMAGE_BASE ?= /var/tmp/cleave-image-base
@@ -40,6 +40,9 @@ viewer:  ## types of the viewer, and if service/viewer is up to date (`npm run b
 packages:  ## dist/: the npm packages cleave-client and cleave-viewer
 	mkdir -p dist
 	for folder in integrations/client-js viewer; do (cd $$folder && npm ci --ignore-scripts --no-audit --no-fund --loglevel=error && npm pack --loglevel=error --pack-destination $(CURDIR)/dist) || exit 1; done
+
+blender:  ## dist/: the extension for Blender
+	python -m integrations.blender_package dist
 
 image-check:  ## build the Dockerfile in a clean Debian and segment a mesh in the image (needs root and debootstrap; minutes)
 	test -x $(IMAGE_BASE)/usr/bin/python3 || debootstrap --variant=minbase --include=python3,python3-venv,ca-certificates bookworm $(IMAGE_BASE)

@@ -53,6 +53,7 @@ _SLOW = (
     "bench/paper/*",
     "bench/princeton/test_evaluation.py",
     "house/test_language.py",
+    "integrations/blender/test_blender.py",
     "segcore/test_laws.py",
     "segcore/io/test_memory.py",
     "segcore/io/test_round_trips.py",

@@ -46,12 +46,16 @@ def write_groups(entry: bpy.types.Object, parts: Parts) -> None:
     keep(mesh, groups=[group.name for group in made])
 
 
+def check_names(mesh: bpy.types.Mesh) -> None:
+    """Raise CleaveError if an attribute that is not the extension's has a name that it needs."""
+    for name in (ATTRIBUTE, FACE_SETS):
+        found = mesh.attributes.get(name)
+        if found is not None and (found.domain, found.data_type) != ("FACE", "INT"):
+            raise CleaveError(f"{mesh.name} has another attribute with the name {name}: rename it.")
+
+
 def _write(mesh: bpy.types.Mesh, name: str, values: IntArray) -> None:
-    attribute = mesh.attributes.get(name)
-    if attribute is not None and (attribute.domain, attribute.data_type) != ("FACE", "INT"):
-        raise CleaveError(f"{mesh.name} has another attribute with the name {name}: rename it.")
-    if attribute is None:
-        attribute = mesh.attributes.new(name, "INT", "FACE")
+    attribute = mesh.attributes.get(name) or mesh.attributes.new(name, "INT", "FACE")
     attribute.data.foreach_set("value", np.ascontiguousarray(values, dtype=np.int32))
     mesh.update()
 

@@ -8,6 +8,7 @@ import bpy
 from ..cache import Cache
 from ..errors import CanceledError, CleaveError
 from ..parts import Parts
+from ..scene.outputs import check_names
 from ..scene.reading import Subject, subjects
 from ..work import Solve, Work
 from .outputs import Outputs
@@ -122,12 +123,14 @@ class Computing(Outputs):
             raise work.error
 
     def _write(self, context: bpy.types.Context, found: list[Subject]) -> set[str]:
+        for subject in found:
+            check_names(subject.mesh)
+        what = found[0].name if len(found) == 1 else f"{len(found)} meshes"
         count = 0
         for subject in found:
             count += self.write(subject, self.parts(context, subject))
             if subject.note:
                 self.report({"WARNING"}, subject.note)
-        what = found[0].name if len(found) == 1 else f"{len(found)} meshes"
         self.report({"INFO"}, f"{what}: {count} {'part' if count == 1 else 'parts'}")
         return {"FINISHED"}
 
