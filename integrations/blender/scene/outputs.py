@@ -8,6 +8,7 @@ import numpy as np
 from ..arrays import IntArray
 from ..errors import CleaveError
 from ..parts import Color, Parts
+from .reading import polygon_corners
 from .record import keep, record
 
 ATTRIBUTE = "cleave_part"  # the label of every polygon
@@ -82,9 +83,7 @@ def _remove_materials(mesh: bpy.types.Mesh) -> None:
 
 def _vertices_of(mesh: bpy.types.Mesh, parts: Parts) -> list[list[int]]:
     """The vertices of the polygons of each part; those on a border belong to several."""
-    corners, sizes = np.empty(len(mesh.loops), dtype=np.int32), np.empty(len(mesh.polygons), dtype=np.int32)
-    mesh.loops.foreach_get("vertex_index", corners)
-    mesh.polygons.foreach_get("loop_total", sizes)
+    corners, sizes = polygon_corners(mesh)
     pairs = np.unique(np.stack([np.repeat(parts.labels, sizes), corners], axis=1), axis=0)
     starts = np.searchsorted(pairs[:, 0], np.arange(len(parts.names) + 1))
     return [pairs[a:b, 1].tolist() for a, b in pairwise(starts.tolist())]

@@ -8,19 +8,16 @@ import numpy as np
 from ..arrays import FloatArray, IntArray
 from ..errors import CleaveError
 from ..parts import Parts
-from ..polygons import digest, encode_ply, polygon_labels, triangle_areas
+from ..polygons import Polygons, digest
 from ..shape import shape_matrix
 
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Subject:
-    """A mesh, the objects that have it, and the triangles that stand for its polygons."""
+    """A mesh, the objects that have it, and its polygons in the shape that the first object has in the world."""
 
     objects: list[bpy.types.Object]  # the first one gives the modifiers and the shape
-    vertices: FloatArray  # (V, 3) in the shape that the object has in the world
-    triangles: IntArray  # (T, 3) as Blender draws the polygons, in their order
-    polygon: IntArray  # (T,) the polygon of each triangle
-    polygon_count: int
+    polygons: Polygons
     ply: bytes  # the file that Cleave gets
     digest: str  # of that file
     topology: str  # a digest of the polygons
@@ -37,9 +34,7 @@ class Subject:
 
     def of_polygons(self, parts: Parts) -> Parts:
         """Parts of the polygons from parts of the triangles."""
-        area = triangle_areas(self.vertices, self.triangles)
-        labels = polygon_labels(parts.labels, self.polygon, area, self.polygon_count)
-        return Parts(labels, parts.names, parts.colors)
+        return Parts(self.polygons.labels(parts.labels), parts.names, parts.colors)
 
 
 def subjects(objects: list[bpy.types.Object], depsgraph: bpy.types.Depsgraph, with_modifiers: bool) -> list[Subject]:
@@ -80,10 +75,9 @@ def _subject(objects: list[bpy.types.Object], depsgraph: bpy.types.Depsgraph, wi
         vertices = (vertices @ stretch.T).astype(np.float32)
     if not np.isfinite(vertices).all():
         raise CleaveError(f"{entry.name} has vertices at infinity: correct them first.")
-    triangles, polygon = _triangles(entry.data)
-    ply = encode_ply(vertices, triangles)
-    count = len(entry.data.polygons)
-    return Subject(objects, vertices, triangles, polygon, count, ply, digest(ply), _topology(entry.data), note)
+    polygons = Polygons(vertices, *polygon_corners(entry.data))
+    ply = polygons.ply()
+    return Subject(objects, polygons, ply, digest(ply), _topology(entry.data), note)
 
 
 def _vertices(mesh: bpy.types.Mesh) -> FloatArray:
@@ -92,17 +86,13 @@ def _vertices(mesh: bpy.types.Mesh) -> FloatArray:
     return values.reshape(-1, 3)
 
 
-def _triangles(mesh: bpy.types.Mesh) -> tuple[IntArray, IntArray]:
-    mesh.calc_loop_triangles()
-    count = len(mesh.loop_triangles)
-    corners, polygon = np.empty(3 * count, dtype=np.int32), np.empty(count, dtype=np.int32)
-    mesh.loop_triangles.foreach_get("vertices", corners)
-    mesh.loop_triangles.foreach_get("polygon_index", polygon)
-    return corners.reshape(-1, 3), polygon
+def polygon_corners(mesh: bpy.types.Mesh) -> tuple[IntArray, IntArray]:
+    """The vertices of all polygons, concatenated, and the number of corners of each."""
+    corners, sizes = np.empty(len(mesh.loops), dtype=np.int32), np.empty(len(mesh.polygons), dtype=np.int32)
+    mesh.loops.foreach_get("vertex_index", corners)
+    mesh.polygons.foreach_get("loop_total", sizes)
+    return corners, sizes
 
 
 def _topology(mesh: bpy.types.Mesh) -> str:
-    corners, starts = np.empty(len(mesh.loops), dtype=np.int32), np.empty(len(mesh.polygons), dtype=np.int32)
-    mesh.loops.foreach_get("vertex_index", corners)
-    mesh.polygons.foreach_get("loop_start", starts)
-    return digest(corners.tobytes(), starts.tobytes())
+    return digest(*(array.tobytes() for array in polygon_corners(mesh)))

@@ -32,7 +32,7 @@ class FetchOperator(Computing, bpy.types.Operator):
     def tasks(self, context: bpy.types.Context, found: list[Subject]) -> Mapping[str, Solve]:
         at = server(preferences(context))
         return {
-            key: partial(corrected_on, at, job, len(subject.triangles))
+            key: partial(corrected_on, at, job, subject.polygons.triangle_count)
             for subject in found
             for key, job in [self._key_and_job(at, subject)]
             if key not in RESULTS

@@ -61,7 +61,7 @@ class SegmentOperator(Computing, bpy.types.Operator):
             solve = partial(segmented_on, server(chosen))
         keyed = {self._key(context, subject): subject for subject in found}
         return {
-            key: partial(solve, subject.ply, len(subject.triangles), subject.name)
+            key: partial(solve, subject.ply, subject.polygons.triangle_count, subject.name)
             for key, subject in keyed.items()
             if key not in RESULTS
         }

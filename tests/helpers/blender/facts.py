@@ -31,18 +31,15 @@ def refusal(operator: Any, **properties: Any) -> str:
 
 
 def geometry(entry: bpy.types.Object, evaluated: bool) -> dict[str, Any]:
-    """The polygons of an object and their triangles, without the help of the extension."""
+    """The polygons of an object, without the help of the extension."""
     depsgraph = bpy.context.evaluated_depsgraph_get()
     mesh = bpy.data.meshes.new_from_object(entry.evaluated_get(depsgraph) if evaluated else entry)
     if not evaluated:
         mesh = entry.data
-    mesh.calc_loop_triangles()
     return {
         "vertices": [list(vertex.co) for vertex in mesh.vertices],
         "in the world": [list(entry.matrix_world @ vertex.co) for vertex in mesh.vertices],
         "polygons": [list(polygon.vertices) for polygon in mesh.polygons],
-        "triangles": [list(triangle.vertices) for triangle in mesh.loop_triangles],
-        "polygon": [triangle.polygon_index for triangle in mesh.loop_triangles],
     }
 
 

@@ -44,7 +44,7 @@ def beside_the_interface() -> dict[str, Any]:
             return Result()
 
         def parts(self, _: Any, subject: Any) -> Any:
-            return parts.unnamed(np.zeros(len(subject.triangles), dtype=np.int32), 1)
+            return parts.unnamed(np.zeros(subject.polygons.triangle_count, dtype=np.int32), 1)
 
         def start(self) -> None:
             computing.RESULTS.discard("probe")

@@ -1,6 +1,7 @@
 """The extension in Blender: the same labels as the API for every kind of mesh, and nothing is left of it."""
 
 from collections.abc import Iterator
+from itertools import pairwise
 from typing import Any
 
 import httpx
@@ -9,11 +10,9 @@ import pytest
 
 from cleave.settings import Settings
 from helpers.blender.session import needs_blender, run_scenario
-from helpers.files.written import mesh_bytes
 from helpers.servers import remembered_segmentations, serving, working
 from integrations.blender.parts import unnamed
 from integrations.blender_package import pack
-from segcore.mesh import Mesh
 from service.keys import key_digest, new_key
 from worker.jobs.store.opening import open_folder
 
@@ -48,18 +47,20 @@ def of_api(seen: dict[str, Any], http: httpx.Client) -> dict[str, dict[str, list
         geometry = seen["several_objects"]["models"][name]["geometry"]
         vertices = np.array(geometry["vertices"])
         vertices = (vertices * STRETCH.get(name, 1.0)).astype(np.float32)
-        job = posted(http, vertices, geometry["triangles"])
+        job = posted(http, vertices, geometry["polygons"])
         asked: dict[str, dict[str, float]] = {"automatic": {}, "finest": {"granularity": 1}}
         asked |= {str(k): {"segments": k} for k in (1, 2, 3, 5) if k <= job["max_segments"]}
         found[name] = {level: labels_of(http, job, query) for level, query in asked.items()}
     return found
 
 
-def posted(http: httpx.Client, vertices: np.ndarray, triangles: list[list[int]]) -> dict[str, Any]:
-    """Return the job of a mesh when it has succeeded."""
-    mesh = Mesh(vertices, np.array(triangles))
+def posted(http: httpx.Client, vertices: np.ndarray, polygons: list[list[int]]) -> dict[str, Any]:
+    """Return the job of a mesh, sent as OFF, when it has succeeded."""
+    lines = ["OFF", f"{len(vertices)} {len(polygons)} 0"]
+    lines += [" ".join(map(repr, point)) for point in vertices.tolist()]
+    lines += [" ".join(map(str, [len(polygon), *polygon])) for polygon in polygons]
     headers = {"Content-Type": "model/off", "Prefer": "wait=60"}
-    job: dict[str, Any] = http.post("/v1/jobs", content=mesh_bytes(mesh, "off"), headers=headers).json()
+    job: dict[str, Any] = http.post("/v1/jobs", content="\n".join(lines) + "\n", headers=headers).json()
     return job
 
 
@@ -69,13 +70,19 @@ def labels_of(http: httpx.Client, job: dict[str, Any], query: dict[str, float]) 
 
 
 def of_largest_area(geometry: dict[str, Any], labels: list[int]) -> list[int]:
-    """The label of each polygon that has the largest area of its triangles."""
-    areas: list[dict[int, float]] = [{} for _ in geometry["polygons"]]
-    points = np.array(geometry["vertices"])[np.array(geometry["triangles"])]
-    doubled = np.linalg.norm(np.cross(points[:, 1] - points[:, 0], points[:, 2] - points[:, 0]), axis=1)
-    for polygon, label, area in zip(geometry["polygon"], labels, doubled.tolist(), strict=True):
-        areas[polygon][label] = areas[polygon].get(label, 0.0) + area
-    return [max(of_polygon, key=lambda label: of_polygon[label]) for of_polygon in areas]
+    """The label of each polygon that has the largest area of its triangles, which are fans."""
+    points, following = np.array(geometry["vertices"]), iter(labels)
+    found = []
+    for polygon in geometry["polygons"]:
+        areas: dict[int, float] = {}
+        a = points[polygon[0]]
+        for second, third in pairwise(polygon[1:]):
+            label = next(following)
+            area = float(np.linalg.norm(np.cross(points[second] - a, points[third] - a)))
+            areas[label] = areas.get(label, 0.0) + area
+        found.append(max(areas, key=lambda label: areas[label]))
+    assert next(following, None) is None
+    return found
 
 
 @pytest.mark.parametrize("name", MODELS)
@@ -93,7 +100,7 @@ def test_the_parts_are_those_of_the_object_in_the_world(seen: dict[str, Any], ht
     """With rotation, place and size, which may change the order of parts that are alike."""
     model = seen["several_objects"]["models"][name]
     geometry = model["geometry"]
-    job = posted(http, np.array(geometry["in the world"]), geometry["triangles"])
+    job = posted(http, np.array(geometry["in the world"]), geometry["polygons"])
     labels = of_largest_area(geometry, labels_of(http, job, {}))
     pairs = set(zip(model["labels"], labels, strict=True))
     assert len(pairs) == len(set(labels)) == len(set(model["labels"]))

@@ -9,12 +9,13 @@ import pytest
 import segcore
 from integrations.blender.errors import CanceledError, CleaveError
 from integrations.blender.local import LocalPython
-from integrations.blender.polygons import encode_ply
+from integrations.blender.polygons import Polygons
 from integrations.blender.work import Watch
 from segcore.shapes import burr
 
 _MESH = burr(3).mesh
-_PLY = encode_ply(_MESH.vertices.astype(np.float32), _MESH.faces)
+_SIZES = np.full(len(_MESH.faces), 3, dtype=np.int32)
+_PLY = Polygons(_MESH.vertices.astype(np.float32), _MESH.faces.ravel(), _SIZES).ply()
 _ROOT = str(Path(segcore.__file__).parents[1])
 _HERE = LocalPython(sys.executable, packages=_ROOT)
 
@@ -38,7 +39,7 @@ def test_a_python_without_cleave_tells_how_to_install_it() -> None:
 
 
 def test_a_mesh_that_cannot_be_segmented_is_named() -> None:
-    broken = encode_ply(np.zeros((3, 3), dtype=np.float32), np.array([[0, 1, 9]], dtype=np.int32))
+    broken = Polygons(np.zeros((3, 3), dtype=np.float32), np.int32([0, 1, 9]), np.int32([3])).ply()
     with pytest.raises(CleaveError, match=r"^flat: .*vert"):
         _HERE.segment(broken, 1, "flat", Watch(60))
 

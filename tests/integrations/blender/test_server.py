@@ -9,13 +9,14 @@ import pytest
 
 import segcore
 from integrations.blender.errors import CanceledError, CleaveError
-from integrations.blender.polygons import encode_ply
+from integrations.blender.polygons import Polygons
 from integrations.blender.server import Server
 from integrations.blender.work import Watch
 from segcore.shapes import burr
 
 _MESH = burr(3).mesh
-_PLY = encode_ply(_MESH.vertices.astype(np.float32), _MESH.faces)
+_SIZES = np.full(len(_MESH.faces), 3, dtype=np.int32)
+_PLY = Polygons(_MESH.vertices.astype(np.float32), _MESH.faces.ravel(), _SIZES).ply()
 
 
 @pytest.fixture
@@ -65,7 +66,7 @@ def test_a_wrong_key_is_refused_with_what_to_do(url: str) -> None:
 
 
 def test_a_mesh_that_cannot_be_segmented_is_named(url: str, api_key: str) -> None:
-    flat = encode_ply(np.zeros((3, 3), dtype=np.float32), np.array([[0, 1, 9]], dtype=np.int32))
+    flat = Polygons(np.zeros((3, 3), dtype=np.float32), np.int32([0, 1, 9]), np.int32([3])).ply()
     with pytest.raises(CleaveError, match=r"^flat: .*vert") as caught:
         Server(url, api_key).segment(flat, 1, "flat", Watch(60))
     with pytest.raises(segcore.InvalidMesh) as invalid:
