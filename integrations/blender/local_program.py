@@ -20,10 +20,12 @@ def main(folder: Path, packages: str) -> int:
 
         import segcore
         from segcore.io.labels import hierarchy_document
+        from segcore.kernels import FIRST, compile_kernels
     except ModuleNotFoundError as error:
         sys.stderr.write(f"{error}\n")
         return MISSING
     state = folder / STATE
+    compile_kernels([FIRST], lambda done: _tell(state, f"compiling, only this once, {done.done / done.count:.0%}"))
     try:
         mesh = segcore.read_mesh(folder / MESH)
         hierarchy = segcore.segment(mesh, on_progress=lambda stage, done: _tell(state, f"{stage} {done:.0%}"))
