@@ -1,6 +1,7 @@
 """The extension in Blender, from its installation to its removal; prints nothing, writes what was seen as JSON.
 
-Arguments: the zip of the extension, the URL of a server and the key for it, and the file that is written.
+Arguments: the zip of the extension, the URL of a server and the key for it, a script of the documentation, and the file
+that is written.
 """
 
 import json
@@ -15,7 +16,7 @@ from facts import ADDON, attribute, contents, geometry, refusal, registered, sel
 from interface import beside_the_interface
 from models import five_models
 
-ZIP, URL, KEY, TARGET = sys.argv[1:]
+ZIP, URL, KEY, SCRIPT, TARGET = sys.argv[1:]
 
 
 def api(path: str, body: Any = None) -> Any:
@@ -187,6 +188,15 @@ def here() -> dict[str, Any]:
     return seen
 
 
+def documented() -> dict[str, Any]:
+    """The script of the documentation."""
+    table = five_models()[0]
+    select(table)
+    said: list[Any] = []
+    exec(Path(SCRIPT).read_text(), {"print": said.append})
+    return {"said": [{str(label): count for label, count in said[0].items()}], **contents(table)}
+
+
 def main() -> None:
     seen: dict[str, Any] = {"version": bpy.app.version_string, "before": registered()}
     bpy.ops.extensions.package_install_files(filepath=ZIP, repo="user_default", enable_on_install=True)
@@ -194,7 +204,7 @@ def main() -> None:
     chosen = bpy.context.preferences.addons[ADDON].preferences
     seen["first place"] = chosen.place
     chosen.place, chosen.server, chosen.api_key = "SERVER", URL, KEY
-    steps = (several_objects, undone, repeated, separated, corrected, refused, here, beside_the_interface)
+    steps = (several_objects, undone, repeated, separated, corrected, documented, refused, here, beside_the_interface)
     for step in steps:
         begin = time.monotonic()
         seen[step.__name__] = step()

@@ -235,6 +235,15 @@ def test_this_machine_finds_the_same_parts(seen: dict[str, Any]) -> None:
     assert (here["materials"], here["groups"], here["record"]) == ([], {}, None)
 
 
+def test_the_documented_script_prints_the_sizes_of_parts(seen: dict[str, Any]) -> None:
+    documented = seen["documented"]
+    (sizes,) = documented["said"]
+    assert list(sizes) == ["0", "1", "2", "3", "4"]
+    assert sum(sizes.values()) == len(documented["material"])
+    assert documented["materials"] == []
+    assert len(documented["groups"]) == 5
+
+
 def test_work_beside_the_interface_ends_as_it_should(seen: dict[str, Any]) -> None:
     found = seen["beside_the_interface"]
     assert {name: ends for name, (_, ends, _) in found.items()} == {
