@@ -5,7 +5,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from .arrays import FloatArray, IntArray
+from .arrays import BoolArray, FloatArray, IntArray
 
 _HEADER = """ply
 format binary_little_endian 1.0
@@ -45,14 +45,26 @@ class Polygons:
         ----------
         of_triangles : (T,) labels.
         """
-        width = int(of_triangles.max(initial=0)) + 1
+        starts = np.cumsum(self.sizes - 2) - (self.sizes - 2)
+        labels: IntArray = np.minimum.reduceat(of_triangles, starts).astype(np.int32)
+        is_mixed = labels != np.maximum.reduceat(of_triangles, starts)
+        if is_mixed.any():
+            of_mixed = np.repeat(is_mixed, self.sizes - 2)
+            labels[is_mixed] = self._of(is_mixed)._heaviest(of_triangles[of_mixed])
+        return labels
+
+    def _of(self, is_chosen: BoolArray) -> "Polygons":
+        return Polygons(self.vertices, self.corners[np.repeat(is_chosen, self.sizes)], self.sizes[is_chosen])
+
+    def _heaviest(self, of_triangles: IntArray) -> IntArray:
+        width = int(of_triangles.max()) + 1
         pairs, which = np.unique(self._polygon().astype(np.int64) * width + of_triangles, return_inverse=True)
         weight = np.bincount(which, weights=self._weights(), minlength=len(pairs))
         polygon, label = np.divmod(pairs, width)
         order = np.lexsort((label, -weight, polygon))
         first = np.searchsorted(polygon[order], np.arange(len(self.sizes)))
-        chosen: IntArray = label[order][first].astype(np.int32)
-        return chosen
+        heaviest: IntArray = label[order][first]
+        return heaviest
 
     def _polygon(self) -> IntArray:
         """(T,) the polygon of each triangle."""

@@ -84,6 +84,7 @@ def _remove_materials(mesh: bpy.types.Mesh) -> None:
 def _vertices_of(mesh: bpy.types.Mesh, parts: Parts) -> list[list[int]]:
     """The vertices of the polygons of each part; those on a border belong to several."""
     corners, sizes = polygon_corners(mesh)
-    pairs = np.unique(np.stack([np.repeat(parts.labels, sizes), corners], axis=1), axis=0)
-    starts = np.searchsorted(pairs[:, 0], np.arange(len(parts.names) + 1))
-    return [pairs[a:b, 1].tolist() for a, b in pairwise(starts.tolist())]
+    count = len(mesh.vertices)
+    pairs = np.unique(np.repeat(parts.labels.astype(np.int64), sizes) * count + corners)
+    starts = np.searchsorted(pairs, count * np.arange(len(parts.names) + 1))
+    return [(pairs[a:b] % count).tolist() for a, b in pairwise(starts.tolist())]

@@ -4,7 +4,7 @@ import bmesh
 import bpy
 import numpy as np
 
-from ..arrays import BoolArray
+from ..arrays import BoolArray, IntArray
 from ..parts import Parts
 
 
@@ -15,13 +15,13 @@ def separate(entry: bpy.types.Object, parts: Parts) -> list[bpy.types.Object]:
     its modifiers, materials and vertex groups, in its collections. Edges and vertices without a polygon stay with the
     first part. A mesh that other objects use stays as it is.
     """
-    used = np.unique(parts.labels).tolist()
-    if len(used) < 2:
-        return [entry]
     whole, base = entry.data, entry.name
-    objects = [entry, *(_copy(entry) for _ in used[1:])]
-    for made, label in zip(objects, used, strict=True):
-        made.data = _piece(whole, parts.labels == label, keeps_loose=label == used[0])
+    pieces = _pieces(whole, parts.labels)
+    if len(pieces) < 2:
+        return [entry]
+    objects = [entry, *(_copy(entry) for _ in range(len(pieces) - 1))]
+    for made, (label, mesh) in zip(objects, pieces.items(), strict=True):
+        made.data = mesh
         made.name = made.data.name = f"{base} {parts.names[label]}"
     if whole.users == 0:
         bpy.data.meshes.remove(whole)
@@ -34,6 +34,22 @@ def _copy(entry: bpy.types.Object) -> bpy.types.Object:
         collection.objects.link(made)
     made.select_set(True)
     return made
+
+
+def _pieces(mesh: bpy.types.Mesh, labels: IntArray) -> dict[int, bpy.types.Mesh]:
+    """A mesh for each label, in their order. The mesh is halved again and again: a copy for each would take longer."""
+    used = np.unique(labels)
+    if len(used) == 1:
+        return {int(used[0]): mesh}
+    found: dict[int, bpy.types.Mesh] = {}
+    is_low = labels < used[len(used) // 2]
+    for keeps in (is_low, ~is_low):
+        half = _piece(mesh, keeps, keeps_loose=keeps is is_low)
+        pieces = _pieces(half, labels[keeps])
+        if half not in pieces.values():
+            bpy.data.meshes.remove(half)
+        found |= pieces
+    return found
 
 
 def _piece(whole: bpy.types.Mesh, keeps: BoolArray, keeps_loose: bool) -> bpy.types.Mesh:

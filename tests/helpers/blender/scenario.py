@@ -104,12 +104,14 @@ def separated() -> dict[str, Any]:
     select(table, twin, stool)
     bpy.ops.object.cleave_segment(attribute=True, materials=False)
     labels = {entry.name: attribute(entry.data) for entry in (table, stool)}
+    before = len(bpy.data.meshes), len(bpy.data.shape_keys)
     centres = {entry.name: [list(polygon.center) for polygon in entry.data.polygons] for entry in (table, stool)}
     bpy.ops.object.cleave_segment(separate=True)
     bpy.context.view_layer.update()
     return {
         "labels": labels,
         "centres": centres,
+        "meshes and keys": [before, (len(bpy.data.meshes), len(bpy.data.shape_keys))],
         "objects": {
             entry.name: {
                 "labels": attribute(entry.data),

@@ -190,6 +190,11 @@ def test_separate_objects_keep_shape_keys_and_one_keeps_loose_edges(seen: dict[s
     assert [entry["loose"] for entry in stools] == [1, 0, 0, 0]
     assert all(entry["keys"] == ["Basis", "taller"] for entry in stools)
     assert all(entry["matrix"] == stools[0]["matrix"] for entry in stools)
+    before, after = seen["separated"]["meshes and keys"]
+    assert [a - b for a, b in zip(after, before, strict=True)] == [
+        5 + 5 + 3,
+        3,
+    ]  # of table, twin and stool, whose whole is removed
 
 
 def test_corrected_parts_come_with_their_names(seen: dict[str, Any]) -> None:
