@@ -111,7 +111,7 @@ class Computing(Outputs):
 
     def _subjects(self, context: bpy.types.Context) -> list[Subject]:
         objects = list(context.selected_objects)
-        if self.names:
+        if self.names and not self.options.is_repeat_last:
             named = [bpy.data.objects.get(name) for name in json.loads(self.names)]
             objects = [entry for entry in named if entry is not None]
         return subjects(objects, context.evaluated_depsgraph_get(), self.with_modifiers)
