@@ -6,7 +6,7 @@ from importlib.metadata import PackageNotFoundError, distribution, requires
 
 from cleave.version import DISTRIBUTION
 
-_OF_DEVELOPERS = {"audit", "test"}
+_OF_DEVELOPERS = {"audit", "blender-test", "test"}
 # A requirement with an extra as its only condition; those with more may not be needed on this machine.
 _OPTIONAL = re.compile(r"""([\w.-]+)[^;]*;\s*extra == ["']([\w-]+)["']""")
 
