@@ -30,3 +30,10 @@ def url(settings: Settings, store: JobStore) -> Iterator[str]:
     """The URL of a running service."""
     with remembered_segmentations(), working(store, settings), serving(settings) as http:
         yield str(http.base_url)
+
+
+@pytest.fixture
+def idle_url(settings: Settings) -> Iterator[str]:
+    """The URL of a service that has no worker."""
+    with serving(settings) as http:
+        yield str(http.base_url)

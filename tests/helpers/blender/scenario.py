@@ -56,7 +56,11 @@ def several_objects() -> dict[str, Any]:
     models[0].rotation_euler = (1, 2, 3)
     bpy.context.view_layer.update()
     bpy.ops.object.cleave_segment()
-    return {"models": seen, "jobs": [before, after, job_count()], "levels": levels}
+    moved = job_count()
+    models[0].scale = (1, 1, 3)
+    bpy.context.view_layer.update()
+    bpy.ops.object.cleave_segment()
+    return {"models": seen, "jobs": [before, after, moved, job_count()], "levels": levels}
 
 
 def undone() -> dict[str, Any]:
@@ -69,8 +73,12 @@ def undone() -> dict[str, Any]:
     bpy.ops.object.cleave_segment("EXEC_DEFAULT", True, groups=True, separate=True)
     names = sorted(entry.name for entry in bpy.data.objects)
     bpy.ops.ed.undo()
-    second = contents(bpy.data.objects["table"])
+    table = bpy.data.objects["table"]
+    second, jobs = contents(table), job_count()
+    select(table)
+    bpy.ops.object.cleave_segment(level="NUMBER", segments=3)
     return {
+        "redone": [len(set(attribute(table.data))), job_count() - jobs],
         "before": first,
         "separated": names,
         "after": second,

@@ -120,8 +120,8 @@ def test_other_levels_are_those_of_the_api_without_another_job(
 
 
 def test_each_mesh_is_sent_once(seen: dict[str, Any]) -> None:
-    """Neither another level nor another place or direction of an object makes a job."""
-    assert seen["several_objects"]["jobs"] == [0, len(MODELS), len(MODELS)]
+    """Neither another level nor another place or direction of an object makes a job; another shape does."""
+    assert seen["several_objects"]["jobs"] == [0, len(MODELS), len(MODELS), len(MODELS) + 1]
 
 
 def test_modifiers_and_n_gons_are_among_the_models(seen: dict[str, Any]) -> None:
@@ -149,7 +149,7 @@ def test_materials_and_vertex_groups_are_those_of_the_labels(seen: dict[str, Any
             assert set(model["groups"][group]) == vertices
 
 
-def test_undo_restores_everything(seen: dict[str, Any]) -> None:
+def test_undo_restores_everything_and_redo_computes_nothing(seen: dict[str, Any]) -> None:
     undone = seen["undone"]
     assert [name for name in undone["separated"] if name.startswith("table")] == [
         f"table segment {label}" for label in range(5)
@@ -158,6 +158,7 @@ def test_undo_restores_everything(seen: dict[str, Any]) -> None:
     assert undone["after"] == undone["before"]
     assert undone["before"]["materials"] == ["own"]
     assert undone["before"]["record"] is None
+    assert undone["redone"] == [3, 0]  # parts, jobs
 
 
 def test_a_second_division_replaces_the_first(seen: dict[str, Any]) -> None:
