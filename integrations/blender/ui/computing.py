@@ -44,10 +44,7 @@ class Computing(Outputs):
         if context.mode != "OBJECT":
             cls.poll_message_set("Switch to Object Mode")
             return False
-        if not any(entry.type == "MESH" for entry in context.selected_objects):
-            cls.poll_message_set("Select an object with a mesh")
-            return False
-        return True
+        return True  # whatever is selected, which may have changed since the operation that the redo panel shows
 
     def invoke(self, context: bpy.types.Context, event: bpy.types.Event) -> set[str]:
         RESULTS.trim()
@@ -111,7 +108,7 @@ class Computing(Outputs):
 
     def _subjects(self, context: bpy.types.Context) -> list[Subject]:
         objects = list(context.selected_objects)
-        if self.names and not self.options.is_repeat_last:
+        if self.names:  # also for the redo panel, although other objects may have been selected meanwhile
             named = [bpy.data.objects.get(name) for name in json.loads(self.names)]
             objects = [entry for entry in named if entry is not None]
         return subjects(objects, context.evaluated_depsgraph_get(), self.with_modifiers)

@@ -25,7 +25,7 @@ def beside_the_interface() -> dict[str, Any]:
         face_sets = materials = groups = separate = False
         attribute = True
         names = ""
-        options = types.SimpleNamespace(is_repeat=False, is_repeat_last=False)
+        options = types.SimpleNamespace(is_repeat=False)
         fails = False
 
         def __init__(self) -> None:
