@@ -67,13 +67,18 @@ def find_matches(vertices: FloatArray, faces: IntArray, dual: DualEdges, borders
 
 
 def _neighbours(vertices: FloatArray, ends: IntArray, radius: FloatArray) -> LongArray:
-    """(P, 2) the pairs of different open edges of which an end of one lies beside the other; pairs may be repeated."""
+    """(P, 2) the pairs of different open edges of which an end of one lies beside the other; pairs may be repeated.
+
+    Neither edge ends at a vertex with more open edges than at a crack.
+    """
     is_used = np.zeros(len(vertices), dtype=bool)
     is_used[ends] = True
     ends = (np.cumsum(is_used, dtype=np.int32) - 1)[ends]
     points = vertices[is_used]
     edges_at = np.bincount(ends.ravel(), minlength=len(points))
-    near = near_segments(points, ends, radius)
+    searched = np.flatnonzero((edges_at[ends] <= _MOST_ENDS).all(axis=1))
+    near = near_segments(points, ends[searched], radius[searched])
+    near[:, 0] = searched[near[:, 0]]
     near = near[edges_at[near[:, 1]] <= _MOST_ENDS]
     is_near = np.zeros(len(points), dtype=bool)
     is_near[near[:, 1]] = True

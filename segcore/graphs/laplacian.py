@@ -163,9 +163,15 @@ def _eliminate(rows, weight, order, start, row):  # type: ignore[no-untyped-def]
             following = next_column[j]
             passed = share[reached[j]] * pivot[j]
             reached[j] += 1
-            for p in range(reached[j], start[j + 1]):
-                column[row[p]] += share[p] * passed
-            if reached[j] < start[j + 1]:
+            first, end = reached[j], start[j + 1]
+            if first < end and row[end - 1] - row[first] == end - 1 - first:  # rows that follow each other
+                below = column[row[first] : row[end - 1] + 1]
+                for p in range(end - first):  # by vector instructions
+                    below[p] += share[first + p] * passed
+            else:
+                for p in range(first, end):
+                    column[row[p]] += share[p] * passed
+            if first < end:
                 next_column[j] = waiting[row[reached[j]]]
                 waiting[row[reached[j]]] = j
             j = following
