@@ -54,7 +54,7 @@ def segment_colors(n: int, chosen: SegmentColors | None = None) -> FloatArray:
     first seven each is the candidate that is farthest from all colours before it: by the smallest distance in OKLab
     over the kinds of colour vision.
     """
-    colors = _sequence()[np.arange(n) % _DISTINCT]
+    colors = _sequence(min(_DISTINCT, 1 << n.bit_length()))[np.arange(n) % _DISTINCT]
     for label, color in (chosen or {}).items():
         if 0 <= label < n:
             colors[label] = np.array(list(bytes.fromhex(color.removeprefix("#")))) / 255
@@ -113,12 +113,13 @@ def oklab(srgb: FloatArray) -> FloatArray:
 
 
 @cache
-def _sequence() -> FloatArray:
+def _sequence(count: int) -> FloatArray:
+    """(count, 3) the first fixed colours; few take little of the time of all."""
     candidates = np.concatenate([_first_colors(), _candidates()])
     seen = _appearance(candidates)
     distance = np.full(len(candidates), np.inf)
     chosen: list[int] = []
-    for i in range(_DISTINCT):
+    for i in range(count):
         chosen.append(i if i < len(_FIRST) else int(np.argmax(distance)))
         gap = np.linalg.norm(seen - seen[:, chosen[-1:]], axis=2).min(axis=0)
         distance = np.minimum(distance, gap)
