@@ -1,7 +1,7 @@
 """Unique names of segments in files and on the page: the given names, else ``segment`` and the label."""
 
 import re
-from collections.abc import Mapping
+from collections.abc import Collection, Mapping, Sequence
 from typing import TypeAlias
 
 SegmentNames: TypeAlias = Mapping[int, str]  # by label; labels that do not exist are ignored
@@ -43,6 +43,25 @@ def file_stems(names: SegmentNames | None, count: int) -> list[str]:
         "_".join([f"{DEFAULT_SEGMENT_NAME}_{label:0{digits}}", *words.get(label, [])])[:_LONGEST]
         for label in range(count)
     ]
+
+
+def identifiers(names: Sequence[str], taken: Collection[str] = ()) -> list[str]:
+    """Names as identifiers of letters, digits and underscores, for files in which nothing else is valid.
+
+    Other characters become an underscore, and numbers are appended to names that are taken, ignoring case.
+    """
+    used = {name.casefold() for name in taken}
+    result = []
+    for number, name in enumerate(names):
+        word = "_".join(re.findall(r"[A-Za-z0-9_]+", name)) or f"{DEFAULT_SEGMENT_NAME}_{number}"
+        plain = word = f"_{word}" if word[0].isdigit() else word
+        repeat = 1
+        while word.casefold() in used:
+            repeat += 1
+            word = f"{plain}_{repeat}"
+        used.add(word.casefold())
+        result.append(word)
+    return result
 
 
 def comment(text: str) -> str:

@@ -67,6 +67,7 @@ class Writer:
     write: Callable[..., tuple[str, ...] | None]  # notes on what could not be kept of the input
     options: frozenset[WriteOption] = frozenset()  # keyword arguments of ``write``; formats of models take ``names``
     companion: str = ""  # the format of a file that belongs beside; ``write`` takes its name as ``library``
+    package: str = ""  # the optional package without which ``write`` raises MissingPackage
 
 
 WRITERS: dict[str, Writer] = {
@@ -112,6 +113,22 @@ WRITERS: dict[str, Writer] = {
         "model/3mf",
         called_later("segcore.io.threemf.writer:write_3mf"),
         _COLORED | {"capped"},
+    ),
+    "usdc": Writer(
+        "USD, subsets of faces for the parts of every level",
+        ".usdc",
+        "application/octet-stream",  # no type is registered
+        called_later("segcore.io.usd.writer:write_usdc"),
+        _COLORED,
+        package="usd-core",
+    ),
+    "usdz": Writer(
+        "USDZ, the same as a package",
+        ".usdz",
+        "model/vnd.usdz+zip",
+        called_later("segcore.io.usd.writer:write_usdz"),
+        _COLORED,
+        package="usd-core",
     ),
     "zip": Writer(
         "ZIP archive, a closed STL file per segment",
