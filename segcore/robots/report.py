@@ -1,0 +1,57 @@
+"""The report of a robot, as a JSON value."""
+
+from collections.abc import Iterable
+from typing import Any
+
+import numpy as np
+
+from segcore.robots.plan import Link, RobotPlan
+
+_DIGITS = 6  # significant ones
+
+
+def robot_report(plan: RobotPlan) -> dict[str, Any]:
+    """Return the links with their masses and joints, in the order of the files.
+
+    Lengths are in m, volumes in m^3, masses in kg, in coordinates whose origin is below the middle of the whole.
+    """
+    options = plan.options
+    found = [link.body.properties for link in plan.links]
+    return {
+        "unit_of_mesh": plan.unit,
+        "scale": plan.scale,
+        "density": options.density,
+        "joints": options.joints,
+        "collision": options.collision,
+        "mass": _rounded(sum(one.mass for one in found if one)),
+        "volume": _rounded(sum(one.volume for one in found if one)),
+        "links": [_link(plan, link) for link in plan.links],
+    }
+
+
+def _link(plan: RobotPlan, link: Link) -> dict[str, Any]:
+    joint, properties, ground = link.joint, link.body.properties, plan.links[0].origin
+    return {
+        "link": link.name,
+        "part": link.label,
+        "name": link.title,
+        "parent": joint and plan.links[joint.parent].name,
+        "joint": joint and joint.kind,
+        "origin": _all_rounded(link.origin - ground),
+        "axis": None if joint is None or joint.axis is None else _all_rounded(joint.axis),
+        "why_fixed": joint and joint.reason,
+        "mass": properties and _rounded(properties.mass),
+        "volume": properties and _rounded(properties.volume),
+        "centre_of_mass": properties and _all_rounded(properties.centre - ground),
+        "closed": link.body.note is None,
+        "collision_pieces": len(link.body.pieces),
+        "note": link.body.note,
+    }
+
+
+def _all_rounded(values: Iterable[float]) -> list[float]:
+    return [_rounded(value) for value in np.asarray(values)]
+
+
+def _rounded(value: float) -> float:
+    return float(f"{value:.{_DIGITS}g}")
