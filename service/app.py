@@ -34,6 +34,7 @@ from service.routes import (
     pictures,
     prints,
     results,
+    robots,
     submission,
     webhooks,
 )
@@ -63,6 +64,7 @@ _ROUTES = (
     models,
     pictures,
     prints,
+    robots,
     files,
     edits,
     batches,

@@ -57,6 +57,8 @@ class JobLinks(BaseModel):
     mtl: str = Field(description="The colours of the OBJ file.")
     objzip: str = Field(description="A ZIP archive with the OBJ file and its colours.")
     threemf: str
+    usdc: str = Field(description="USD, with subsets of faces for the parts of every level.")
+    usdz: str
     parts: str = Field(description="A ZIP archive with a file per segment.")
     print: str = Field(description="3MF for printing: solids with connectors and filaments.")
     print_report: str = Field(description="What the file for printing contains.")

@@ -31,19 +31,32 @@ class MassProperties:
 def mass_properties(solids: Sequence[Solid], density: float) -> MassProperties | None:
     """Return the sum over solids; None if they enclose no volume.
 
+    The integrals over the tetrahedra (0, a, b, c) of the faces, with d = det(a, b, c) and s = a + b + c: the volume
+    d / 6, the first moment d s / 24, and the second moments d (a a^T + b b^T + c c^T + s s^T) / 120.
+
     Parameters
     ----------
     density : in kg / m^3.
-    """
-    from trimesh import triangles
 
-    corners = [solid.vertices[solid.faces] for solid in solids]
-    if not corners:
+    References
+    ----------
+    J. Blow, A. J. Binstock, How to find the inertia tensor (or other mass properties) of a 3D solid body represented by
+    a triangle mesh, 2004.
+    """
+    if not solids:
         return None
-    joined = np.concatenate(corners)
-    origin = joined.mean(axis=(0, 1))
-    found = triangles.mass_properties(joined - origin, density=density)
-    extent = float(np.ptp(joined.reshape(-1, 3), axis=0).max())
-    if not found.volume > _LEAST_VOLUME * extent**3:
+    corners = np.concatenate([solid.vertices[solid.faces] for solid in solids])
+    low, high = corners.min(axis=(0, 1)), corners.max(axis=(0, 1))
+    extent = float((high - low).max())
+    corners = (corners - 0.5 * (low + high)) / extent if extent > 0 else np.zeros_like(corners)
+    determinant = np.einsum("fj,fj->f", corners[:, 0], np.cross(corners[:, 1], corners[:, 2]))
+    volume = float(determinant.sum()) / 6
+    if not volume > _LEAST_VOLUME:
         return None
-    return MassProperties(float(found.volume), float(found.mass), origin + found.center_mass, np.array(found.inertia))
+    total = corners.sum(axis=1)
+    centre = determinant @ total / (24 * volume)
+    moments = np.einsum("f,fki,fkj->ij", determinant, corners, corners)
+    moments = (moments + np.einsum("f,fi,fj->ij", determinant, total, total)) / 120 - volume * np.outer(centre, centre)
+    inertia = np.trace(moments) * np.eye(3) - moments
+    size = volume * extent**3
+    return MassProperties(size, density * size, 0.5 * (low + high) + extent * centre, density * extent**5 * inertia)

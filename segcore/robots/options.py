@@ -14,7 +14,7 @@ CONCAVITY = 0.1  # set by hand: twice the default of CoACD, which takes several 
 LEAST_CONCAVITY = 0.01  # the least that CoACD takes
 MOST_PIECES = 16  # of a part, set by hand
 LARGEST_MOST_PIECES = 64
-LARGEST_SIZE = 10_000.0  # m
+LARGEST_LENGTH = 10_000.0  # m
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -32,7 +32,7 @@ class RobotOptions:
     concavity: float = CONCAVITY  # of a piece, in units of CoACD: the whole part is 2 long
     pieces: int = MOST_PIECES  # largest number for each part
     density: float = DENSITY  # kg / m^3
-    size: float | None = None  # the longest side of the whole in metres; None keeps the size of the mesh
+    length: float | None = None  # the longest side of the whole in metres; None keeps the size of the mesh
 
     def __post_init__(self) -> None:
         for name, value, kind in (("joints", self.joints, Joints), ("collision", self.collision, Collision)):
@@ -46,5 +46,5 @@ class RobotOptions:
             raise InvalidParameters(
                 f"density must be above 0 and at most {LARGEST_DENSITY:g} kg/m^3, not {self.density}."
             )
-        if self.size is not None and not 0 < self.size <= LARGEST_SIZE:
-            raise InvalidParameters(f"size must be above 0 and at most {LARGEST_SIZE:g} m, not {self.size}.")
+        if self.length is not None and not 0 < self.length <= LARGEST_LENGTH:
+            raise InvalidParameters(f"length must be above 0 and at most {LARGEST_LENGTH:g} m, not {self.length}.")

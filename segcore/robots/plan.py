@@ -18,7 +18,7 @@ from segcore.io.parts.pieces import closed_groups, labels_on, positions
 from segcore.mesh import Mesh
 from segcore.robots.bodies import Body, bodies_of
 from segcore.robots.contacts import Contact, Pair, find_contacts, joint_tree, why_fixed
-from segcore.robots.options import LARGEST_SIZE, Joints, RobotOptions
+from segcore.robots.options import LARGEST_LENGTH, Joints, RobotOptions
 
 _MOST_LINKS = 1024  # set by hand: more are scattered pieces
 _RESERVED = ("world", "floor")  # names that simulators and the scene use
@@ -87,7 +87,7 @@ def plan_robot(
     count = len(hierarchy.segment_nodes(segments))
     if count > _MOST_LINKS:
         raise InvalidParameters(f"A robot has at most {_MOST_LINKS} links, not {count}: choose fewer segments.")
-    moved, scale = _in_metres(mesh, options.size)
+    moved, scale = _in_metres(mesh, options.length)
     surface = build_surface(moved)
     vertices, labels = positions(moved, surface), labels_on(surface, hierarchy.labels(segments))
     parts = list(closed_groups(vertices, surface.faces, labels, count))
@@ -143,15 +143,15 @@ def _middle(child: int, parent: int, contacts: Mapping[Pair, Contact], boxes: Fl
     return middle
 
 
-def _in_metres(mesh: Mesh, size: float | None) -> tuple[Mesh, float]:
+def _in_metres(mesh: Mesh, length: float | None) -> tuple[Mesh, float]:
     """The mesh in metres with z up, in the middle above the plane z = 0, and the factor of its lengths."""
     upright = converted(mesh, "meter", "z")
     low, high = upright.bounds
     longest = float((high - low).max())
-    scale = size / longest if size and longest > 0 else 1.0
-    if not 0 < longest * scale <= LARGEST_SIZE:
+    scale = length / longest if length and longest > 0 else 1.0
+    if not 0 < longest * scale <= LARGEST_LENGTH:
         raise InvalidParameters(
-            f"The mesh is {longest:.3g} m long, and a robot is at most {LARGEST_SIZE:g} m: give a size."
+            f"The mesh is {longest:.3g} m long, and a robot is at most {LARGEST_LENGTH:g} m: give a length."
         )
     ground = np.append(0.5 * (low + high)[:2], low[2])
     vertices = np.where(upright.is_used[:, None], (upright.vertices - ground) * scale, 0.0)

@@ -19,6 +19,7 @@ from service.commands.outputs import (
 )
 from service.commands.summary import level_lines
 from service.printing.command import add_print_options, print_options, write_prints
+from service.robots.command import add_robot_options, robot_options, write_robots
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
@@ -34,6 +35,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     add_outputs(parser, required=True)
     parser.add_argument("--source", type=Path, metavar="MESH", help="the file that was segmented, for --keep all")
     add_print_options(parser)
+    add_robot_options(parser)
 
 
 def run(choices: argparse.Namespace) -> None:
@@ -47,7 +49,7 @@ def run(choices: argparse.Namespace) -> None:
         If a file cannot be read or written.
     """
     fineness, outputs = Fineness(choices.segments, choices.granularity), choices.output
-    printing, tell = print_options(choices), check_outputs(outputs)
+    printing, robot, tell = print_options(choices), robot_options(choices), check_outputs(outputs)
     result = read_result(standard_input(choices.result))
     mesh = with_coordinates(result.mesh, choices.unit, choices.up)
     options = output_options(choices, choices.source)
@@ -55,6 +57,8 @@ def run(choices: argparse.Namespace) -> None:
     segments = fineness.segments_of(result.hierarchy)
     if printing:
         notes = write_prints(choices, replace(result, mesh=mesh, edited=edited), segments, printing)
+    elif robot:
+        notes = write_robots(choices, replace(result, mesh=mesh, edited=edited), segments, robot)
     elif edited:
         shown = replace(result, mesh=mesh)
         notes = [note for path in outputs for note in write_edited(path, shown, options)]

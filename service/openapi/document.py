@@ -16,6 +16,7 @@ from service.openapi.exactness import make_exact
 from service.openapi.examples import add_examples
 from service.printing.documents import PrintDocument
 from service.problems import MEDIA_TYPE, ProblemDocument, documented
+from service.robots.documents import RobotDocument
 from worker.edits.operation_documents import EditDocument
 
 # Models of requests and responses that the routes handle as bytes, so that FastAPI does not find them.
@@ -28,6 +29,7 @@ _HIDDEN_MODELS: tuple[type[BaseModel], ...] = (
     BatchJobs,
     EditDocument,
     PrintDocument,
+    RobotDocument,
     UploadedLabels,
     UploadedRuns,
 )

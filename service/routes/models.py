@@ -137,7 +137,7 @@ def _add_route(name: str, writer: Writer) -> None:
         rendition = model_rendition(wanted.context, wanted.cut(), name, names, options)
         return answer_rendition(wanted.request, rendition)
 
-    kept = ORIGINAL_PROBLEMS if "keep" in writer.options else ()
+    problems = [*(ORIGINAL_PROBLEMS if "keep" in writer.options else ()), *["missing_package"] * bool(writer.package)]
     router.add_api_route(
         f"/{model_file(name)}",
         get_model,
@@ -145,7 +145,7 @@ def _add_route(name: str, writer: Writer) -> None:
         description=f"The segmented mesh as {writer.title}.",
         response_class=Response,
         responses=rendition_responses(
-            {writer.media_type: _BINARY}, f"{writer.title}.", *LEVEL_PROBLEMS, *REVISION_PROBLEMS, *kept
+            {writer.media_type: _BINARY}, f"{writer.title}.", *LEVEL_PROBLEMS, *REVISION_PROBLEMS, *problems
         ),
     )
 

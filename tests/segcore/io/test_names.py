@@ -15,7 +15,7 @@ from helpers.files.hierarchies import two_strips
 from helpers.files.polygon_soups import read
 from helpers.files.written import members, written
 from segcore.io import read_mesh
-from segcore.io.names import file_stems, group_names, segment_names
+from segcore.io.names import file_stems, group_names, identifiers, segment_names
 from segcore.mesh import Mesh
 
 names = st.dictionaries(st.integers(0, 9), st.text(max_size=80), max_size=8)
@@ -98,3 +98,15 @@ def test_groups_of_the_input_are_noted(kind: str) -> None:
         space = {"m": "http://schemas.microsoft.com/3dmanufacturing/core/2015/02"}
         found = [entry.text for entry in model.iterfind(".//m:object/m:metadatagroup/m:metadata", space)]
         assert [set(text.removeprefix("groups of the input: ").split(", ")) for text in found] == list(notes.values())
+
+
+@given(st.lists(st.text(max_size=8)))
+def test_identifiers_are_valid_and_differ_ignoring_case(names: list[str]) -> None:
+    found = identifiers(names, ("World", "a"))
+    assert all(re.fullmatch(r"[A-Za-z_][A-Za-z0-9_]*", word) for word in found)
+    assert len({"world", "a", *(word.lower() for word in found)}) == len(names) + 2
+
+
+def test_identifiers_keep_what_is_valid() -> None:
+    names = ["left arm", "left_arm", "9 lives", "車", "a"]
+    assert identifiers(names, ["A"]) == ["left_arm", "left_arm_2", "_9_lives", "segment_3", "a_2"]

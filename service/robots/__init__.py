@@ -1,0 +1,1 @@
+"""Robots, in the API and on the command line."""
