@@ -17,7 +17,8 @@ Public are the names of this package:
 - ``Hierarchy``, ``Fineness``, ``keep_splits``: the result at any number of segments
 - ``Guide``: corrections by hand, the part around marked faces and borders between parts
 - ``mesh_report``, ``MeshReport``, ``build_surface``, ``Surface``: the cleaned mesh and the defects that were found
-- the modules of ``segcore.printing``: ``options``, ``plan``, ``report`` and ``writer``, files for printing
+- the modules of ``segcore.printing`` and ``segcore.robots``: ``options``, ``plan``, ``report`` and ``writer``, files
+  for printing and for simulators
 - ``CleaveError``, ``InvalidMesh``, ``UnsupportedFormat``, ``InvalidParameters``, ``PartLocked``,
   ``MissingPackage``, ``LimitExceeded``: the errors
 

@@ -19,7 +19,7 @@ from segcore.robots.options import RobotOptions
 
 _CONVEX = 0.95  # of the volume of its hull, from which a part is its hull; set by hand
 # Of the search of CoACD, set by hand: its defaults take ten times as long or more.
-_SEARCH = {"mcts_iterations": 20, "mcts_nodes": 8, "mcts_max_depth": 2, "resolution": 500, "preprocess_resolution": 30}
+_SEARCH = {"mcts_iterations": 10, "mcts_nodes": 6, "mcts_max_depth": 1, "resolution": 500, "preprocess_resolution": 30}
 _LOCK = Lock()  # CoACD has states of the whole process, and uses all cores anyway
 
 

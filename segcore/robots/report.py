@@ -8,6 +8,7 @@ import numpy as np
 from segcore.robots.plan import Link, RobotPlan
 
 _DIGITS = 6  # significant ones
+_DECIMALS = 12  # of coordinates, so that rounding errors are not shown
 
 
 def robot_report(plan: RobotPlan) -> dict[str, Any]:
@@ -50,7 +51,7 @@ def _link(plan: RobotPlan, link: Link) -> dict[str, Any]:
 
 
 def _all_rounded(values: Iterable[float]) -> list[float]:
-    return [_rounded(value) for value in np.asarray(values)]
+    return [_rounded(value) + 0.0 for value in np.round(np.asarray(values), _DECIMALS)]  # no -0.0
 
 
 def _rounded(value: float) -> float:

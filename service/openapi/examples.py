@@ -1,6 +1,6 @@
 """Examples of JSON bodies: responses of a service to a mesh of two tetrahedra, and requests that it accepts.
 
-The report of a print is that of a bar of two halves.
+The reports of a print and a robot are those of a bar of two halves.
 """
 
 import json

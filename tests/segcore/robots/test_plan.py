@@ -8,7 +8,7 @@ import trimesh
 
 from helpers.printing.bars import bar, bent_bar
 from helpers.printing.solids import halves, pipe
-from helpers.robots import angle, klein_bottle
+from helpers.robots.shapes import angle, klein_bottle
 from segcore.coordinates import Coordinates
 from segcore.errors import InvalidParameters, MissingPackage
 from segcore.mesh import Mesh
