@@ -6,7 +6,7 @@ COPY cleave cleave
 COPY segcore segcore
 COPY worker worker
 COPY service service
-RUN python -m venv /opt/cleave && /opt/cleave/bin/pip install --no-cache-dir ".[cloud,draco,mcp,print]"
+RUN python -m venv /opt/cleave && /opt/cleave/bin/pip install --no-cache-dir ".[cloud,draco,mcp,print,robot,usd]"
 # The kernels are compiled here, so that containers do not compile them.
 ENV NUMBA_CACHE_DIR=/opt/cleave/kernels \
     NUMBA_CPU_NAME=generic

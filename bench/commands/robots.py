@@ -23,10 +23,11 @@ _HEADS = (
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     from segcore.coordinates import Axis
-    from segcore.robots.options import Collision
+    from segcore.robots.options import CONCAVITY, Collision
 
     parser.add_argument("meshes", type=Path, nargs="+", metavar="MESH", help="mesh files")
     parser.add_argument("--up", choices=get_args(Axis), help="the axis that points up (that of the file)")
+    parser.add_argument("--concavity", type=float, default=CONCAVITY, help="of a piece (%(default)s)")
     parser.add_argument("--collision", choices=get_args(Collision), default="pieces", help="(%(default)s)")
 
 
@@ -48,7 +49,9 @@ def _row(path: Path, arguments: argparse.Namespace) -> Sequence[object]:
         mesh = with_coordinates(read_mesh(path), None, arguments.up)
         hierarchy = segment(mesh)
         start = time.process_time()
-        plan = plan_robot(mesh, hierarchy, None, RobotOptions(collision=arguments.collision))
+        plan = plan_robot(
+            mesh, hierarchy, None, RobotOptions(collision=arguments.collision, concavity=arguments.concavity)
+        )
         seconds = time.process_time() - start
         whole = plan_robot(mesh, hierarchy, 1, RobotOptions(collision="hull"))
     except (CleaveError, OSError) as error:

@@ -16,7 +16,7 @@ if TYPE_CHECKING:
     from segcore.robots.plan import RobotPlan
 
 _SECONDS = 2.0
-_SOLE = 0.005  # of the longest side: collision pieces below this height carry the robot
+_SOLE = 0.001  # of the longest side: collision pieces below this height carry the robot
 
 
 @dataclass(frozen=True, slots=True)
