@@ -1,43 +1,24 @@
-"""Convex pieces of a part, by which simulators find collisions.
+"""Convex hulls and convex pieces, by which simulators find collisions."""
 
-References
-----------
-X. Wei, M. Liu, Z. Ling, H. Su, Approximate convex decomposition for 3D meshes with collision-aware concavity and tree
-search, ACM Transactions on Graphics 41(4), 2022.
-"""
-
-from threading import Lock
-from typing import Any
+import json
+import subprocess
+import sys
+from collections.abc import Mapping
+from importlib.util import find_spec
+from pathlib import Path
+from tempfile import TemporaryDirectory
 
 import numpy as np
 from scipy.spatial import ConvexHull, QhullError
 
 from segcore.arrays import FloatArray
 from segcore.errors import MissingPackage
+from segcore.robots.decomposition import OPTIONS, PART, PIECES
 from segcore.robots.masses import Solid
 from segcore.robots.options import RobotOptions
 
-_CONVEX = 0.95  # of the volume of its hull, from which a part is its hull; set by hand
 # Of the search of CoACD, set by hand: its defaults take ten times as long or more.
-_SEARCH = {"mcts_iterations": 10, "mcts_nodes": 6, "mcts_max_depth": 1, "resolution": 500, "preprocess_resolution": 30}
-_LOCK = Lock()  # CoACD has states of the whole process, and uses all cores anyway
-
-
-def library() -> Any:
-    """Return coacd.
-
-    Raises
-    ------
-    MissingPackage
-        If it is not installed.
-    """
-    try:
-        import coacd
-    except ImportError:
-        raise MissingPackage(
-            "Convex pieces need the package coacd: run pip install 'cleave-mesh[robot]', or choose collision=hull."
-        ) from None
-    return coacd
+_SEARCH = {"mcts_iterations": 10, "mcts_nodes": 6, "mcts_max_depth": 1, "resolution": 500}
 
 
 def convex_hull(points: FloatArray) -> Solid | None:
@@ -55,30 +36,53 @@ def convex_hull(points: FloatArray) -> Solid | None:
     return Solid(points[hull.vertices], place[faces])
 
 
-def convex_pieces(part: Solid, hull: Solid, volume: float | None, options: RobotOptions) -> list[Solid]:
-    """Return convex pieces that cover a part: its hull, if the part fills that.
+def convex_pieces(parts: Mapping[int, Solid], options: RobotOptions) -> dict[int, list[Solid]]:
+    """Return convex pieces that cover each part; parts at which CoACD fails are left out.
 
-    Parameters
-    ----------
-    volume : of the part over that of its hull; None if it is not known.
+    CoACD is native code that may crash, so that it runs in another process, which is started again after the part at
+    which it has ended.
 
     Raises
     ------
     MissingPackage
-        If coacd is needed and not installed.
+        If there are parts and coacd is not installed.
     """
-    if volume is not None and volume >= _CONVEX:
-        return [hull]
-    coacd = library()
-    low, high = part.vertices.min(axis=0), part.vertices.max(axis=0)
-    centre, scale = 0.5 * (low + high), float((high - low).max())
-    with _LOCK:
-        coacd.set_log_level("off")
-        found = coacd.run_coacd(
-            coacd.Mesh((part.vertices - centre) / scale, part.faces),
-            threshold=options.concavity,
-            max_convex_hull=options.pieces,
-            **_SEARCH,
+    if not parts:
+        return {}
+    if find_spec("coacd") is None:
+        raise MissingPackage(
+            "Convex pieces need the package coacd: run pip install 'cleave-mesh[robot]', or choose collision=hull."
         )
-    hulls = [convex_hull(np.asarray(vertices) * scale + centre) for vertices, _ in found]
-    return [piece for piece in hulls if piece is not None] or [hull]
+    found: dict[int, list[Solid]] = {}
+    with TemporaryDirectory(prefix="cleave-") as name:
+        folder = Path(name)
+        for part, shape in parts.items():
+            _write(folder, part, shape, options)
+        waiting = list(parts)
+        while waiting:
+            command = [sys.executable, "-m", "segcore.robots.decomposition", name, *map(str, waiting)]
+            subprocess.run(command, check=False, stdin=subprocess.DEVNULL, capture_output=True)
+            done = [part for part in waiting if (folder / PIECES.format(part)).exists()]
+            found |= {part: _read(folder, part, parts[part]) for part in done}
+            waiting = waiting[len(done) + 1 :]
+    return {part: pieces for part, pieces in found.items() if pieces}
+
+
+def _write(folder: Path, part: int, shape: Solid, options: RobotOptions) -> None:
+    centre, scale = _frame(shape)
+    np.savez(folder / PART.format(part), vertices=(shape.vertices - centre) / scale, faces=shape.faces)
+    chosen = {"threshold": options.concavity, "max_convex_hull": options.pieces, **_SEARCH}
+    (folder / OPTIONS.format(part)).write_text(json.dumps(chosen))
+
+
+def _read(folder: Path, part: int, shape: Solid) -> list[Solid]:
+    centre, scale = _frame(shape)
+    with np.load(folder / PIECES.format(part)) as arrays:
+        hulls = [convex_hull(points * scale + centre) for points in arrays.values() if np.isfinite(points).all()]
+    return [hull for hull in hulls if hull is not None]
+
+
+def _frame(shape: Solid) -> tuple[FloatArray, float]:
+    """The centre (3,) and the longest side of a part."""
+    low, high = shape.vertices.min(axis=0), shape.vertices.max(axis=0)
+    return 0.5 * (low + high), float((high - low).max())

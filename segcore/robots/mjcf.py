@@ -8,7 +8,7 @@ https://mujoco.readthedocs.io/en/stable/XMLreference.html
 from collections.abc import Iterator
 
 from segcore.robots.plan import Link, RobotPlan
-from segcore.robots.texts import collision_file, mesh_file, numbers
+from segcore.robots.texts import collision_file, is_drawn, mesh_file, numbers
 
 SCENE = """<mujoco model="scene">
 <include file="robot.xml"/>
@@ -50,7 +50,8 @@ def mjcf_document(plan: RobotPlan) -> str:
 
 def _assets(plan: RobotPlan) -> Iterator[str]:
     for link in plan.links:
-        yield f'<mesh name="{link.name}" file="{mesh_file(link)}" inertia="shell"/>\n'
+        if is_drawn(link):
+            yield f'<mesh name="{link.name}" file="{mesh_file(link)}" inertia="shell"/>\n'
         for k in range(len(link.body.pieces)):
             file = collision_file(link, k)
             yield f'<mesh name="{file.removesuffix(".obj")}" file="{file}" inertia="shell"/>\n'
@@ -71,7 +72,8 @@ def _body(plan: RobotPlan, link: Link) -> Iterator[str]:
             f'<inertial pos="{numbers(properties.centre - link.origin)}" mass="{numbers([properties.mass])}" '
             f'fullinertia="{numbers(values)}"/>\n'
         )
-    yield f'<geom class="visual" mesh="{link.name}" rgba="{numbers([*link.color, 1.0])}"/>\n'
+    if is_drawn(link):
+        yield f'<geom class="visual" mesh="{link.name}" rgba="{numbers([*link.color, 1.0])}"/>\n'
     for k in range(len(link.body.pieces)):
         yield f'<geom class="collision" mesh="{collision_file(link, k).removesuffix(".obj")}"/>\n'
 

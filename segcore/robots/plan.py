@@ -98,6 +98,8 @@ def plan_robot(
     boxes = np.stack([[part.vertices.min(axis=0), part.vertices.max(axis=0)] for part in parts])
     contacts = find_contacts(surface, vertices, place[labels], boxes.mean(axis=1))
     bodies = bodies_of(parts, options)
+    if all(body.properties is None for body in bodies):
+        raise InvalidParameters("All parts are flat, so that no part has a mass.")
     order, parents = _tree(bodies, contacts, boxes)
     titles, colors = segment_names(names, count), segment_colors(count, part_colors)
     links: list[Link] = []

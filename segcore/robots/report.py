@@ -44,7 +44,7 @@ def _link(plan: RobotPlan, link: Link) -> dict[str, Any]:
         "mass": properties and _rounded(properties.mass),
         "volume": properties and _rounded(properties.volume),
         "centre_of_mass": properties and _all_rounded(properties.centre - ground),
-        "closed": link.body.note is None,
+        "closed": link.body.is_closed,
         "collision_pieces": len(link.body.pieces),
         "note": link.body.note,
     }

@@ -8,7 +8,7 @@ https://wiki.ros.org/urdf/XML, and https://mujoco.readthedocs.io/en/stable/model
 from collections.abc import Iterator
 
 from segcore.robots.plan import Link, RobotPlan
-from segcore.robots.texts import collision_file, mesh_file, numbers
+from segcore.robots.texts import collision_file, is_drawn, mesh_file, numbers
 
 # MuJoCo otherwise drops folders from the names of files, and joins links at fixed joints.
 _MUJOCO = '<mujoco><compiler strippath="false" fusestatic="false" discardvisual="false"/></mujoco>\n'
@@ -31,8 +31,9 @@ def _link(link: Link) -> Iterator[str]:
             f'<inertial><origin xyz="{numbers(properties.centre - link.origin)}" rpy="0 0 0"/>'
             f'<mass value="{numbers([properties.mass])}"/><inertia {values}/></inertial>\n'
         )
-    color = f'<material name="{link.name}"><color rgba="{numbers([*link.color, 1.0])}"/></material>'
-    yield f'<visual><geometry><mesh filename="{mesh_file(link)}"/></geometry>{color}</visual>\n'
+    if is_drawn(link):
+        color = f'<material name="{link.name}"><color rgba="{numbers([*link.color, 1.0])}"/></material>'
+        yield f'<visual><geometry><mesh filename="{mesh_file(link)}"/></geometry>{color}</visual>\n'
     for k in range(len(link.body.pieces)):
         yield f'<collision><geometry><mesh filename="{collision_file(link, k)}"/></geometry></collision>\n'
     yield "</link>\n"

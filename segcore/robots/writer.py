@@ -12,7 +12,7 @@ from segcore.robots.masses import Solid
 from segcore.robots.mjcf import SCENE, mjcf_document
 from segcore.robots.plan import RobotPlan
 from segcore.robots.report import robot_report
-from segcore.robots.texts import collision_file, mesh_file
+from segcore.robots.texts import collision_file, is_drawn, mesh_file
 from segcore.robots.urdf import urdf_document
 
 REPORT = "robot.json"
@@ -35,7 +35,8 @@ def write_robot(target: BinaryIO, plan: RobotPlan) -> None:
         for name, text in texts.items():
             archive.writestr(member(name, compressed=True), text, compresslevel=FAST)
         for link in plan.links:
-            _write_mesh(archive, mesh_file(link), link.body.shape, link.origin)
+            if is_drawn(link):
+                _write_mesh(archive, mesh_file(link), link.body.shape, link.origin)
             for k, piece in enumerate(link.body.pieces):
                 _write_mesh(archive, collision_file(link, k), piece, link.origin)
 

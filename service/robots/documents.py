@@ -26,7 +26,7 @@ class LinkDocument(BaseModel):
     centre_of_mass: _Vector | None = Field(min_length=3, max_length=3)
     closed: bool = Field(description="Whether the mass is that of the part closed by caps.")
     collision_pieces: int = Field(description="Number of convex pieces.")
-    note: str | None = Field(description="A sentence, if the part is not closed.")
+    note: str | None = Field(description="A sentence, if that is not so.")
 
 
 class RobotDocument(BaseModel):

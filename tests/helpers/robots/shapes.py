@@ -1,7 +1,5 @@
 """Meshes for the tests of robots, in metres."""
 
-from itertools import pairwise
-
 import numpy as np
 import trimesh
 
@@ -32,17 +30,3 @@ def table() -> tuple[Mesh, Hierarchy]:
     joined = trimesh.util.concatenate(shapes)
     mesh = Mesh(joined.vertices, joined.faces, coordinates=METRES)
     return mesh, Partition(np.arange(5).repeat(12)).hierarchy(mesh)
-
-
-def klein_bottle(count: int = 12) -> trimesh.Trimesh:
-    """A surface without a border that has one side, so that it is no solid."""
-    around = np.arange(count) * 2 * np.pi / count
-    u, v = np.meshgrid(around, around, indexing="ij")
-    radius = 2 + np.cos(u / 2) * np.sin(v) - np.sin(u / 2) * np.sin(2 * v)
-    height = np.sin(u / 2) * np.sin(v) + np.cos(u / 2) * np.sin(2 * v)
-    vertices = np.stack([radius * np.cos(u), radius * np.sin(u), height], axis=2).reshape(-1, 3)
-    rings = [[i * count + j % count for j in range(count + 1)] for i in range(count)]
-    rings.append([-j % count for j in range(count + 1)])  # the first one, in the opposite direction
-    quads = [(one[j], one[j + 1], other[j], other[j + 1]) for one, other in pairwise(rings) for j in range(count)]
-    faces = [face for a, b, c, d in quads for face in ((a, b, d), (a, d, c))]
-    return trimesh.Trimesh(vertices, faces, process=False)

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 import trimesh
 
-from segcore.robots.masses import Solid, mass_properties
+from segcore.robots.masses import Solid, encloses_space, mass_properties
 
 
 @pytest.mark.parametrize("scale", [1e-4, 1.0, 1e4])
@@ -37,3 +37,13 @@ def test_flat_and_inverted_surfaces_have_none() -> None:
     assert mass_properties([Solid(np.zeros((3, 3)), faces)], 1.0) is None
     assert mass_properties([Solid(ball.vertices, ball.faces[:, ::-1])], 1.0) is None
     assert mass_properties([], 1.0) is None
+
+
+def test_space_is_enclosed_if_edges_are_passed_in_both_directions() -> None:
+    box = trimesh.creation.box()
+    faces = box.faces.astype(np.int32)
+    beside = np.where(faces < 2, faces, faces + 8)  # a second box that shares an edge, so that it has four faces
+    assert encloses_space(faces)
+    assert encloses_space(np.concatenate([faces, beside]))
+    assert not encloses_space(faces[1:])
+    assert not encloses_space(np.concatenate([faces[:1, ::-1], faces[1:]]))

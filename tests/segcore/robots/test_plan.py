@@ -8,7 +8,7 @@ import trimesh
 
 from helpers.printing.bars import bar, bent_bar
 from helpers.printing.solids import halves, pipe
-from helpers.robots.shapes import angle, klein_bottle
+from helpers.robots.shapes import angle
 from segcore.coordinates import Coordinates
 from segcore.errors import InvalidParameters, MissingPackage
 from segcore.mesh import Mesh
@@ -107,19 +107,35 @@ def test_a_part_that_is_not_convex_gets_convex_pieces() -> None:
 
 
 def test_parts_without_a_volume_have_a_note() -> None:
-    bottle = klein_bottle()
+    bent = trimesh.Trimesh([[0, 0, 0], [0, 0, 1], [1, 0, 0.5], [-1, 0.5, 0.5]], [[0, 1, 2], [0, 3, 1]])
     sheet = trimesh.Trimesh([[5, 0, 0], [6, 0, 0], [6, 1, 0], [5, 1, 0]], [[0, 1, 2], [0, 2, 3]])
-    mesh = tall(bottle, sheet)
-    labels = np.array([0] * len(bottle.faces) + [1] * 2, dtype=np.int32)
+    mesh = tall(bent, sheet)
+    labels = np.array([0, 1]).repeat(2)
     plan = plan_robot(mesh, Partition(labels).hierarchy(mesh), options=HULL)
-    one_sided, flat = (link.body for link in plan.links)
+    bodies = {link.label: link.body for link in plan.links}
+    folded, flat = bodies[0], bodies[1]
     assert (flat.properties, flat.pieces) == (None, [])
     assert flat.note is not None
     assert "flat" in flat.note
-    assert one_sided.note is not None
-    assert "not a closed solid" in one_sided.note
-    assert one_sided.properties is not None
-    assert one_sided.properties.volume == pytest.approx(bottle.convex_hull.volume)
+    assert folded.note is not None
+    assert "encloses no volume" in folded.note
+    assert folded.properties is not None
+    assert folded.properties.volume == pytest.approx(bent.convex_hull.volume)
+
+
+def test_a_part_at_which_the_library_fails_is_its_hull(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr("segcore.robots.convex.sys.executable", "false")
+    (link,) = plan_robot(*angle()).links
+    assert len(link.body.pieces) == 1
+    assert link.body.is_closed
+    assert link.body.note is not None
+    assert "CoACD failed" in link.body.note
+
+
+def test_a_mesh_of_flat_parts_is_refused() -> None:
+    sheet = tall(trimesh.Trimesh([[5, 0, 0], [6, 0, 0], [6, 1, 0]], [[0, 1, 2]]))
+    with pytest.raises(InvalidParameters, match="flat"):
+        plan_robot(sheet, Partition(np.zeros(1, dtype=np.int32)).hierarchy(sheet))
 
 
 def test_only_convex_pieces_need_the_package(monkeypatch: pytest.MonkeyPatch) -> None:

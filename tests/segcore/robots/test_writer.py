@@ -13,6 +13,7 @@ from helpers.printing.bars import bar
 from helpers.robots.shapes import angle, table
 from segcore.hierarchy import Hierarchy
 from segcore.mesh import Mesh
+from segcore.partition import Partition
 from segcore.robots.options import RobotOptions
 from segcore.robots.plan import plan_robot
 from segcore.robots.writer import write_robot
@@ -54,6 +55,17 @@ def test_the_urdf_has_the_same_links_and_masses(tmp_path: Path) -> None:
     data = mujoco.MjData(model)
     mujoco.mj_forward(model, data)
     assert data.xipos[1:] == pytest.approx(np.array(centres), abs=1e-5)
+
+
+def test_a_part_that_is_one_face_is_a_link_without_a_mesh(tmp_path: Path) -> None:
+    mesh, _ = table()
+    labels = np.zeros(len(mesh.faces), dtype=np.int32)
+    labels[0] = 1
+    report = unpacked(tmp_path, mesh, Partition(labels).hierarchy(mesh), RobotOptions(collision="hull"))
+    assert [link["mass"] for link in report["links"]][1] is None
+    for file in ("scene.xml", "robot.urdf"):
+        model = mujoco.MjModel.from_xml_path(str(tmp_path / file))
+        assert model.body_mass.sum() == pytest.approx(report["mass"], rel=1e-5)
 
 
 @pytest.mark.parametrize("file", ["scene.xml", "robot.urdf"])
