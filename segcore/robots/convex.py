@@ -13,6 +13,7 @@ from scipy.spatial import ConvexHull, QhullError
 
 from segcore.arrays import FloatArray
 from segcore.errors import MissingPackage
+from segcore.robots import decomposition
 from segcore.robots.decomposition import OPTIONS, PART, PIECES
 from segcore.robots.masses import Solid
 from segcore.robots.options import RobotOptions
@@ -60,7 +61,7 @@ def convex_pieces(parts: Mapping[int, Solid], options: RobotOptions) -> dict[int
             _write(folder, part, shape, options)
         waiting = list(parts)
         while waiting:
-            command = [sys.executable, "-m", "segcore.robots.decomposition", name, *map(str, waiting)]
+            command = [sys.executable, "-P", decomposition.__file__, name, *map(str, waiting)]
             subprocess.run(command, check=False, stdin=subprocess.DEVNULL, capture_output=True)
             done = [part for part in waiting if (folder / PIECES.format(part)).exists()]
             found |= {part: _read(folder, part, parts[part]) for part in done}

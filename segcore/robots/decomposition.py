@@ -1,4 +1,4 @@
-"""CoACD in a process of its own: ``python -m segcore.robots.decomposition FOLDER K ...``.
+"""CoACD in a process of its own: ``python decomposition.py FOLDER K ...``.
 
 It reads the arrays ``vertices`` and ``faces`` of part K from ``K.npz`` in the folder, and its options from ``K.json``.
 It writes the vertices of the convex pieces to ``K.pieces.npz``, for one part after the other.
