@@ -62,6 +62,8 @@ class JobLinks(BaseModel):
     parts: str = Field(description="A ZIP archive with a file per segment.")
     print: str = Field(description="3MF for printing: solids with connectors and filaments.")
     print_report: str = Field(description="What the file for printing contains.")
+    robot: str = Field(description="A ZIP archive with URDF and MJCF: parts as links with masses.")
+    robot_report: str = Field(description="What the robot consists of.")
     preview: str = Field(description="A picture.")
     edits: str = Field(description="For POST.")
     revisions: str
@@ -274,6 +276,8 @@ def job_links(path: str) -> JobLinks:
         hierarchy=f"{path}/hierarchy",
         print=f"{path}/print.3mf",
         print_report=f"{path}/print.json",
+        robot=f"{path}/robot.zip",
+        robot_report=f"{path}/robot.json",
         preview=f"{path}/preview.png",
         edits=f"{path}/edits",
         revisions=f"{path}/revisions",

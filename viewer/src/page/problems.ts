@@ -69,7 +69,6 @@ const KNOWN: Record<string, [title: string, next: string, remedy: Remedy]> = {
   missing_package: ["The server lacks a package for this", "Ask the operator to install it.", "retry"],
   file_too_large: ["The result is too large to be stored", "Simplify the mesh, then try again.", "choose"],
   input_lost: ["The mesh is no longer on the server", "Send it again.", "retry"],
-  missing_package: ["The server lacks a package for this format", "Ask the operator to install it, or choose another format.", "retry"],
   no_webgl: ["3D graphics are not available", "Enable WebGL 2 in the browser settings, or use another browser.", "retry"],
 };
 
