@@ -10,7 +10,7 @@ Collision: TypeAlias = Literal["pieces", "hull"]
 
 DENSITY = 1000.0  # kg / m^3, that of water
 LARGEST_DENSITY = 100_000.0
-CONCAVITY = 0.2  # set by hand; at 0.1 CoACD takes two to three times as long, see bench/RESULTS.md
+CONCAVITY = 0.2  # set by hand; at 0.1 CoACD takes about three times as long, see bench/RESULTS.md
 LEAST_CONCAVITY = 0.01  # the least that CoACD takes
 MOST_PIECES = 16  # of a part, set by hand
 LARGEST_MOST_PIECES = 64
