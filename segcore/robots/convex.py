@@ -7,6 +7,7 @@ from collections.abc import Mapping
 from importlib.util import find_spec
 from pathlib import Path
 from tempfile import TemporaryDirectory
+from threading import Lock
 
 import numpy as np
 from scipy.spatial import ConvexHull, QhullError
@@ -18,8 +19,9 @@ from segcore.robots.decomposition import OPTIONS, PART, PIECES
 from segcore.robots.masses import Solid
 from segcore.robots.options import RobotOptions
 
-# Of the search of CoACD, set by hand: its defaults take ten times as long or more.
+# Of the search of CoACD, set by hand: its defaults take about ten times as long or more, at their concavity of 0.05.
 _SEARCH = {"mcts_iterations": 10, "mcts_nodes": 6, "mcts_max_depth": 1, "resolution": 500}
+_ONE_AT_A_TIME = Lock()  # CoACD uses all cores
 
 
 def convex_hull(points: FloatArray) -> Solid | None:
@@ -62,7 +64,8 @@ def convex_pieces(parts: Mapping[int, Solid], options: RobotOptions) -> dict[int
         waiting = list(parts)
         while waiting:
             command = [sys.executable, "-P", decomposition.__file__, name, *map(str, waiting)]
-            subprocess.run(command, check=False, stdin=subprocess.DEVNULL, capture_output=True)
+            with _ONE_AT_A_TIME:
+                subprocess.run(command, check=False, stdin=subprocess.DEVNULL, capture_output=True)
             done = [part for part in waiting if (folder / PIECES.format(part)).exists()]
             found |= {part: _read(folder, part, parts[part]) for part in done}
             waiting = waiting[len(done) + 1 :]
