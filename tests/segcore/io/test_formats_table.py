@@ -14,6 +14,7 @@ import trimesh
 from helpers.files.hierarchies import two_strips
 from helpers.files.polygon_soups import read, read_or_none
 from helpers.files.samples import BINARY_STL, DRESSED, SAMPLES
+from helpers.files.usd import usd_content
 from helpers.files.written import labels_of_runs, members, written
 from segcore.appearance import Appearance
 from segcore.errors import UnsupportedFormat
@@ -25,6 +26,7 @@ from segcore.mesh import Mesh
 README = Path(__file__).parents[3] / "README.md"
 SEGMENTS = 3
 COLUMNS = ("read", "written", "look", "groups", "names", "segments are")
+USD = ("usdc", "usdz")
 KEYS = {form.title: name for name, form in FORMATS.items()}  # of FORMATS, by the name in the table
 
 
@@ -94,6 +96,9 @@ def how_the_look_is_kept(kind: str) -> str:
     elif kind == "glb":
         (first, *_) = glb_document(out(kind))["meshes"]
         kept += ["written"] if {"NORMAL", "TEXCOORD_0", "_COLOR_0"} <= set(first["primitives"][0]["attributes"]) else []
+    elif kind in USD:
+        properties = set(usd_content(out(kind), kind).properties)
+        kept += ["normals and texture coordinates written"] if {"primvars:normals", "primvars:st"} <= properties else []
     elif kind in FORMATS and kind in WRITERS and wanted <= look_of(out(kind)):
         kept.append("written")
     return ", ".join(kept) or "no"
@@ -133,6 +138,8 @@ def texts_of(kind: str, **options: object) -> list[str]:
 
 def how_segments_are_called(kind: str) -> str:
     given = {"names": {1: "wheel"}}
+    if kind in USD:
+        return "yes" if "wheel" in usd_content(out(kind, **given), kind).families["materialBind"] else "no"
     if kind == "stl":
         return "in names of files" if "segment_1_wheel.stl" in members(out("zip", **given)) else "no"
     if kind not in ("glb", "obj", "ply", "3mf"):
@@ -180,6 +187,11 @@ def extension(name: str, entries: str, **options: bool) -> int:
     return len(glb_document(out("glb", **options))["extensions"][name][entries])
 
 
+def has_all_levels(kind: str) -> bool:
+    families = usd_content(out(kind), kind).families.values()
+    return {len(parts) for parts in families} >= set(range(2, SEGMENTS + 1))
+
+
 def labels_alone(kind: str) -> bool:
     data = out(kind)
     found = {
@@ -208,6 +220,13 @@ CLAIMS: dict[str, dict[str, Callable[[], bool]]] = {
         "feature ids": lambda: extension("EXT_structural_metadata", "propertyTables", features=True) == 1,
     },
     "3mf": {"objects": lambda: len(trimesh.load(io.BytesIO(out("3mf")), file_type="3mf").geometry) == SEGMENTS},
+    **{
+        kind: {
+            "subsets of faces for every level": lambda kind=kind: has_all_levels(kind),
+            "materials": lambda kind=kind: len(usd_content(out(kind), kind).families["materialBind"]) == SEGMENTS,
+        }
+        for kind in USD
+    },
     **{kind: {"labels of faces": lambda kind=kind: labels_alone(kind)} for kind in ("seg", "npy", "json")},
     "cleave": {"whole hierarchy": lambda: read_result(io.BytesIO(out("cleave"))).hierarchy.max_segments == SEGMENTS},
 }
@@ -234,7 +253,7 @@ PROOFS = dict(
 
 
 def test_the_table_has_a_row_for_every_format() -> None:
-    assert {kind_of(name) for name in table()} == set(FORMATS) | set(WRITERS) - {"zip", "mtl", "objzip", "usdc", "usdz"}
+    assert {kind_of(name) for name in table()} == set(FORMATS) | set(WRITERS) - {"zip", "mtl", "objzip"}
     assert {len(row) for row in table().values()} == {len(COLUMNS)}
 
 
