@@ -17,7 +17,11 @@ from helpers.node import programs
 from helpers.waiting import wait_until
 
 _CHROMIUM = Path("/usr/bin/chromium")
-_ARGUMENTS = ["--no-sandbox", "--use-angle=swiftshader", "--enable-unsafe-swiftshader", "--ignore-gpu-blocklist"]
+# The processor draws: the viewer with SwiftShader, and the rest of the page without WebGL, which is cheaper.
+_ARGUMENTS = [
+    *("--no-sandbox", "--use-angle=swiftshader", "--enable-unsafe-swiftshader", "--ignore-gpu-blocklist"),
+    *("--disable-gpu-compositing", "--disable-gpu-rasterization"),
+]
 
 # The processor draws here, twice as long with smooth edges, which no test looks at.
 _PLAIN_EDGES = """
