@@ -209,7 +209,8 @@ def test_the_page_says_why_a_job_waits_and_what_runs(visit: Visit) -> None:
     assert now.get_attribute("data-stage") == "queued"
     assert now.locator(".icon").evaluate("(e) => getComputedStyle(e).opacity") == "0"
     assert visit.page.locator("#stages [data-stage=upload] .icon").evaluate("(e) => getComputedStyle(e).opacity") == "1"
-    visit.page.click("#stop")
+    with visit.page.expect_response("**/cancel"):
+        visit.page.click("#stop")
     visit.page.wait_for_selector("#start:not([hidden])")
     for route in held:
         route.abort()

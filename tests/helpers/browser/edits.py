@@ -43,6 +43,7 @@ class EditedJob:
 def choose(visit: Visit, tool: str) -> None:
     visit.page.click(f"[data-tool={tool}]")
     assert visit.page.get_attribute(f"[data-tool={tool}]", "aria-pressed") == "true"
+    visit.settle()  # the options of a tool may take some of the height of the picture
 
 
 def wait_for_revision(visit: Visit, number: int) -> None:
