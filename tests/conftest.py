@@ -1,5 +1,6 @@
 """A store and a queue server for every test that asks for one; the same random examples in every run."""
 
+import gc
 import os
 import subprocess
 import sys
@@ -66,7 +67,6 @@ _SLOW = (
     "worker/process/test_process.py",
     "worker/process/test_process_store.py",
 )
-_compiling: list[subprocess.Popen[bytes]] = []
 # Measured with --durations=0; the order only shortens the run.
 _LONGEST = (
     "end_to_end/test_soak.py",
@@ -130,16 +130,17 @@ def pytest_configure(config: pytest.Config) -> None:
     settings.load_profile("everyday" if config.option.markexpr == _EVERYDAY else "repeatable")
 
 
+@pytest.hookimpl(tryfirst=True)
 def pytest_sessionstart(session: pytest.Session) -> None:
-    """Begin to compile the kernels once, while the processes of the tests collect the tests."""
+    """Compile the kernels once, before the processes of the tests start, each of which would compile some of them."""
     if session.config.getoption("numprocesses", None):
         command = [sys.executable, "-m", "segcore.kernels", "--quiet"]
-        _compiling.append(subprocess.Popen(command, cwd=session.config.rootpath))
+        subprocess.run(command, cwd=session.config.rootpath, check=True)
 
 
-def pytest_xdist_node_collection_finished() -> None:
-    """Give no process a test before all kernels are compiled."""
-    assert [process.wait() for process in _compiling] == [0] * len(_compiling)
+def pytest_collection_finish() -> None:
+    """Keep the tests, which are hundreds of thousands of objects, out of garbage collections."""
+    gc.freeze()
 
 
 def pytest_ignore_collect(collection_path: Path, config: pytest.Config) -> bool | None:
