@@ -6,8 +6,15 @@ import numpy as np
 import pytest
 import trimesh
 
+from helpers.bench.one_process import InThisProcess
 from helpers.bench.strips import write_strips
 from segcore import shapes
+
+
+@pytest.fixture
+def one_process(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Models are evaluated in this process: another one takes seconds to load the kernels."""
+    monkeypatch.setattr("bench.pool.ProcessPoolExecutor", InThisProcess)
 
 
 @pytest.fixture

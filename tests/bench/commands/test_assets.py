@@ -28,11 +28,13 @@ def test_the_command_prints_saves_and_draws_the_same_results(
     assert {path.name for path in sheets.iterdir()} == {"props.png", "robots.png"}
 
 
+@pytest.mark.usefixtures("one_process")
 def test_only_the_given_sets_are_evaluated(assets: Path, capsys: pytest.CaptureFixture[str]) -> None:
     assert main(["assets", "--data", str(assets), "--set", "props"]) == 0
     assert "1 models of 1 sets" in capsys.readouterr().out
 
 
+@pytest.mark.usefixtures("one_process")
 def test_folds_replace_the_models_that_ship(assets: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     document = learned_models().document()
     (tmp_path / "props.json").write_text(json.dumps({"left_out": ["props/crate", 5], "models": document}))

@@ -1,9 +1,7 @@
 """The clicks command: training, its files, and evaluation with them."""
 
 import json
-from collections.abc import Callable, Sequence
 from pathlib import Path
-from typing import Any
 
 import pytest
 
@@ -11,17 +9,6 @@ from bench.__main__ import main
 from segcore.edit.corrections import FEATURES
 from segcore.edit.tree_parts import FEATURES as PART_FEATURES
 from segcore.learned.choices import ChoiceModels
-
-
-@pytest.fixture
-def one_process(monkeypatch: pytest.MonkeyPatch) -> None:
-    """Models are evaluated one by one in this process, which has the kernels."""
-
-    def serially(function: Callable[[Any], Any], items: Sequence[Any], *_: object) -> list[Any]:
-        return [function(item) for item in items]
-
-    monkeypatch.setattr("bench.clicks.training.map_in_processes", serially)
-    monkeypatch.setattr("bench.commands.clicks.map_in_processes", serially)
 
 
 @pytest.mark.usefixtures("one_process")

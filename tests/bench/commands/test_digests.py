@@ -9,8 +9,9 @@ from bench.__main__ import main
 
 
 @pytest.fixture
-def recorded(strips: Path, assets: Path, tmp_path: Path) -> Path:
+def recorded(strips: Path, assets: Path, tmp_path: Path, request: pytest.FixtureRequest) -> Path:
     """The digests of two models of each data set."""
+    request.getfixturevalue("one_process")
     output = tmp_path / "a.json"
     options = ["--data", str(strips), "--assets", str(assets), "--limit", "2", "--part", "models"]
     assert main(["digests", *options, "--output", str(output)]) == 0

@@ -11,13 +11,15 @@ from segcore.learned.models import LearnedModels
 
 
 def test_training_twice_writes_the_same_bytes_and_folds_for_an_evaluation(
-    shapes_folder: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+    shapes_folder: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str], request: pytest.FixtureRequest
 ) -> None:
+    """Once in a process of its own for every step, then in this process."""
     outputs = [tmp_path / "one.json", tmp_path / "two.json"]
     folds = tmp_path / "folds"
     for output in outputs:
         command = ["train", "--data", str(shapes_folder), "--output", str(output), "--folds", str(folds)]
         assert main(command) == 0
+        request.getfixturevalue("one_process")
     assert outputs[0].read_bytes() == outputs[1].read_bytes()
     LearnedModels.from_document(json.loads(outputs[0].read_text()))
     assert sorted(path.name for path in folds.iterdir()) == ["bell.json", "burr.json"]
