@@ -94,16 +94,27 @@ def test_a_killed_work_horse_costs_an_attempt_and_not_the_job(
 
 
 def poison(statement: str) -> tuple[str, str]:
-    """Return a worker program that runs a statement for the mesh b"poison", and cancels every other job."""
+    """Return a worker program that runs a statement for the mesh b"poison", and cancels every other job.
+
+    It needs no kernels, which take most of the start of a worker.
+    """
     source = f"""
 import ctypes, os, tempfile
 from worker.jobs.job import Canceled, now
 from worker.process import process
+class NoKernels:
+    def __init__(self, connection):
+        pass
+    def load_first(self):
+        pass
+    def load_others(self):
+        return False
 def perform(store, settings, job_id, *_):
     if store.open_mesh(job_id).read() == b"poison":
         {statement}
     store.finish(job_id, Canceled(finished_at=now()))
 process.perform = perform
+process.WorkerKernels = NoKernels
 process.main()
 """
     return "-c", source
