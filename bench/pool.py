@@ -20,6 +20,10 @@ Result = TypeVar("Result")
 # The variables from which numerical libraries read their number of threads when they are loaded.
 THREAD_SETTINGS = ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS", "NUMBA_NUM_THREADS")
 
+# Groups of ``segcore.kernels.GROUPS``: the kernels of segmentations with the default parameters, which take half of the
+# time that all need to be loaded.
+OF_SEGMENTATIONS = ("segment", "bodies", "fine")
+
 
 def map_in_processes(
     function: Callable[[Item], Result], items: Sequence[Item], jobs: int, warm_up: Callable[[], None]

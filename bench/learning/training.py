@@ -15,7 +15,7 @@ from bench.learning.folds import Fold, apply_unseen, with_unseen
 from bench.learning.forests import grow_forest
 from bench.learning.rows import concatenated
 from bench.learning.splits import cut_rows, split_rows
-from bench.pool import map_in_processes
+from bench.pool import OF_SEGMENTATIONS, map_in_processes
 from segcore import warm_up
 from segcore.affinity.boundary_features import FEATURES as EDGE_FEATURES
 from segcore.cut.features import FEATURES as CUT_FEATURES
@@ -43,6 +43,7 @@ _ASSETS_IN_FOREST = 4.0
 # Of meshes of one body in the model for several bodies, beside the others: they are most of the meshes. Set by hand.
 _ONE_BODY_WEIGHT = 0.1
 
+_WARM_UP = partial(warm_up, *OF_SEGMENTATIONS)
 _ONE_BODY_FEATURES = CutFeatures._fields  # further ones make it worse on categories that it has not seen
 
 
@@ -58,7 +59,7 @@ def train(meshes: Sequence[Example], grouping: Grouping, jobs: int) -> list[Fold
     First the fold "all", which leaves out nothing, then one for every group.
     """
     groups = _groups(meshes, grouping)
-    edges = map_in_processes(boundary_rows, meshes, jobs, warm_up)
+    edges = map_in_processes(boundary_rows, meshes, jobs, _WARM_UP)
     flat = _flat(CUT_FEATURES)
     folds = [
         Fold(
@@ -69,11 +70,11 @@ def train(meshes: Sequence[Example], grouping: Grouping, jobs: int) -> list[Fold
         for name, left_out in groups.items()
     ]
     for _ in range(_ROUNDS):
-        cuts = map_in_processes(partial(apply_unseen, cut_rows), with_unseen(meshes, _documents(folds)), jobs, warm_up)
+        cuts = map_in_processes(partial(apply_unseen, cut_rows), with_unseen(meshes, _documents(folds)), jobs, _WARM_UP)
         folds = [replace(fold, models=_with_splits(fold.models, _seen(meshes, cuts, fold.left_out))) for fold in folds]
-    splits = map_in_processes(partial(apply_unseen, split_rows), with_unseen(meshes, _documents(folds)), jobs, warm_up)
+    splits = map_in_processes(partial(apply_unseen, split_rows), with_unseen(meshes, _documents(folds)), jobs, _WARM_UP)
     seen = [_seen(meshes, splits, fold.left_out, _ASSETS_IN_FOREST) for fold in folds]
-    orders = map_in_processes(grow_forest, seen, jobs, warm_up)
+    orders = map_in_processes(grow_forest, seen, jobs, _WARM_UP)
     return [replace(fold, models=replace(fold.models, order=order)) for fold, order in zip(folds, orders, strict=True)]
 
 

@@ -10,6 +10,7 @@ from multiprocessing import get_context
 from typing import TYPE_CHECKING
 
 from bench.memory import peak_memory, reset_peak
+from bench.pool import OF_SEGMENTATIONS
 from segcore.progress import STAGES
 
 if TYPE_CHECKING:
@@ -49,7 +50,7 @@ def _measure(name: str, make: Callable[[], Mesh]) -> Cost:
     from segcore import warm_up
     from segcore.method import segment
 
-    warm_up()
+    warm_up(*OF_SEGMENTATIONS)
     mesh = make()
     before = reset_peak()
     stage_s = dict.fromkeys(STAGES, 0.0)
