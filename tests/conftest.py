@@ -6,6 +6,7 @@ import subprocess
 import sys
 import tempfile
 from collections.abc import Iterator
+from functools import cache
 from pathlib import Path
 
 import pytest
@@ -32,11 +33,11 @@ for _name in ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS"):
 os.environ.pop("PYTHONDONTWRITEBYTECODE", None)
 sys.dont_write_bytecode = False
 
-# No deadline: the first call of a kernel compiles it. Nothing is left in the folder where the tests run.
+# No deadline: the first call of a kernel compiles it. Nothing is left in the folder where the tests run; all processes
+# and the next runs find the constants of unchanged modules in one other folder.
 settings.register_profile("repeatable", derandomize=True, deadline=None, database=None)
 settings.register_profile("everyday", settings.get_profile("repeatable"), max_examples=20)
-_HYPOTHESIS = tempfile.TemporaryDirectory(prefix="hypothesis-")
-set_hypothesis_home_dir(_HYPOTHESIS.name)
+set_hypothesis_home_dir(Path(tempfile.gettempdir(), f"cleave-hypothesis-{os.getuid()}"))
 
 _BROWSER = "tests/browser/"
 _SECOND_HALF = "test_list"  # the browser tests from this name on take about as long as those before it
@@ -148,17 +149,15 @@ def pytest_ignore_collect(collection_path: Path, config: pytest.Config) -> bool 
     return (config.option.markexpr == _EVERYDAY and _is_slow(collection_path)) or None
 
 
+@cache
 def _is_slow(path: Path) -> bool:
     return path.suffix == ".py" and any(path.match(pattern) for pattern in _SLOW)
 
 
+@cache
 def _order(path: Path) -> int:
     """The position of the first pattern that matches a file; files that match none come in the middle."""
     return next((i for i, pattern in enumerate(_LONGEST) if path.match(pattern)), len(_LONGEST))
-
-
-def pytest_unconfigure() -> None:
-    _HYPOTHESIS.cleanup()
 
 
 @pytest.fixture
