@@ -59,14 +59,6 @@ def test_a_signal_to_all_processes_fails_no_job() -> None:
         wait_until(lambda: installation.status(path) == "succeeded", within_s=120)
 
 
-def test_a_second_service_on_the_same_data_is_refused() -> None:
-    with Installation(workers=1) as installation:
-        second = installation.command("serve", "--port", "0")
-        output, _ = second.communicate(timeout=60)
-        assert (second.returncode, output) == (2, "")
-        assert installation.is_ready()
-
-
 def test_a_port_in_use_is_an_error_before_anything_starts() -> None:
     installation = Installation()
     with socket.create_server(("127.0.0.1", 0)) as other:

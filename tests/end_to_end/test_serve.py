@@ -113,6 +113,13 @@ def test_a_deleted_job_leaves_no_file(installation: Installation) -> None:
     assert installation.files() == before
 
 
+def test_a_second_service_on_the_same_data_is_refused(installation: Installation) -> None:
+    second = installation.command("serve", "--port", "0")
+    output, _ = second.communicate(timeout=60)
+    assert (second.returncode, output) == (2, "")
+    assert installation.is_ready()
+
+
 def test_an_interrupted_upload_leaves_no_file(installation: Installation) -> None:
     before = installation.files()
     address = urlsplit(installation.url)
