@@ -25,11 +25,16 @@ def lazy_names(package: str, modules: Mapping[str, Sequence[str]]) -> Callable[[
     return get
 
 
-def called_later(place: str) -> Callable[..., Any]:
-    """Return a function that imports another one, ``package.module:name``, when it is called."""
-    module, _, name = place.partition(":")
+class called_later:  # noqa: N801  # it is used like a function
+    """A function that imports another one, ``package.module:name``, when it is called."""
 
-    def call(*arguments: Any, **options: Any) -> Any:
-        return getattr(import_module(module), name)(*arguments, **options)
+    def __init__(self, place: str) -> None:
+        self._module, _, self._name = place.partition(":")
 
-    return call
+    def __call__(self, *arguments: Any, **options: Any) -> Any:
+        return self.load()(*arguments, **options)
+
+    def load(self) -> Callable[..., Any]:
+        """Import the other function, and return it."""
+        function: Callable[..., Any] = getattr(import_module(self._module), self._name)
+        return function

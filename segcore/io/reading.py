@@ -2,7 +2,6 @@
 
 import io
 import os
-from collections.abc import Callable
 from dataclasses import dataclass, replace
 from functools import partial
 from pathlib import Path
@@ -20,13 +19,19 @@ from segcore.lazy import called_later
 from segcore.mesh import Mesh
 
 _read_gltf = called_later("segcore.io.gltf.reader:read_gltf")
-_READERS: dict[str, Callable[[bytes, ReadLimits, bool], Mesh]] = {
+_READERS = {
     "off": called_later("segcore.io.off.reader:read_off"),
     "stl": called_later("segcore.io.stl.reader:read_stl"),
     "ply": called_later("segcore.io.ply.reader:read_ply"),
     "obj": called_later("segcore.io.obj.reader:read_obj"),
     "3mf": called_later("segcore.io.threemf.reader:read_3mf"),
 }
+
+
+def load_readers() -> None:
+    """Import the readers of all formats, which are otherwise imported by the first file of each."""
+    for reader in (_read_gltf, *_READERS.values()):
+        reader.load()
 
 
 @dataclass(frozen=True, slots=True, eq=False)

@@ -5,7 +5,7 @@ from pathlib import Path
 import pytest
 
 from bench.__main__ import main
-from helpers.robots.shapes import table
+from helpers.simulation.shapes import table
 from segcore.io import write_mesh
 
 

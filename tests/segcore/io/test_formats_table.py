@@ -14,8 +14,8 @@ import trimesh
 from helpers.files.hierarchies import two_strips
 from helpers.files.polygon_soups import read, read_or_none
 from helpers.files.samples import BINARY_STL, DRESSED, SAMPLES
-from helpers.files.usd import usd_content
 from helpers.files.written import labels_of_runs, members, written
+from helpers.simulation.usd import usd_content
 from segcore.appearance import Appearance
 from segcore.errors import UnsupportedFormat
 from segcore.io import FORMATS, read_mesh

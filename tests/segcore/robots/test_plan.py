@@ -8,7 +8,7 @@ import trimesh
 
 from helpers.printing.bars import bar, bent_bar
 from helpers.printing.solids import halves, pipe
-from helpers.robots.shapes import angle
+from helpers.simulation.shapes import angle
 from segcore.coordinates import Coordinates
 from segcore.errors import InvalidParameters, MissingPackage
 from segcore.mesh import Mesh

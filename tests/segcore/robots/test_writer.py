@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 
 from helpers.printing.bars import bar
-from helpers.robots.shapes import angle, table
+from helpers.simulation.shapes import angle, table
 from segcore.hierarchy import Hierarchy
 from segcore.mesh import Mesh
 from segcore.partition import Partition
