@@ -7,6 +7,7 @@ from concurrent.futures import Future
 from dataclasses import dataclass, field
 from datetime import datetime
 from itertools import pairwise
+from threading import Event
 
 from bench.load.installation import Installation, installed
 from bench.soak.faults import WORKER_DEATHS, inflict, schedule
@@ -29,7 +30,7 @@ _SETTINGS = {
 class SoakPlan:
     """The size of a soak. The defaults were set by hand; bench/RESULTS.md has the outcome with them."""
 
-    jobs: int = 300
+    jobs: int = 300  # at least
     kills: int = 100  # of work-horses, workers, both at once, the janitor and the service
     queue_kills: int = 6  # of the queue server, one of them with the loss of its files
     interval_s: float = 2.0  # mean time between two kills
@@ -80,8 +81,12 @@ def _without_faults(installation: Installation) -> dict[int, str]:
 def _with_faults(installation: Installation, plan: SoakPlan, expected: dict[int, str]) -> SoakReport:
     client, rng = Client(installation), random.Random(plan.seed)
     faults = schedule(plan.kills, plan.queue_kills, rng)
-    submission = client.submit_evenly(plan.jobs, plan.interval_s * len(faults))
-    done = _inflict_all(installation, faults, plan.interval_s, submission, rng)
+    is_over = Event()  # until then there are jobs to kill
+    submission = client.submit_evenly(plan.jobs, plan.interval_s * len(faults), is_over)
+    try:
+        done = _inflict_all(installation, faults, plan.interval_s, submission, rng)
+    finally:
+        is_over.set()
     ended_at = time.monotonic()
     submitted = submission.result()
     statuses = client.wait_for_end(_SETTLED_WITHIN_S)

@@ -4,6 +4,7 @@ import hashlib
 import time
 from concurrent.futures import Future, ThreadPoolExecutor
 from dataclasses import dataclass
+from threading import Event
 
 import httpx
 
@@ -55,14 +56,14 @@ class Client:
         )
         return Submitted(mesh, response.headers["Location"])
 
-    def submit_evenly(self, count: int, duration_s: float) -> Future[list[Submitted]]:
-        """Submit jobs one after the other in a thread, evenly spread over a duration."""
+    def submit_evenly(self, count: int, duration_s: float, is_over: Event) -> Future[list[Submitted]]:
+        """Submit jobs one after the other in a thread, evenly spread over a duration, and more until an event."""
 
         def work() -> list[Submitted]:
-            began_at, submitted = time.monotonic(), []
-            for number in range(count):
-                time.sleep(max(0.0, began_at + number * duration_s / count - time.monotonic()))
-                submitted.append(self.submit(number))
+            began_at, submitted = time.monotonic(), list[Submitted]()
+            while len(submitted) < count or not is_over.is_set():
+                time.sleep(max(0.0, began_at + len(submitted) * duration_s / count - time.monotonic()))
+                submitted.append(self.submit(len(submitted)))
             return submitted
 
         pool = ThreadPoolExecutor(1)

@@ -54,7 +54,8 @@ def test_a_job_runs_through_the_proxy_and_every_link_leads_to_it(proxy: Proxy) -
         links = client.get(path).json()["links"]
         for name, link in links.items():
             if name not in ("cancel", "events", "edits"):
-                assert client.get(link).status_code == 200, link
+                quick = f"{link}?collision=hull" if name.startswith("robot") else link  # CoACD takes long
+                assert client.get(quick).status_code == 200, link
         assert client.post(links["cancel"]).status_code == 409
 
 
