@@ -14,9 +14,11 @@ from segcore.io.obj.reader import read_obj
 from segcore.io.off.reader import read_off
 from segcore.io.picture import draw
 from segcore.io.reading import read_mesh
+from segcore.io.result import write_result
 from segcore.mesh import Mesh
 from segcore.method import segment
 from segcore.parameters import SegmentationParameters, Solver
+from segcore.report import mesh_report
 from segcore.shapes import box, burr, icosphere, joined
 
 _OBJ = b"v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n"
@@ -38,7 +40,12 @@ def warm_up(*groups: str) -> None:
 
 
 def _segment() -> None:
-    segment(burr(subdivisions=3).mesh, SegmentationParameters(clusters=300))  # fewer clusters than faces
+    """Do in memory what every job does."""
+    mesh = burr(subdivisions=3).mesh
+    surface = build_surface(mesh)
+    hierarchy = segment(mesh, SegmentationParameters(clusters=300), surface=surface)  # fewer clusters than faces
+    write_result(io.BytesIO(), mesh, hierarchy)
+    mesh_report(mesh, surface)
 
 
 def _read() -> None:

@@ -31,7 +31,7 @@ def test_a_job_whose_worker_and_work_horse_are_killed_together_runs_again_within
         wait_until(lambda: installation.status(path) == "succeeded")
 
 
-@pytest.mark.parametrize(("number", "waiting"), [(signal.SIGINT, 6), (signal.SIGKILL, 50)])
+@pytest.mark.parametrize(("number", "waiting"), [(signal.SIGINT, 6), (signal.SIGKILL, 20)])
 def test_a_restart_finishes_the_running_and_the_waiting_jobs(number: signal.Signals, waiting: int) -> None:
     with Installation() as installation:
         paths = []

@@ -11,6 +11,7 @@ from redis import Redis
 
 import segcore
 from cleave.parent_death import die_with_parent
+from segcore.io.reading import load_readers
 from segcore.kernels import FIRST, CompilationProgress, compile_kernels, environment, must_compile
 from worker.jobs.queue.compilation import Compilation, publish_compilation
 from worker.jobs.queue.connection import QueueError
@@ -24,7 +25,10 @@ _PAUSE_S = 2.0  # after an error of Redis, which may not be ready yet; set by ha
 
 
 class WorkerKernels:
-    """Compiles the kernels once for all workers and loads them, so that the work-horses have them in memory."""
+    """Compiles the kernels once for all workers and loads them, so that the work-horses have them in memory.
+
+    So do the modules that jobs need, each of which a work-horse would otherwise import again.
+    """
 
     def __init__(self, connection: Redis) -> None:
         self._report = _Report(connection)
@@ -36,6 +40,7 @@ class WorkerKernels:
         compile_kernels([FIRST], self._report)
         self._report.end()
         segcore.warm_up(FIRST)
+        load_readers()
         if must_compile():
             self._compiling = _start_compiling()
 

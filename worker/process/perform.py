@@ -1,6 +1,5 @@
 """Runs a job: segments its mesh, and writes the result file and the outcome to the store."""
 
-import io
 import logging
 from collections.abc import Callable
 from dataclasses import asdict, dataclass
@@ -8,9 +7,7 @@ from dataclasses import asdict, dataclass
 import segcore
 from cleave.settings import Settings
 from segcore.io import ReadLimits
-from segcore.io.reading import load_readers
 from segcore.io.result import write_result
-from segcore.shapes import icosphere
 from worker.jobs.attempts import INPUT_LOST
 from worker.jobs.job import Failed, Job, Outcome, Succeeded, now
 from worker.jobs.store.store import JobStore, UnknownJob
@@ -94,16 +91,6 @@ def segment_stored_mesh(
         limit_reached=hierarchy.limit_reached,
         report=asdict(segcore.mesh_report(mesh, surface)),
     )
-
-
-def rehearse() -> None:
-    """Import all that jobs need, by a small one in memory, so that the child processes of this one need not."""
-    load_readers()
-    mesh = icosphere(2)
-    surface = segcore.build_surface(mesh)
-    hierarchy = segcore.segment(mesh, surface=surface)
-    write_result(io.BytesIO(), mesh, hierarchy)
-    segcore.mesh_report(mesh, surface)
 
 
 def read_limits(settings: Settings) -> ReadLimits:

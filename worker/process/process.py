@@ -38,7 +38,7 @@ from worker.process.edit_runs import EditRuns
 from worker.process.kernels import WorkerKernels
 from worker.process.lease import LeaseKeeper
 from worker.process.ledger import Ledger
-from worker.process.perform import perform, rehearse
+from worker.process.perform import perform
 from worker.process.progress import ProgressReporter
 from worker.process.spare import Order, SpareWorkHorse
 from worker.process.staging import stage, staged_store
@@ -243,6 +243,5 @@ def main() -> None:
     leases = JobQueue(connect(settings.redis_url))
     kernels = WorkerKernels(leases.connection)
     kernels.load_first()
-    rehearse()
     log.info("ready for %s jobs", size)
     JobWorker(open_store(settings), queue, leases, settings, size, kernels).work(logging_level="WARNING")
