@@ -32,6 +32,11 @@ def pair_keys(pairs: NDArray[np.integer], count: int) -> LongArray:
     return keys
 
 
+def significant(value: float) -> float:
+    """Return a number with six significant digits, as reports give it."""
+    return float(f"{value:.6g}")
+
+
 def plane_axes(normal: FloatArray) -> FloatArray:
     """(2, 3) unit vectors that form a right-handed frame with a unit normal (3,)."""
     across = np.cross(normal, np.eye(3)[np.argmin(np.abs(normal))])

@@ -5,10 +5,9 @@ from typing import Any
 
 import numpy as np
 
+from segcore.arrays import significant
 from segcore.printing.connectors import Joint
 from segcore.printing.plan import Piece, PrintPlan
-
-_DIGITS = 6  # significant ones
 
 
 def print_report(plan: PrintPlan) -> dict[str, Any]:
@@ -24,7 +23,7 @@ def print_report(plan: PrintPlan) -> dict[str, Any]:
         "connectors": options.connectors,
         "clearance": options.clearance,
         "bed": None if options.bed is None else list(options.sides),
-        "volume": _rounded(sum(plan.closed_volumes.values())),
+        "volume": significant(sum(plan.closed_volumes.values())),
         "objects": [_object(plan, piece) for piece in plan.pieces],
         "slots": [{"slot": one.number, "color": one.color, "parts": list(one.labels)} for one in plan.slots],
         "contacts": [*_joints(plan), *_cuts(plan)],
@@ -37,8 +36,8 @@ def _object(plan: PrintPlan, piece: Piece) -> dict[str, Any]:
         "part": piece.label,
         "slot": piece.slot,
         "closed": piece.volume is not None,
-        "volume": None if piece.volume is None else _rounded(piece.volume),
-        "size": [_rounded(side) for side in piece.size],
+        "volume": None if piece.volume is None else significant(piece.volume),
+        "size": [significant(side) for side in piece.size],
         "fits_bed": bool((piece.size <= np.array(plan.options.sides)).all()),
     }
 
@@ -63,22 +62,18 @@ def _cuts(plan: PrintPlan) -> Iterator[dict[str, Any]]:
 def _contact(joint: Joint, kind: str) -> dict[str, Any]:
     contact, connector = joint.contact, joint.connector
     return {
-        "area": _rounded(contact.area),
-        "circle_diameter": _rounded(2 * contact.radius),
-        "deviation": _rounded(contact.deviation),
+        "area": significant(contact.area),
+        "circle_diameter": significant(2 * contact.radius),
+        "deviation": significant(contact.deviation),
         "connector": connector
         and {
             "kind": kind,
-            "diameter": _rounded(2 * connector.radius),
-            "hole_diameter": _rounded(2 * connector.hole_radius),
-            "depth": _rounded(connector.depth),
-            "hole_depth": _rounded(connector.hole_depth),
+            "diameter": significant(2 * connector.radius),
+            "hole_diameter": significant(2 * connector.hole_radius),
+            "depth": significant(connector.depth),
+            "hole_depth": significant(connector.hole_depth),
             "holes": len(connector.holes),
-            "centre": [_rounded(value) for value in contact.centre],
+            "centre": [significant(value) for value in contact.centre],
         },
         "reason": joint.reason,
     }
-
-
-def _rounded(value: float) -> float:
-    return float(f"{value:.{_DIGITS}g}")

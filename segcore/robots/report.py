@@ -5,9 +5,9 @@ from typing import Any
 
 import numpy as np
 
+from segcore.arrays import significant
 from segcore.robots.plan import Link, RobotPlan
 
-_DIGITS = 6  # significant ones
 _DECIMALS = 12  # of coordinates, so that rounding errors are not shown
 
 
@@ -24,8 +24,8 @@ def robot_report(plan: RobotPlan) -> dict[str, Any]:
         "density": options.density,
         "joints": options.joints,
         "collision": options.collision,
-        "mass": _rounded(sum(one.mass for one in found if one)),
-        "volume": _rounded(sum(one.volume for one in found if one)),
+        "mass": significant(sum(one.mass for one in found if one)),
+        "volume": significant(sum(one.volume for one in found if one)),
         "links": [_link(plan, link) for link in plan.links],
     }
 
@@ -38,21 +38,17 @@ def _link(plan: RobotPlan, link: Link) -> dict[str, Any]:
         "name": link.title,
         "parent": joint and plan.links[joint.parent].name,
         "joint": joint and joint.kind,
-        "origin": _all_rounded(link.origin - ground),
-        "axis": None if joint is None or joint.axis is None else _all_rounded(joint.axis),
+        "origin": _coordinates(link.origin - ground),
+        "axis": None if joint is None or joint.axis is None else _coordinates(joint.axis),
         "why_fixed": joint and joint.reason,
-        "mass": properties and _rounded(properties.mass),
-        "volume": properties and _rounded(properties.volume),
-        "centre_of_mass": properties and _all_rounded(properties.centre - ground),
+        "mass": properties and significant(properties.mass),
+        "volume": properties and significant(properties.volume),
+        "centre_of_mass": properties and _coordinates(properties.centre - ground),
         "closed": link.body.is_closed,
         "collision_pieces": len(link.body.pieces),
         "note": link.body.note,
     }
 
 
-def _all_rounded(values: Iterable[float]) -> list[float]:
-    return [_rounded(value) + 0.0 for value in np.round(np.asarray(values), _DECIMALS)]  # no -0.0
-
-
-def _rounded(value: float) -> float:
-    return float(f"{value:.{_DIGITS}g}")
+def _coordinates(values: Iterable[float]) -> list[float]:
+    return [significant(value) + 0.0 for value in np.round(np.asarray(values), _DECIMALS)]  # no -0.0

@@ -1,7 +1,7 @@
 """The level of a result that a request selects: a number of segments, a granularity, or a set of splits."""
 
 from dataclasses import dataclass, replace
-from typing import Annotated
+from typing import Annotated, Any
 
 from fastapi import Depends, Query
 
@@ -36,6 +36,12 @@ class ChosenCut:
     def partition(self) -> Partition | None:
         """The parts of a revision; None for a level of the automatic result."""
         return None if self.result.edited is None else self.result.edited.partition
+
+    def looks(self, names: dict[int, str]) -> dict[str, Any]:
+        """Return the names and colours of the parts as writers take them; given names replace those of a revision."""
+        if self.partition is None:
+            return {"names": names}
+        return {"names": self.partition.names | names, "part_colors": self.partition.colors}
 
 
 def cut_at(job_id: str, result: Segmentation, level: Level) -> ChosenCut:

@@ -3,7 +3,6 @@
 from collections.abc import Callable, Mapping
 from typing import Any, BinaryIO
 
-from segcore.io import Writer
 from service.answer.level import ChosenCut
 from service.answer.model_formats import MODELS, model_file
 from service.answer.originals import stored_original
@@ -28,7 +27,7 @@ def model_rendition(
     writer = MODELS[name]
     mesh, hierarchy = cut.result.mesh, cut.result.hierarchy
     query = cut.name + "".join(f"&{option}={value}" for option, value in options.items()) + names_digest(names)
-    looks = _looks(cut, writer, names)
+    looks = {option: look for option, look in cut.looks(names).items() if option in ("names", *writer.options)}
 
     def write(target: BinaryIO) -> None:
         if options.get("keep") is None:
@@ -40,14 +39,6 @@ def model_rendition(
     is_companion = any(one.companion == name for one in MODELS.values())  # a file that others refer to by its name
     file_name = model_file(name) if is_companion else f"{cut.job_id}{writer.extension}"
     return cached_rendition(context.results, cut, f"{name}?{query}", writer.media_type, write, file_name)
-
-
-def _looks(cut: ChosenCut, writer: Writer, names: dict[int, str]) -> dict[str, Any]:
-    """Return the names and colours of the parts for a writer; given names replace those of a revision."""
-    if cut.partition is None:
-        return {"names": names}
-    colors = {"part_colors": cut.partition.colors} if "part_colors" in writer.options else {}
-    return {"names": cut.partition.names | names} | colors
 
 
 def cached_rendition(

@@ -6,7 +6,7 @@ import sys
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
-from typing import TYPE_CHECKING, BinaryIO, get_args
+from typing import TYPE_CHECKING, Any, BinaryIO, get_args
 
 from segcore.errors import InvalidParameters
 from segcore.hierarchy import Hierarchy
@@ -18,7 +18,7 @@ from service.commands.inputs import STANDARD
 from worker.jobs.objects.durable import replace_file
 
 if TYPE_CHECKING:
-    from segcore.io import Original, Segmentation
+    from segcore.io import Edited, Original, Segmentation
 
 _EXTENSIONS = [writer.extension for writer in WRITERS.values()]
 
@@ -205,8 +205,14 @@ def write_edited(path: Path, result: "Segmentation", options: OutputOptions) -> 
     assert edited is not None, "the parts were edited"
     if options.writer_of(path) is WRITERS["cleave"]:
         return write_model(path, result.mesh, result.hierarchy, None, options.with_values(edited=edited))
-    looks = options.with_values(names=edited.partition.names, part_colors=edited.partition.colors)
-    return write_model(path, result.mesh, edited.partition.hierarchy(result.mesh), None, looks)
+    hierarchy, looks = edited_parts(result.mesh, edited)
+    return write_model(path, result.mesh, hierarchy, None, options.with_values(**looks))
+
+
+def edited_parts(mesh: Mesh, edited: "Edited") -> tuple[Hierarchy, dict[str, Any]]:
+    """Return the edited parts as a hierarchy, and their names and colours as writers take them."""
+    parts = edited.partition
+    return parts.hierarchy(mesh), {"names": parts.names, "part_colors": parts.colors}
 
 
 def write_file(path: Path, write: Callable[[BinaryIO], object]) -> None:

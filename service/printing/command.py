@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any, get_args
 
 from segcore.errors import InvalidParameters
 from segcore.printing.options import CLEARANCE, Connectors, Place, PrintOptions, Slicer
-from service.commands.outputs import write_file
+from service.commands.outputs import edited_parts, write_file
 
 if TYPE_CHECKING:
     from segcore.io import Segmentation
@@ -71,9 +71,8 @@ def write_prints(
     if result.edited is None:
         plan = plan_print(result.mesh, result.hierarchy, segments, options)
     else:
-        parts = result.edited.partition
-        looks = {"names": parts.names, "part_colors": parts.colors}
-        plan = plan_print(result.mesh, parts.hierarchy(result.mesh), None, options, **looks)
+        hierarchy, looks = edited_parts(result.mesh, result.edited)
+        plan = plan_print(result.mesh, hierarchy, None, options, **looks)
     report = print_report(plan)
     for path in choices.output:
         write_file(path, lambda target: write_print(target, plan))

@@ -26,9 +26,12 @@ def print_rendition(cache: ResultCache, cut: ChosenCut, names: dict[int, str], p
     def write(target: BinaryIO) -> None:
         from segcore.printing.writer import write_print
 
-        write_print(target, _plan(cut, names, printing))
+        plan = _plan(cut, names, printing)
+        write_print(target, plan)
+        # Who fetches the file often reads its report next, and the plan takes most of the time of both.
+        cache.rendered(cut.job_id, _name("print.json", cut, names, printing), lambda: _report(plan))
 
-    name = f"print.3mf?{_query(cut, names, printing)}"
+    name = _name("print.3mf", cut, names, printing)
     return cached_rendition(cache, cut, name, "model/3mf", write, f"{cut.job_id}-print.3mf")
 
 
@@ -36,24 +39,26 @@ def report_rendition(cache: ResultCache, cut: ChosenCut, names: dict[int, str], 
     """Return the report of the same file."""
 
     def write(target: BinaryIO) -> None:
-        from segcore.printing.report import print_report
+        target.write(_report(_plan(cut, names, printing)))
 
-        target.write(compact_json(print_report(_plan(cut, names, printing))))
+    return cached_rendition(cache, cut, _name("print.json", cut, names, printing), "application/json", write)
 
-    return cached_rendition(cache, cut, f"print.json?{_query(cut, names, printing)}", "application/json", write)
+
+def _report(plan: "PrintPlan") -> bytes:
+    from segcore.printing.report import print_report
+
+    return compact_json(print_report(plan))
 
 
 def _plan(cut: ChosenCut, names: dict[int, str], printing: PrintRequest) -> "PrintPlan":
     from segcore.printing.plan import plan_print
 
-    mesh, hierarchy, partition = cut.result.mesh, cut.result.hierarchy, cut.partition
+    mesh = cut.result.mesh
     if mesh.coordinates.up is None:
         mesh = with_coordinates(mesh, up=printing.up)
-    if partition is None:
-        return plan_print(mesh, hierarchy, cut.segments, printing.options, names=names)
-    looks = {"names": partition.names | names, "part_colors": partition.colors}
-    return plan_print(mesh, hierarchy, cut.segments, printing.options, **looks)
+    return plan_print(mesh, cut.result.hierarchy, cut.segments, printing.options, **cut.looks(names))
 
 
-def _query(cut: ChosenCut, names: dict[int, str], printing: PrintRequest) -> str:
-    return f"{cut.name}&{printing!r}{names_digest(names)}"
+def _name(file: str, cut: ChosenCut, names: dict[int, str], printing: PrintRequest) -> str:
+    """The name of a rendition in the cache."""
+    return f"{file}?{cut.name}&{printing!r}{names_digest(names)}"

@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING, Any, get_args
 
 from segcore.errors import InvalidParameters
 from segcore.robots.options import CONCAVITY, DENSITY, MOST_PIECES, Collision, Joints, RobotOptions
-from service.commands.outputs import write_file
+from service.commands.outputs import edited_parts, write_file
 
 if TYPE_CHECKING:
     from segcore.io import Segmentation
@@ -70,9 +70,8 @@ def write_robots(
     if result.edited is None:
         plan = plan_robot(result.mesh, result.hierarchy, segments, options)
     else:
-        parts = result.edited.partition
-        looks = {"names": parts.names, "part_colors": parts.colors}
-        plan = plan_robot(result.mesh, parts.hierarchy(result.mesh), None, options, **looks)
+        hierarchy, looks = edited_parts(result.mesh, result.edited)
+        plan = plan_robot(result.mesh, hierarchy, None, options, **looks)
     for path in choices.output:
         write_file(path, lambda target: write_robot(target, plan))
     return list(_lines(robot_report(plan), has_length=options.length is not None))

@@ -24,9 +24,8 @@ def robot_rendition(cache: ResultCache, cut: ChosenCut, names: dict[int, str], o
         from segcore.robots.plan import plan_robot
         from segcore.robots.writer import write_robot
 
-        mesh, hierarchy, partition = cut.result.mesh, cut.result.hierarchy, cut.partition
-        called, colors = (names, None) if partition is None else (partition.names | names, partition.colors)
-        write_robot(target, plan_robot(mesh, hierarchy, cut.segments, options, names=called, part_colors=colors))
+        result = cut.result
+        write_robot(target, plan_robot(result.mesh, result.hierarchy, cut.segments, options, **cut.looks(names)))
 
     name = f"robot.zip?{cut.name}&{options!r}{names_digest(names)}"
     return cached_rendition(cache, cut, name, "application/zip", write, f"{cut.job_id}-robot.zip")

@@ -12,6 +12,8 @@ from helpers.api import problem
 from helpers.printing.bars import bar
 from segcore import Mesh
 from segcore.io import write_mesh
+from segcore.printing import plan
+from segcore.printing.plan import plan_print
 from service.printing.documents import PrintDocument
 
 
@@ -40,6 +42,19 @@ def test_the_report_says_what_the_file_contains(client: httpx.Client, path: str)
     assert "Metadata/Slic3r_PE_model.config" in archive.namelist()
     again = client.get(f"{path}/print.json", params=query, headers={"If-None-Match": answer.headers["ETag"]})
     assert again.status_code == 304
+
+
+def test_a_file_and_its_report_are_planned_once(
+    client: httpx.Client, path: str, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    plans = []
+    monkeypatch.setattr(plan, "plan_print", lambda *a, **k: plans.append(plan_print(*a, **k)) or plans[-1])
+    assert client.get(f"{path}/print.3mf?segments=1").status_code == 200
+    report = client.get(f"{path}/print.json?segments=1").json()
+    assert len(plans) == 1
+    assert report == client.get(f"{path}/print.json?segments=1&clearance=0.2").json()
+    assert client.get(f"{path}/print.json?segments=2").json() != report
+    assert len(plans) == 2
 
 
 @pytest.mark.parametrize(("said", "up", "tall"), [(None, None, 20.0), (None, "y", 60.0), ("z", "y", 20.0)])
