@@ -25,7 +25,7 @@ from cleave.parent_death import die_with_parent
 from cleave.settings import Settings, load_settings
 from cleave.trace import Trace, parse_traceparent
 from worker.jobs.attempts import Attempt
-from worker.jobs.queue.connection import QueueError, connect, connect_with_retries
+from worker.jobs.queue.connection import QueueError, close_inherited, connect, connect_with_retries
 from worker.jobs.queue.counters import JobCounters
 from worker.jobs.queue.entries import is_valid
 from worker.jobs.queue.queue import JobQueue
@@ -210,7 +210,13 @@ class JobWorker(Worker):  # type: ignore[misc]  # rq is not analysed
     # In the work-horse.
 
     def _begin_work_horse(self) -> None:
-        """Ignore signals to the process group, which the worker handles, die with the worker, and take the limits."""
+        """Ignore signals to the process group, which the worker handles, die with the worker, and take the limits.
+
+        The connections of the worker are closed here: as long as this process has them, the queue server would give
+        entries to a worker that has been killed.
+        """
+        for queue in (self._queue, self._leases):
+            close_inherited(queue.connection)
         signal.signal(signal.SIGINT, signal.SIG_IGN)
         signal.signal(signal.SIGTERM, signal.SIG_IGN)
         die_with_parent(self.pid)

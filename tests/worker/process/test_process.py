@@ -11,7 +11,7 @@ import pytest
 from redis import Redis
 
 from helpers.jobs import LARGE, LONG, SMALL, accepted, sphere
-from helpers.processes import StartWorker, horses_of, is_alive
+from helpers.processes import StartWorker, horses_of, is_alive, spares_of
 from helpers.waiting import wait_until
 from worker.jobs.job import Canceled, Failed, Job, Outcome, Succeeded, now
 from worker.jobs.queue.entries import FUNCTION_NAME
@@ -91,6 +91,28 @@ def test_a_killed_work_horse_costs_an_attempt_and_not_the_job(
     os.kill(horse_of(worker), signal.SIGKILL)
     assert isinstance(outcome_of(store, job), Succeeded)
     assert [attempt.cause for attempt in store.records.attempts(job.id)] == ["worker_lost", None]
+
+
+def test_the_queue_gives_no_job_to_a_worker_that_has_just_been_killed(
+    start_worker: StartWorker, queue: JobQueue
+) -> None:
+    worker = start_worker()
+    wait_until(lambda: any(worker_counts(queue.connection).values()))
+    wait_until(lambda: spares_of(worker.pid))
+    (spare,) = spares_of(worker.pid)
+    assert sockets_of(worker.pid)
+    wait_until(lambda: not sockets_of(worker.pid) & sockets_of(spare))
+    worker.kill()
+    worker.wait()
+    queue.enqueue("f" * 32, SMALL)
+    time.sleep(0.5)
+    assert queue.entries[SMALL].get_job_ids() == ["f" * 32]
+
+
+def sockets_of(pid: int) -> set[str]:
+    """Return the sockets that a process has open."""
+    names = [os.readlink(file) for file in Path(f"/proc/{pid}/fd").iterdir() if file.is_symlink()]
+    return {name for name in names if name.startswith("socket")}
 
 
 def poison(statement: str) -> tuple[str, str]:

@@ -31,6 +31,14 @@ def connect_with_retries(url: str) -> Redis:
     )
 
 
+def close_inherited(connection: Redis) -> None:
+    """Close what a child process has of the sockets of its parent, which keeps its own; a later command connects anew.
+
+    Otherwise the server does not notice that the parent has died as long as the child lives.
+    """
+    connection.connection_pool.disconnect()
+
+
 def text_of(answer: bytes | str) -> str:
     return answer.decode() if isinstance(answer, bytes) else answer
 
