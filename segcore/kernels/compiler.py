@@ -13,6 +13,7 @@ from queue import SimpleQueue
 from typing import NoReturn
 
 from segcore.kernels.manifest import kernels
+from segcore.kernels.shortcuts import take_shortcuts
 
 log = logging.getLogger("segcore")
 
@@ -25,6 +26,7 @@ def main() -> NoReturn:
     os.dup2(2, 1)
     os.nice(int(sys.argv[1]))
     gc.disable()  # it takes a sixth of the time, and the process ends soon
+    take_shortcuts()
     orders: SimpleQueue[int] = SimpleQueue()
     threading.Thread(target=_read, args=[orders], daemon=True).start()
     while True:
