@@ -3,6 +3,7 @@
 import sys
 from collections.abc import Callable, Mapping, Sequence
 from importlib import import_module
+from importlib.util import LazyLoader, find_spec, module_from_spec
 from typing import Any
 
 
@@ -38,3 +39,18 @@ class called_later:  # noqa: N801  # it is used like a function
         """Import the other function, and return it."""
         function: Callable[..., Any] = getattr(import_module(self._module), self._name)
         return function
+
+
+def import_later(name: str) -> None:
+    """Import a submodule, ``package.module``, when one of its attributes is first used.
+
+    It is already an attribute of its package, so that ``from package import *`` does not import it.
+    """
+    spec = find_spec(name)
+    if name in sys.modules or spec is None or spec.loader is None:
+        return
+    spec.loader = loader = LazyLoader(spec.loader)
+    module = sys.modules[name] = module_from_spec(spec)
+    loader.exec_module(module)
+    package, _, attribute = name.rpartition(".")
+    setattr(sys.modules[package], attribute, module)

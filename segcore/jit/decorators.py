@@ -9,6 +9,10 @@ from typing import Any, NoReturn
 from numba import njit
 from numba.core.registry import CPUDispatcher
 
+from segcore.lazy import import_later
+
+import_later("numpy.f2py")  # SciPy, which numba imports, takes all names of numpy: this one needs 0.1 s
+
 _OPTIONS = {"nogil": True, "error_model": "numpy", "no_cfunc_wrapper": True}
 
 kernel = njit(cache=True, **_OPTIONS)
