@@ -29,7 +29,7 @@ def test_the_core_leaves_numpys_fortran_tools_alone_and_usable() -> None:
     script = """
 import sys
 from segcore.array_kernels import dot
-import numpy, numpy.f2py, scipy.spatial
+import numpy, scipy.spatial
 assert "numpy.f2py.crackfortran" not in sys.modules
 assert callable(numpy.f2py.run_main) and "numpy.f2py.crackfortran" in sys.modules
 """
