@@ -20,10 +20,12 @@ from rq.serializers import JSONSerializer
 from rq.worker import WorkerStatus
 from rq.worker_registration import register
 
+import segcore
 from cleave.logs import about, configure_logging, current_traceparent, rename_process
 from cleave.parent_death import die_with_parent
 from cleave.settings import Settings, load_settings
 from cleave.trace import Trace, parse_traceparent
+from segcore.kernels import FIRST
 from worker.jobs.attempts import Attempt
 from worker.jobs.queue.connection import QueueError, close_inherited, connect, connect_with_retries
 from worker.jobs.queue.counters import JobCounters
@@ -225,8 +227,11 @@ class JobWorker(Worker):  # type: ignore[misc]  # rq is not analysed
         limit_resources(self._settings)
 
     def _prepare_work_horse(self) -> None:
+        """Connect, and segment a small mesh, which copies the pages of the worker that a job writes to."""
         with suppress(QueueError):
             self._leases.connection.ping()  # which connects
+        with suppress(MemoryError):  # the limit is for the job
+            segcore.warm_up(FIRST)
 
     def _perform(self, order: Order) -> None:
         report = ProgressReporter(self._leases, order.job_id)
