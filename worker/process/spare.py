@@ -1,7 +1,7 @@
 """The spare work-horse: the child process for the next job, forked before that job arrives.
 
 A fork copies no memory, so that the first writes of a new child process are slow: each copies a page of its parent. The
-spare does that, and opens its connection to Redis, while it waits. It runs one job, like any work-horse.
+spare does that, and is prepared otherwise, while it waits. It runs one job, like any work-horse.
 """
 
 import json
@@ -22,8 +22,8 @@ log = logging.getLogger("cleave.worker")
 # Names of the processes in ps and top, at most 15 characters.
 WAITING_NAME, WORKING_NAME = "cleave-spare", "cleave-job"
 
-# A job that arrives so soon finds the spare unprepared: while jobs wait, preparing would take 0.12 s of the processor for
-# each, and a job of 20,000 faces takes 0.2 s.
+# A job that arrives so soon finds the spare unprepared: while jobs wait, preparing would take 0.12 s of the processor
+# for each, and a job of 20,000 faces takes 0.2 s.
 _BUSY_S = 0.1
 _TRIES = 3  # to give an order to a spare; one may be killed while it waits
 # What a job of 20,000 faces allocates in pieces: with it 7,500 page faults of the job become 2,200, in 18 ms.
