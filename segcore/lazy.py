@@ -46,8 +46,8 @@ def import_later(name: str) -> None:
 
     It is already an attribute of its package, so that ``from package import *`` does not import it.
     """
-    spec = find_spec(name)
-    if name in sys.modules or spec is None or spec.loader is None:
+    spec = None if name in sys.modules else find_spec(name)
+    if spec is None or spec.loader is None:
         return
     spec.loader = loader = LazyLoader(spec.loader)
     module = sys.modules[name] = module_from_spec(spec)

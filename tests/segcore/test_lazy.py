@@ -9,6 +9,7 @@ import sys, types
 from segcore.lazy import import_later
 
 import_later("made.slow")
+import_later("made.slow")
 from made import *
 assert isinstance(slow, types.ModuleType) and events == []
 import made.slow
