@@ -1,8 +1,8 @@
 """Shortcuts through numba, for a process that compiles kernels and calls none.
 
 numba makes machine code of each function that a kernel calls, although all of them become part of the kernel, and finds
-the types of equal calls again and again. The shortcuts spare about a quarter of the time. They replace methods within
-numba, so that they are taken only with the releases of numba that they are tested with.
+the types of equal calls again and again. The shortcuts spare more than a quarter of the time. They replace methods
+within numba, so that they are taken only with the releases of numba that they are tested with.
 """
 
 from typing import Any

@@ -1,7 +1,7 @@
 """The spare work-horse: the child process for the next job, forked before that job arrives.
 
 A fork copies no memory, so that the first writes of a new child process are slow: each copies a page of its parent. The
-spare does that, and is prepared otherwise, while it waits. It runs one job, like any work-horse.
+spare does that while it waits, and what its worker prepares. It runs one job, like any work-horse.
 """
 
 import json
