@@ -7,7 +7,7 @@ from starlette.concurrency import run_in_threadpool
 from starlette.responses import Response
 
 from segcore.io import labels_document
-from service.answer.label_formats import compact_json
+from service.answer.label_formats import labels_json, with_members
 from service.answer.waiting import wait_for_end
 from service.context import Context, ContextOf
 from service.guard.callers import CallerOf
@@ -80,5 +80,5 @@ def _response(context: Context, submission: Submission, preference: Preference) 
         if preference.wait_s and document.status == "succeeded":
             hierarchy = result_of(context, submission.receipt.job).hierarchy
             labels = labels_document(hierarchy, submission.fineness.segments_of(hierarchy))
-        body = body[:-1] + b"," + compact_json(labels)[1:]
+        body = with_members(body, labels_json(labels))
     return Response(body, 200 if has_ended else 202, headers, JSON)

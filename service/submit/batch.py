@@ -22,7 +22,7 @@ from service.submit.intake import JobRequest, accept_job
 from service.submit.limits import check_limits
 from service.submit.options import BatchOptions
 from service.submit.request import FORM_TYPE, receive_form
-from service.submit.submission import check_service
+from service.submit.submission import check_submission
 from service.submit.zip_archive import extract
 from worker.jobs.job import Job, new_job_id, now
 from worker.jobs.store.batches import Batch
@@ -43,8 +43,8 @@ class BatchSubmission:
 
 async def submit_batch(request: Request, context: Context, caller: Caller, options: BatchOptions) -> BatchSubmission:
     """Accept all jobs of a batch, or none; errors as in :func:`service.submit.submission.submit_mesh`."""
-    await check_service(context, options.webhook)
-    rate_limits = await run_in_threadpool(check_limits, context, caller, 1, declared_length(request))
+    declared_bytes = declared_length(request)
+    rate_limits = await run_in_threadpool(check_submission, context, caller, options.webhook, declared_bytes)
     left_out: list[str] = []
     if media_type(request) == JSON:
         jobs = await _existing_jobs(request, context, caller)

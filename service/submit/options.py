@@ -1,7 +1,9 @@
 """The query parameters and headers of submissions."""
 
+import inspect
+from collections.abc import Awaitable, Callable
 from dataclasses import dataclass
-from typing import Annotated, get_args
+from typing import Annotated, Any, TypeVar, get_args
 
 from fastapi import Depends, Header, Query
 
@@ -13,6 +15,8 @@ from service.answer.level import Granularity
 from service.submit.form import MAX_PARAMETERS_BYTES, Form
 from service.submit.intake import JobRequest
 from service.submit.request import requested_parameters
+
+Options = TypeVar("Options")
 
 ParametersInQuery = Annotated[str | None, Query(max_length=MAX_PARAMETERS_BYTES, include_in_schema=False)]
 Webhook = Annotated[
@@ -154,6 +158,16 @@ def may_reuse(cache_control: str | None) -> bool:
     return "no-cache" not in (cache_control or "").lower()
 
 
-JobOptionsOf = Annotated[JobOptions, Depends()]
-RerunOptionsOf = Annotated[RerunOptions, Depends()]
-BatchOptionsOf = Annotated[BatchOptions, Depends()]
+def _in_event_loop(options: Callable[..., Options]) -> Callable[..., Awaitable[Options]]:
+    """Return a dependency that makes options without the change of threads that FastAPI makes for a class."""
+
+    async def make(**values: Any) -> Options:
+        return options(**values)
+
+    make.__signature__ = inspect.signature(options)  # type: ignore[attr-defined]
+    return make
+
+
+JobOptionsOf = Annotated[JobOptions, Depends(_in_event_loop(JobOptions))]
+RerunOptionsOf = Annotated[RerunOptions, Depends(_in_event_loop(RerunOptions))]
+BatchOptionsOf = Annotated[BatchOptions, Depends(_in_event_loop(BatchOptions))]

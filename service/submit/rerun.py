@@ -34,7 +34,7 @@ async def submit_again(
     InvalidParameters, Problem
         If the request is not valid or exceeds a limit, or the store no longer has the mesh.
     """
-    await check_service(context, options.webhook)
+    await run_in_threadpool(check_service, context, options.webhook)
     parameters = parse_parameters(await _parameters_text(request, context))
     rate_limits = await run_in_threadpool(check_limits, context, caller, 1, 0)
     receipt = await run_in_threadpool(_accept, context, caller, job, _request(job, parameters, options))

@@ -40,9 +40,9 @@ async def submit_mesh(request: Request, context: Context, caller: Caller, option
     InvalidParameters, Problem
         If the request is not valid or exceeds a limit.
     """
-    await check_service(context, options.webhook)
     fineness, mesh_format = options.fineness(), requested_format(request, options.format)
-    rate_limits = await run_in_threadpool(check_limits, context, caller, 1, declared_length(request))
+    declared_bytes = declared_length(request)
+    rate_limits = await run_in_threadpool(check_submission, context, caller, options.webhook, declared_bytes)
     with ExitStack() as uploads:
         form = await receive_mesh(
             request, context.settings, lambda: uploads.enter_context(context.store.spool.begin_upload())
@@ -52,7 +52,13 @@ async def submit_mesh(request: Request, context: Context, caller: Caller, option
     return Submission(receipt, fineness, rate_limits)
 
 
-async def check_service(context: Context, webhook: str | None) -> None:
+def check_submission(context: Context, caller: Caller, webhook: str | None, declared_bytes: int) -> dict[str, str]:
+    """Check the service and the limits for one job; return the headers, and raise what these checks raise."""
+    check_service(context, webhook)
+    return check_limits(context, caller, 1, declared_bytes)
+
+
+def check_service(context: Context, webhook: str | None) -> None:
     """Check that the queue is available and that a webhook may be called.
 
     Raises
@@ -62,7 +68,7 @@ async def check_service(context: Context, webhook: str | None) -> None:
     InvalidParameters
         If messages may not be sent to the URL.
     """
-    await run_in_threadpool(context.queue.connection.ping)
+    context.queue.connection.ping()
     objection = None if webhook is None else objection_to(webhook, context.settings.webhook_private_targets)
     if objection:
         raise InvalidParameters(objection)

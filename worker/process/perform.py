@@ -2,6 +2,7 @@
 
 import logging
 from collections.abc import Callable
+from concurrent.futures import ThreadPoolExecutor
 from dataclasses import asdict, dataclass
 
 import segcore
@@ -81,7 +82,9 @@ def segment_stored_mesh(
     except FileNotFoundError:
         return Failed(finished_at=now(), code=INPUT_LOST, message="The mesh is no longer in the store: send it again.")
     clock.begin("storing")
-    store.results.write(job.id, lambda target: write_result(target, mesh, hierarchy))
+    with ThreadPoolExecutor(1) as beside:  # storing waits for the disk
+        report = beside.submit(segcore.mesh_report, mesh, surface)
+        store.results.write(job.id, lambda target: write_result(target, mesh, hierarchy))
     return Succeeded(
         finished_at=now(),
         faces=len(mesh.faces),
@@ -89,7 +92,7 @@ def segment_stored_mesh(
         max_segments=hierarchy.max_segments,
         automatic_segments=hierarchy.automatic_segments,
         limit_reached=hierarchy.limit_reached,
-        report=asdict(segcore.mesh_report(mesh, surface)),
+        report=asdict(report.result()),
     )
 
 

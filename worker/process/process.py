@@ -41,7 +41,7 @@ from worker.process.kernels import WorkerKernels
 from worker.process.lease import LeaseKeeper
 from worker.process.ledger import Ledger
 from worker.process.perform import perform
-from worker.process.progress import ProgressReporter
+from worker.process.progress import ProgressPublisher, ProgressReports
 from worker.process.spare import Order, SpareWorkHorse
 from worker.process.staging import stage, staged_store
 from worker.process.watch import Watch
@@ -132,7 +132,11 @@ class JobWorker(Worker):  # type: ignore[misc]  # rq is not analysed
         """Do nothing, as rq writes to Redis here, which a signal handler must not wait for."""
 
     def heartbeat(self, timeout: int | None = None, pipeline: Any = None) -> None:  # noqa: ARG002
-        if pipeline is None and time.monotonic() < self._heartbeat_due_at:
+        if pipeline is None:
+            if time.monotonic() >= self._heartbeat_due_at:
+                with self.connection.pipeline() as pipeline:
+                    self.heartbeat(None, pipeline)
+                    pipeline.execute()
             return
         super().heartbeat(HEARTBEAT_TTL_S, pipeline)
         register(self, pipeline)  # again, as Redis may have lost its data
@@ -197,9 +201,10 @@ class JobWorker(Worker):  # type: ignore[misc]  # rq is not analysed
         work_horse = self._spare.order(Order(job_id, current_traceparent(), None if folder is None else str(folder)))
         stopped_for = self._watch.wait(
             work_horse.pid,
-            work_horse.exited,
+            work_horse.pipe,
             has_ended=partial(self._store.records.has_ended, job_id),
             on_tick=partial(self._lease.renew, job_id),
+            on_reports=ProgressPublisher(self._leases, job_id),
         )
         _, status, usage = os.wait4(work_horse.pid, 0)
         log.debug("job %s: the work-horse ended with %d, %d KiB", job_id, status, usage.ru_maxrss)
@@ -233,8 +238,8 @@ class JobWorker(Worker):  # type: ignore[misc]  # rq is not analysed
         with suppress(MemoryError):  # the limit is for the job
             segcore.warm_up(FIRST)
 
-    def _perform(self, order: Order) -> None:
-        report = ProgressReporter(self._leases, order.job_id)
+    def _perform(self, order: Order, pipe: int) -> None:
+        report = ProgressReports(pipe)
         with about(order.job_id, order.traceparent):
             if order.folder is None:
                 work = perform(self._store, self._settings, order.job_id, report, partial(self._announce, order.job_id))

@@ -1,7 +1,12 @@
-"""Progress of a job: the durations of its stages, and reports to the queue."""
+"""Progress of a job: the durations of its stages, and reports from its work-horse through the worker to the queue.
 
+The work-horse does not wait for Redis: it writes reports to its pipe, and the worker publishes them meanwhile.
+"""
+
+import os
 import time
 from collections.abc import Callable
+from contextlib import suppress
 
 from segcore.progress import STAGES as SEGMENTATION_STAGES
 from worker.jobs.queue.connection import QueueError
@@ -16,28 +21,43 @@ _PAUSE_AFTER_ERROR_S = 5.0  # a report to a Redis that hangs takes 1.8 s; set by
 OnProgress = Callable[[str, float], None]
 
 
-class ProgressReporter:
-    """An ``on_progress`` callback that reports the progress of a job to the queue; errors are ignored.
+class ProgressReports:
+    """An ``on_progress`` callback that writes reports to a pipe, a line each; one for which it has no room is lost.
 
     The beginning of a stage is always reported, progress within it at intervals.
     """
 
+    def __init__(self, pipe: int) -> None:
+        """``pipe`` must not block."""
+        self._pipe = pipe
+        self._stage: str | None = None  # that was reported last
+        self._next_at = 0.0  # for the same stage
+
+    def __call__(self, stage: str, fraction: float) -> None:
+        if stage == self._stage and time.monotonic() < self._next_at:
+            return
+        with suppress(BlockingIOError, BrokenPipeError):
+            os.write(self._pipe, f"{stage} {fraction!r}\n".encode())
+        self._stage, self._next_at = stage, time.monotonic() + _INTERVAL_S
+
+
+class ProgressPublisher:
+    """Publishes what a work-horse has reported; errors of Redis are ignored."""
+
     def __init__(self, queue: JobQueue, job_id: str) -> None:
         self._queue = queue
         self._job_id = job_id
-        self._stage: str | None = None  # that was reported last
-        self._next_at = 0.0  # for the same stage
-        self._paused_until = 0.0  # for any
+        self._paused_until = 0.0
 
-    def __call__(self, stage: str, fraction: float) -> None:
-        if time.monotonic() < (self._next_at if stage == self._stage else self._paused_until):
+    def __call__(self, reports: bytes) -> None:
+        """Publish the last of some reports, as :class:`ProgressReports` writes them."""
+        if time.monotonic() < self._paused_until:
             return
+        stage, fraction = reports.splitlines()[-1].decode().split()
         try:
-            self._queue.publish(self._job_id, Progress(stage, fraction))
-            self._next_at = time.monotonic() + _INTERVAL_S
+            self._queue.publish(self._job_id, Progress(stage, float(fraction)))
         except QueueError:
-            self._next_at = self._paused_until = time.monotonic() + _PAUSE_AFTER_ERROR_S
-        self._stage = stage
+            self._paused_until = time.monotonic() + _PAUSE_AFTER_ERROR_S
 
 
 class StageClock:

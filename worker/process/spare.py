@@ -44,7 +44,7 @@ class WorkHorse:
     """A child process that runs a job, or waits for one."""
 
     pid: int
-    exited: int  # a descriptor that becomes readable when the process has ended
+    pipe: int  # the end to read of a pipe, to which the process writes reports, and which ends with it
 
 
 @dataclass(frozen=True, slots=True)
@@ -60,10 +60,12 @@ class SpareWorkHorse:
     ----------
     begin : called at once in the child process; it limits the process, and ties it to this one.
     prepare : called in the child process if it has time before its order.
-    run : called in the child process with its order.
+    run : called in the child process with its order and the pipe for its reports, which does not block.
     """
 
-    def __init__(self, begin: Callable[[], None], prepare: Callable[[], None], run: Callable[[Order], None]) -> None:
+    def __init__(
+        self, begin: Callable[[], None], prepare: Callable[[], None], run: Callable[[Order, int], None]
+    ) -> None:
         self._begin = begin
         self._prepare = prepare
         self._run = run
@@ -114,25 +116,26 @@ class SpareWorkHorse:
 
     def _fork(self) -> _Waiting:
         orders, given = os.pipe()
-        exited, held = os.pipe()
+        pipe, held = os.pipe()
         try:
             pid = os.fork()
         except OSError:
-            for descriptor in (orders, given, exited, held):
+            for descriptor in (orders, given, pipe, held):
                 os.close(descriptor)
             raise
         if pid == 0:
             os.close(given)
-            os.close(exited)
-            self._live(orders)
+            os.close(pipe)
+            self._live(orders, held)
         os.close(orders)
         os.close(held)
-        return _Waiting(WorkHorse(pid, exited), given)
+        return _Waiting(WorkHorse(pid, pipe), given)
 
-    def _live(self, orders: int) -> NoReturn:
+    def _live(self, orders: int, held: int) -> NoReturn:
         """Wait for an order and run it; the process ends here."""
         status = os.EX_SOFTWARE
         try:
+            os.set_blocking(held, False)
             os.setpgrp()  # signals to the group of the worker do not end it
             _rename(WAITING_NAME)
             self._begin()
@@ -141,7 +144,7 @@ class SpareWorkHorse:
                 _touch_memory()
             text = _read_line(orders)
             _rename(WORKING_NAME)
-            status = exit_status(lambda: self._run(Order(**json.loads(text)))) if text else os.EX_OK
+            status = exit_status(lambda: self._run(Order(**json.loads(text)), held)) if text else os.EX_OK
         finally:
             os._exit(status)
 
@@ -169,10 +172,10 @@ def _rename(name: str) -> None:
 
 
 def _has_ended(work_horse: WorkHorse) -> bool:
-    return bool(select.select([work_horse.exited], [], [], 0)[0])
+    return bool(select.select([work_horse.pipe], [], [], 0)[0])
 
 
 def _reap(work_horse: WorkHorse) -> None:
-    os.close(work_horse.exited)
+    os.close(work_horse.pipe)
     with suppress(ChildProcessError):
         os.waitpid(work_horse.pid, 0)

@@ -32,3 +32,20 @@ def test_a_child_whose_job_was_ended_by_others_is_killed_soon(monkeypatch: pytes
     reason, took_s = watched(monkeypatch, tick_s=0.2, seconds=60, ends_at=0.3)
     assert reason == "ended elsewhere"
     assert took_s < 30
+
+
+def test_reports_are_passed_on_and_ticks_go_on_beside_them(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr("worker.process.watch._TICK_S", 0.2)
+    reader, writer = os.pipe()
+    child = os.fork()
+    if child == 0:
+        for _ in range(20):
+            os.write(writer, b"cut 0.5\n")
+            time.sleep(0.05)
+        os._exit(0)
+    os.close(writer)
+    reports, ticks = bytearray(), []
+    Watch(Settings()).wait(child, reader, lambda: False, lambda: ticks.append(time.monotonic()), reports.extend)
+    os.waitpid(child, 0)
+    assert reports == 20 * b"cut 0.5\n"
+    assert len(ticks) >= 2

@@ -57,7 +57,10 @@ class ObjectStorage(Protocol):
         """
 
     def put_file(self, key: str, path: Path) -> None:
-        """Write or replace an object with the contents of a file; the file may be moved."""
+        """Write or replace an object with the contents of a file; the file may be moved.
+
+        It survives a crash of the machine once another object beside it has been created: what makes it valid.
+        """
 
     def copy(self, key: str, target: str) -> None:
         """Write or replace an object with the contents of another one; a folder shares the bytes of both if it can.

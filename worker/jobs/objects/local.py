@@ -49,7 +49,6 @@ class LocalObjects:
             if error.errno != errno.EXDEV:
                 raise
             _copy_bytes(path, target)
-        sync_folder(target.parent)
 
     def copy(self, key: str, target: str) -> None:
         source, path = self._path(key), self._path(target)
