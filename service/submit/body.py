@@ -48,7 +48,8 @@ async def body_chunks(request: Request, settings: Settings) -> AsyncIterator[byt
     began_at, received, pending = time.monotonic(), 0, bytearray()
     while True:
         try:
-            data = await asyncio.wait_for(anext(stream), settings.upload_idle_s)
+            async with asyncio.timeout(settings.upload_idle_s):
+                data = await anext(stream)
         except TimeoutError:
             raise Problem("too_slow") from None
         except StopAsyncIteration:

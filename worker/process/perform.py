@@ -9,6 +9,7 @@ import segcore
 from cleave.settings import Settings
 from segcore.io import ReadLimits
 from segcore.io.result import write_result
+from segcore.threads import MANY_FACES
 from worker.jobs.attempts import INPUT_LOST
 from worker.jobs.job import Failed, Job, Outcome, Succeeded, now
 from worker.jobs.store.store import JobStore, UnknownJob
@@ -68,7 +69,10 @@ def _fields(work: Work) -> dict[str, object]:
 def segment_stored_mesh(
     store: JobStore, job: Job, limits: ReadLimits, clock: StageClock, threads: int | None = None
 ) -> Outcome:
-    """Segment the mesh of a job and write its result file; expected errors are returned as Failed."""
+    """Segment the mesh of a job and write its result file; expected errors are returned as Failed.
+
+    A thread makes the report meanwhile, unless its memory would add to that of a large segmentation.
+    """
     try:
         clock("reading", 0.0)
         with store.open_mesh(job.id) as source:
@@ -76,15 +80,15 @@ def segment_stored_mesh(
         clock("clean", 0.0)
         surface = segcore.build_surface(mesh)
         parameters = segcore.SegmentationParameters.from_mapping(job.parameters)
-        hierarchy = segcore.segment(mesh, parameters, clock, surface, threads)
+        with ThreadPoolExecutor(1) as beside:
+            report = beside.submit(segcore.mesh_report, mesh, surface) if len(mesh.faces) < MANY_FACES else None
+            hierarchy = segcore.segment(mesh, parameters, clock, surface, threads)
     except segcore.CleaveError as error:
         return Failed(finished_at=now(), code=error.code, message=str(error))
     except FileNotFoundError:
         return Failed(finished_at=now(), code=INPUT_LOST, message="The mesh is no longer in the store: send it again.")
     clock.begin("storing")
-    with ThreadPoolExecutor(1) as beside:  # storing waits for the disk
-        report = beside.submit(segcore.mesh_report, mesh, surface)
-        store.results.write(job.id, lambda target: write_result(target, mesh, hierarchy))
+    store.results.write(job.id, lambda target: write_result(target, mesh, hierarchy))
     return Succeeded(
         finished_at=now(),
         faces=len(mesh.faces),
@@ -92,7 +96,7 @@ def segment_stored_mesh(
         max_segments=hierarchy.max_segments,
         automatic_segments=hierarchy.automatic_segments,
         limit_reached=hierarchy.limit_reached,
-        report=asdict(report.result()),
+        report=asdict(report.result() if report else segcore.mesh_report(mesh, surface)),
     )
 
 

@@ -29,16 +29,20 @@ def replace_file(path: Path, write: Callable[[BinaryIO], object], *, durable: bo
         sync_folder(path.parent)
 
 
-def create_file(path: Path, data: bytes) -> bool:
-    """Write a file unless it exists; return True for the one writer that has created it."""
-    temporary = _write_temporary(path, lambda target: target.write(data))
+def create_file(path: Path, data: bytes, *, durable: bool = True) -> bool:
+    """Write a file unless it exists; return True for the one writer that has created it.
+
+    ``durable`` as in :func:`replace_file`.
+    """
+    temporary = _write_temporary(path, lambda target: target.write(data), durable=durable)
     try:
         os.link(temporary, path)
     except FileExistsError:
         return False
     finally:
         temporary.unlink(missing_ok=True)
-    sync_folder(path.parent)
+    if durable:
+        sync_folder(path.parent)
     return True
 
 

@@ -44,17 +44,15 @@ class ObjectStorage(Protocol):
     def poll_interval_s(self) -> float:
         """Shortest interval at which a caller should poll for a change; 0 if reads are as cheap as those of a file."""
 
-    def create(self, key: str, data: bytes) -> bool:
+    def create(self, key: str, data: bytes, *, durable: bool = True) -> bool:
         """Write an object unless there is one; return True if this call has written the object that is there now.
 
-        Of several concurrent writers of different bytes exactly one gets True.
+        Of several concurrent writers of different bytes exactly one gets True. If it is not ``durable``, it may be
+        empty or absent after a crash of the machine.
         """
 
     def put(self, key: str, data: bytes, *, durable: bool = True) -> None:
-        """Write or replace an object; if it is not ``durable``, it may be empty or absent after a crash of the machine.
-
-        ``sync`` makes it durable afterwards.
-        """
+        """Write or replace an object; ``durable`` as in ``create``, and ``sync`` makes it durable afterwards."""
 
     def put_file(self, key: str, path: Path) -> None:
         """Write or replace an object with the contents of a file; the file may be moved.

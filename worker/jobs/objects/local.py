@@ -26,9 +26,9 @@ class LocalObjects:
     def __init__(self, folder: Path) -> None:
         self._folder = folder
 
-    def create(self, key: str, data: bytes) -> bool:
+    def create(self, key: str, data: bytes, *, durable: bool = True) -> bool:
         path = self._path(key)
-        return self._in_folder(path.parent, lambda: create_file(path, data))
+        return self._in_folder(path.parent, lambda: create_file(path, data, durable=durable), durable=durable)
 
     def put(self, key: str, data: bytes, *, durable: bool = True) -> None:
         path = self._path(key)

@@ -33,7 +33,7 @@ class RemoteObjects:
         self._creates_once = False  # whether check_writable has found so
         spool.mkdir(mode=0o700, parents=True, exist_ok=True)
 
-    def create(self, key: str, data: bytes) -> bool:
+    def create(self, key: str, data: bytes, *, durable: bool = True) -> bool:  # noqa: ARG002
         try:
             with _translated_errors(), _missing_bucket_reported():
                 self._bucket.writes.put(key, data, mode="create", use_multipart=False)

@@ -61,7 +61,7 @@ class JobQueue:
 
     def enqueue(self, job_id: str, size: SizeClass, *, at_front: bool = False) -> None:
         """Add a job to the queue of its size, unless it is waiting already."""
-        with suppress(DuplicateJobError):
+        with suppress(DuplicateJobError), self.connection.pipeline(transaction=False) as afterwards:
             self.entries[size].enqueue(
                 FUNCTION_NAME,
                 job_id,
@@ -70,7 +70,9 @@ class JobQueue:
                 at_front=at_front,
                 job_timeout=_NO_TIMEOUT,
                 result_ttl=0,
+                pipeline=afterwards,  # for the name of the queue; the entry is added by a script of its own
             )
+            afterwards.execute()
 
     def requeue(self, job_id: str, size: SizeClass, *, at_front: bool = False) -> None:
         """Add a job to the queue of its size, in place of any earlier entry of it."""

@@ -91,9 +91,10 @@ class Records:
         return self._attempts_in(self._objects.keys_below(job_folder(job_id)))
 
     def add_attempt(self, job_id: str, worker: str) -> Attempt:
+        """Count one more run. A crash of the machine may undo this, which does not show that the job is at fault."""
         self.require(job_id)
         attempt = Attempt(number=len(self.attempts(job_id)) + 1, worker=worker, started_at=now())
-        while not self._objects.create(_attempt_key(job_id, attempt), ATTEMPT.dump_json(attempt)):
+        while not self._objects.create(_attempt_key(job_id, attempt), ATTEMPT.dump_json(attempt), durable=False):
             attempt = replace(attempt, number=attempt.number + 1)
         self.require(job_id, lambda: self.withdraw_attempt(job_id, attempt))
         return attempt
@@ -144,7 +145,7 @@ class Records:
 
     def _read(self, key: str, adapter: TypeAdapter[Document]) -> Document | None:
         text = self._objects.get(key)
-        return None if text is None else adapter.validate_json(text)
+        return adapter.validate_json(text) if text else None  # an attempt may be empty after a crash of the machine
 
 
 def _attempt_key(job_id: str, attempt: Attempt) -> str:
