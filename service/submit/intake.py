@@ -53,15 +53,20 @@ def accept_job(context: Context, caller: Caller, mesh: ReceivedMesh, wanted: Job
     job = _new_job(context, caller, mesh, wanted)
     if wanted.idempotency_key and context.store.deletions.was_deleted(job.id, caller.owner):
         raise Problem("idempotency_key_spent")
-    try:
-        context.store.accept(job, mesh.upload)
-    except JobExists:
-        return _existing(context, job)
-    with about(job.id, job.traceparent):
-        log.debug("accepted", extra={"fields": {"bytes": job.size_bytes, "owner": job.owner}})
+    shares_result = False
+
+    def begin() -> None:
+        nonlocal shares_result
         shares_result = wanted.may_reuse and context.store.finish_as_before(job)
         if not shares_result:
             _enqueue(context, job)
+
+    with about(job.id, job.traceparent):
+        try:
+            context.store.accept(job, mesh.upload, begin)
+        except JobExists:
+            return _existing(context, job)
+        log.debug("accepted", extra={"fields": {"bytes": job.size_bytes, "owner": job.owner}})
     return Receipt(job, is_new=True, shares_result=shares_result)
 
 

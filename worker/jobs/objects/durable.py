@@ -32,9 +32,9 @@ def replace_file(path: Path, write: Callable[[BinaryIO], object], *, durable: bo
 def create_file(path: Path, data: bytes, *, durable: bool = True) -> bool:
     """Write a file unless it exists; return True for the one writer that has created it.
 
-    ``durable`` as in :func:`replace_file`.
+    If it is not ``durable``, it may be absent after a crash of the machine, but never incomplete.
     """
-    temporary = _write_temporary(path, lambda target: target.write(data), durable=durable)
+    temporary = _write_temporary(path, lambda target: target.write(data))
     try:
         os.link(temporary, path)
     except FileExistsError:

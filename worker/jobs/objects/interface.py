@@ -47,17 +47,17 @@ class ObjectStorage(Protocol):
     def create(self, key: str, data: bytes, *, durable: bool = True) -> bool:
         """Write an object unless there is one; return True if this call has written the object that is there now.
 
-        Of several concurrent writers of different bytes exactly one gets True. If it is not ``durable``, it may be
-        empty or absent after a crash of the machine.
+        Of several concurrent writers of different bytes exactly one gets True. If the object is not ``durable``, it may
+        be absent after a crash of the machine, until ``sync`` was called for it.
         """
 
     def put(self, key: str, data: bytes, *, durable: bool = True) -> None:
-        """Write or replace an object; ``durable`` as in ``create``, and ``sync`` makes it durable afterwards."""
+        """Write or replace an object; one that is not ``durable`` may also be empty after a crash of the machine."""
 
-    def put_file(self, key: str, path: Path) -> None:
-        """Write or replace an object with the contents of a file; the file may be moved.
+    def put_file(self, key: str, path: Path, *, durable: bool = True) -> None:
+        """Write or replace an object with the contents of a file, which may be moved; ``durable`` as in ``put``.
 
-        It survives a crash of the machine once another object beside it has been created: what makes it valid.
+        A durable one may be absent after a crash of the machine until another object is created beside it, durably.
         """
 
     def copy(self, key: str, target: str) -> None:

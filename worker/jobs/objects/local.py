@@ -40,11 +40,12 @@ class LocalObjects:
         if durable:
             sync_folder(path.parent)
 
-    def put_file(self, key: str, path: Path) -> None:
+    def put_file(self, key: str, path: Path, *, durable: bool = True) -> None:
         target = self._path(key)
-        sync_path(path)
+        if durable:
+            sync_path(path)
         try:
-            self._in_folder(target.parent, lambda: os.replace(path, target))
+            self._in_folder(target.parent, lambda: os.replace(path, target), durable=durable)
         except OSError as error:
             if error.errno != errno.EXDEV:
                 raise

@@ -24,7 +24,7 @@ class JobIndex:
         self._version = LayoutVersion(objects)
 
     def add(self, job: Job) -> None:
-        self._objects.put(timeline_key(job.owner, entry_name(job)), b"")
+        self._objects.put(timeline_key(job.owner, entry_name(job)), b"", durable=False)
 
     def remove(self, job: Job) -> None:
         self.remove_entry(job.owner, entry_name(job))

@@ -49,7 +49,7 @@ class PendingJobs:
         self._checked: dict[Marker, float] = {}  # when a marker was found to belong to an unfinished job
 
     def add(self, job: Job) -> None:
-        self._objects.put(marker_key(job), b"")
+        self._objects.put(marker_key(job), b"", durable=False)
         self._listed = (_NEVER, [])
 
     def remove(self, job: Job) -> None:

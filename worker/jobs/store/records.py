@@ -62,8 +62,8 @@ class Records:
             raise UnknownJob(job_id)
 
     def create_job(self, job: Job) -> bool:
-        """Return True if this is now the job of this id, False if there is another one."""
-        return self._objects.create(job_key(job.id, RECORD), JOB.dump_json(job))
+        """Return True if this is now the job of this id, False if there is another one; it is not durable yet."""
+        return self._objects.create(job_key(job.id, RECORD), JOB.dump_json(job), durable=False)
 
     def outcome(self, job_id: str) -> Outcome | None:
         key = job_key(job_id, MANIFEST)
@@ -80,8 +80,8 @@ class Records:
         return self.has_outcome(job_id) or not self.has_job(job_id)
 
     def write_outcome(self, job_id: str, outcome: Outcome) -> Outcome:
-        """Write the outcome of a job unless there is one; return the one that is stored."""
-        self._objects.create(job_key(job_id, MANIFEST), OUTCOME.dump_json(outcome))
+        """Write the outcome of a job unless there is one; return the one that is stored, and may not be durable yet."""
+        self._objects.create(job_key(job_id, MANIFEST), OUTCOME.dump_json(outcome), durable=False)
         standing = self.outcome(job_id)
         self.require(job_id, lambda: self._remove_outcome(job_id))
         return standing or outcome
@@ -145,7 +145,7 @@ class Records:
 
     def _read(self, key: str, adapter: TypeAdapter[Document]) -> Document | None:
         text = self._objects.get(key)
-        return adapter.validate_json(text) if text else None  # an attempt may be empty after a crash of the machine
+        return None if text is None else adapter.validate_json(text)
 
 
 def _attempt_key(job_id: str, attempt: Attempt) -> str:

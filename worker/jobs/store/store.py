@@ -1,7 +1,8 @@
 """The store of the jobs of an installation: the only record of them that counts, in a folder or a bucket.
 
-A job is accepted when its record is created, after everything else that belongs to it, and finished when its manifest
-is created, which only the first writer can do. ``worker.jobs.store.layout`` lists the names of the objects.
+A job can run when its record is created, after everything else that belongs to it, and is finished when its manifest
+is created, which only the first writer can do. Both are on the disk when the method that creates them returns.
+``worker.jobs.store.layout`` lists the names of the objects.
 """
 
 from collections.abc import Callable
@@ -20,7 +21,7 @@ from worker.jobs.store.deletion import Deletions
 from worker.jobs.store.ended import EndedIndex
 from worker.jobs.store.index import JobIndex
 from worker.jobs.store.installation_secret import InstallationSecret
-from worker.jobs.store.layout import MESH, job_key, mesh_name
+from worker.jobs.store.layout import MANIFEST, MESH, job_key, mesh_name
 from worker.jobs.store.outbox import Outbox
 from worker.jobs.store.pages import JobPage, read_page
 from worker.jobs.store.pending import PendingJobs
@@ -63,8 +64,10 @@ class JobStore:
         self.secret = InstallationSecret(objects)
         self._acceptance = Acceptance(objects, self.pending, self.outbox)
 
-    def accept(self, job: Job, upload: MeshUpload) -> None:
+    def accept(self, job: Job, upload: MeshUpload, begin: Callable[[], None] = lambda: None) -> None:
         """Accept a job: once this returns, the job will be finished even if the queue or the power is lost.
+
+        ``begin`` is called as soon as the job can run, before that is so.
 
         Raises
         ------
@@ -72,7 +75,7 @@ class JobStore:
             If there is a job of this id already; it is not changed.
         """
         upload.close()
-        self._acceptance.accept(job, upload.path)
+        self._acceptance.accept(job, upload.path, begin)
 
     def finish_as_before(self, job: Job) -> bool:
         """Give a job the result of an earlier one of its owner with the same mesh, parameters and software, if any.
@@ -115,13 +118,15 @@ class JobStore:
     def finish(self, job_id: str, outcome: Outcome, announce: Callable[[], None] = lambda: None) -> Outcome:
         """Give a job its outcome, unless it has one; return the outcome that it has now.
 
-        ``announce`` is called as soon as the outcome can be read.
+        ``announce`` is called as soon as the outcome can be read. If the machine crashes before this returns, the job
+        may have none again; another run then has the same result.
         """
         job = self.records.job(job_id)
         if job is None:
             raise UnknownJob(job_id)
         standing = self.records.write_outcome(job_id, outcome)
         announce()
+        self.objects.sync([job_key(job_id, MANIFEST)])
         if isinstance(standing, Succeeded):
             with suppress(OSError):  # only an optimisation is lost
                 self.computed.add(job)
