@@ -25,7 +25,7 @@ def main(folder: Path, packages: str) -> int:
         sys.stderr.write(f"{error}\n")
         return MISSING
     state = folder / STATE
-    compile_kernels([FIRST], lambda done: _tell(state, f"compiling, only this once, {done.done / done.count:.0%}"))
+    compile_kernels(FIRST, lambda done: _tell(state, f"compiling, only this once, {done.done / done.count:.0%}"))
     try:
         mesh = segcore.read_mesh(folder / MESH)
         hierarchy = segcore.segment(mesh, on_progress=lambda stage, done: _tell(state, f"{stage} {done:.0%}"))

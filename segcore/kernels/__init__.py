@@ -6,8 +6,17 @@ again with ``python -m segcore.kernels.recording``; ``python -m segcore.kernels`
 """
 
 from segcore.kernels.compilation import compile_kernels, must_compile
-from segcore.kernels.manifest import FIRST, GROUPS
+from segcore.kernels.manifest import FIRST, GROUPS, READ, SEGMENT
 from segcore.kernels.place import CompilationProgress
 from segcore.kernels.processes import environment
 
-__all__ = ["FIRST", "GROUPS", "CompilationProgress", "compile_kernels", "environment", "must_compile"]
+__all__ = [
+    "FIRST",
+    "GROUPS",
+    "READ",
+    "SEGMENT",
+    "CompilationProgress",
+    "compile_kernels",
+    "environment",
+    "must_compile",
+]

@@ -8,9 +8,10 @@ from typing import Any
 
 PATH = Path(__file__).with_name("manifest.json")
 
-FIRST = "segment"  # what every segmentation with the default parameters needs
 # In the order in which they are compiled; :mod:`segcore.kernels.tasks` has a task that needs each.
-GROUPS = (FIRST, "read", "bodies", "fine", "draw", "edit", "solvers")
+GROUPS = ("read", "segment", "bodies", "fine", "draw", "edit", "solvers")
+READ, SEGMENT, *_ = GROUPS
+FIRST = (READ, SEGMENT)  # to read and segment a mesh with the default parameters
 
 
 @dataclass(frozen=True, slots=True)

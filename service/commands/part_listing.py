@@ -13,8 +13,8 @@ from segcore.io import is_result_file, read_result
 from segcore.levels import Fineness
 from segcore.part_list.document import part_list_document
 from service.commands.console import ProgressBar, say
-from service.commands.inputs import STANDARD, input_name, read_input, standard_input
-from service.commands.segment import compile_first_kernels
+from service.commands.inputs import STANDARD, input_name, standard_input
+from service.commands.segment import read_and_compile
 
 if TYPE_CHECKING:
     from segcore.part_list.listing import MeasuredPart
@@ -67,8 +67,7 @@ def _segmented(choices: argparse.Namespace, fineness: Fineness) -> _Chosen:
     if (choices.segments or 0) > parameters.segment_limit:
         parameters = replace(parameters, max_segments=choices.segments)
     with ProgressBar(sys.stderr) as bar:
-        mesh = read_input(choices)
-        compile_first_kernels(bar)
+        mesh = read_and_compile(choices, bar)
         hierarchy = segcore.segment(mesh, parameters, bar)
     return _Chosen(mesh, segcore.Partition(hierarchy.labels(fineness.segments_of(hierarchy))))
 

@@ -3,15 +3,17 @@
 import argparse
 import json
 import sys
+import threading
 from collections.abc import Callable
 from dataclasses import replace
+from importlib import import_module
 from pathlib import Path
 from typing import BinaryIO
 
 import segcore
 from segcore.io.labels import hierarchy_document, write_seg
 from segcore.io.result import write_result
-from segcore.kernels import FIRST, compile_kernels, must_compile
+from segcore.kernels import FIRST, READ, compile_kernels, must_compile
 from segcore.levels import Fineness
 from segcore.report import StructureCounts, structure_counts, structure_note
 from service.commands.arguments import add_level, add_parameters, add_structure
@@ -27,6 +29,8 @@ from service.commands.outputs import (
     write_model,
 )
 from service.commands.summary import level_lines, part_lines
+
+_POLL_S = 0.05  # of the kernels of the readers
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
@@ -66,8 +70,7 @@ def run(choices: argparse.Namespace) -> None:
     options = output_options(choices, None if choices.mesh == STANDARD else choices.mesh)
     with ProgressBar(sys.stderr) as bar:
         bar("read", 0.0)
-        mesh = read_input(choices)
-        compile_first_kernels(bar)
+        mesh = read_and_compile(choices, bar)
         surface = segcore.build_surface(mesh)
         hierarchy = segcore.segment(mesh, parameters, bar, surface, choices.threads)
         segments = fineness.segments_of(hierarchy)
@@ -82,13 +85,34 @@ def run(choices: argparse.Namespace) -> None:
     tell_written(tell, outputs)
 
 
-def compile_first_kernels(bar: ProgressBar) -> None:
-    """Compile what every segmentation needs, at the first use; without a terminal one line says so."""
-    if not must_compile([FIRST]):
-        return
+def read_and_compile(choices: argparse.Namespace, bar: ProgressBar) -> segcore.Mesh:
+    """Read the mesh file of a command; at the first use, compile meanwhile what every segmentation needs.
+
+    The kernels of the readers are compiled first, and awaited. Without a terminal one line says so. If the file cannot
+    be read, the compilation ends with the process.
+    """
+    if not must_compile(FIRST):
+        return read_input(choices)
     if not sys.stderr.isatty():
         say_beside("Compiling the kernels, which takes up to half a minute and is done once.")
-    compile_kernels([FIRST], lambda progress: bar(str(progress), progress.done / progress.count))
+    errors: list[OSError] = []
+
+    def compile_first() -> None:
+        try:
+            compile_kernels(FIRST, lambda progress: bar(str(progress), progress.done / progress.count))
+        except OSError as error:
+            errors.append(error)
+
+    compilation = threading.Thread(target=compile_first, daemon=True)
+    compilation.start()
+    while compilation.is_alive() and must_compile([READ]):
+        compilation.join(_POLL_S)
+    mesh = read_input(choices)
+    import_module("segcore.method")  # needed next
+    compilation.join()
+    if errors:
+        raise errors[0]
+    return mesh
 
 
 def _parameters(choices: argparse.Namespace) -> segcore.SegmentationParameters:

@@ -20,7 +20,7 @@ from segcore import CleaveError, Partition
 from segcore.edit.operations import apply_all
 from segcore.edit.tools import PartFinder, Tools
 from segcore.io import Segmentation, decode_partition, encode_partition
-from segcore.kernels import FIRST, compile_kernels
+from segcore.kernels import SEGMENT, compile_kernels
 from service.edit.messages import Message, read_message, write_message
 from service.edit.parts import parts_of
 from service.result_cache import ResultCache
@@ -101,7 +101,7 @@ def main(guide_of: GuideOf = guide_of) -> None:
     os.dup2(2, 1)  # whatever prints does not disturb the answers
     settings = Settings.model_validate(read_message(source).document)
     configure_logging(settings.log_level, settings.log_format, "editor")
-    compile_kernels([FIRST, "edit"])
+    compile_kernels([SEGMENT, "edit"])
     own_limits = {"job_memory_bytes": settings.edit_memory_bytes, "job_cpu_s": _UNLIMITED_CPU_S}
     limit_resources(settings.model_copy(update=own_limits))
     editor = Editor(open_store(settings), settings, guide_of)

@@ -19,7 +19,7 @@ from worker.jobs.queue.connection import QueueError
 log = logging.getLogger("cleave.worker")
 
 # Groups of which many jobs need kernels; edits run in processes of their own.
-_OTHERS = ("read", "bodies", "fine", "draw")
+_OTHERS = ("bodies", "fine", "draw")
 _LOG_INTERVAL_S = 5.0  # set by hand
 _PAUSE_S = 2.0  # after an error of Redis, which may not be ready yet; set by hand
 
@@ -37,9 +37,9 @@ class WorkerKernels:
 
     def load_first(self) -> None:
         """Load what every job needs; if the other kernels must be compiled, begin that in a process of low priority."""
-        compile_kernels([FIRST], self._report)
+        compile_kernels(FIRST, self._report)
         self._report.end()
-        segcore.warm_up(FIRST)
+        segcore.warm_up(*FIRST)
         load_readers()
         if must_compile():
             self._compiling = _start_compiling()

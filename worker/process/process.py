@@ -25,7 +25,7 @@ from cleave.logs import about, configure_logging, current_traceparent, rename_pr
 from cleave.parent_death import die_with_parent
 from cleave.settings import Settings, load_settings
 from cleave.trace import Trace, parse_traceparent
-from segcore.kernels import FIRST
+from segcore.kernels import SEGMENT
 from worker.jobs.attempts import Attempt
 from worker.jobs.queue.connection import QueueError, close_inherited, connect, connect_with_retries
 from worker.jobs.queue.counters import JobCounters
@@ -236,7 +236,7 @@ class JobWorker(Worker):  # type: ignore[misc]  # rq is not analysed
         with suppress(QueueError):
             self._leases.connection.ping()  # which connects
         with suppress(MemoryError):  # the limit is for the job
-            segcore.warm_up(FIRST)
+            segcore.warm_up(SEGMENT)
 
     def _perform(self, order: Order, pipe: int) -> None:
         report = ProgressReports(pipe)

@@ -6,7 +6,7 @@ import sys
 
 import pytest
 
-from segcore.kernels.manifest import FIRST, GROUPS, PATH, kernels
+from segcore.kernels.manifest import GROUPS, PATH, SEGMENT, kernels
 from segcore.kernels.signatures import named
 
 _RECORD = """
@@ -40,8 +40,8 @@ def test_the_list_is_what_the_tasks_of_each_group_call() -> None:
     assert answer(_RECORD) == json.loads(PATH.read_text())
 
 
-def test_a_segmentation_with_the_default_parameters_calls_kernels_of_the_first_group_alone() -> None:
-    first = [[kernel.place, kernel.arguments] for kernel in kernels() if kernel.group == FIRST]
+def test_a_segmentation_with_the_default_parameters_calls_kernels_of_its_group_alone() -> None:
+    first = [[kernel.place, kernel.arguments] for kernel in kernels() if kernel.group == SEGMENT]
     called = answer(_SEGMENT)
     assert called
     assert [kernel for kernel in called if kernel not in first] == []

@@ -1,11 +1,13 @@
 """`cleave segment`: the summary and the outputs are those of the library."""
 
+import errno
 import io
 import json
 import os
 import subprocess
 import sys
-from collections.abc import Callable
+import threading
+from collections.abc import Callable, Sequence
 from pathlib import Path
 
 import pytest
@@ -13,7 +15,7 @@ import pytest
 import segcore
 from helpers.files.samples import TWO_SQUARES
 from segcore.io.result import read_result, write_result
-from segcore.kernels import CompilationProgress
+from segcore.kernels import FIRST, CompilationProgress
 from service.commands.main import main
 
 
@@ -134,13 +136,13 @@ def test_a_pipe_that_is_closed_early_is_no_error(mesh: Path, tmp_path: Path) -> 
 def test_a_compilation_is_announced_by_a_line_or_shown_on_a_terminal(
     mesh: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    def compile_kernels(_: list[str], on_progress: Callable[[CompilationProgress], object]) -> None:
+    def compile_kernels(_: tuple[str, ...], on_progress: Callable[[CompilationProgress], object]) -> None:
         on_progress(CompilationProgress(14, 52))
 
     monkeypatch.setattr("service.commands.segment.must_compile", lambda _: False)
     assert main(["segment", str(mesh)]) == 0
     assert capsys.readouterr().err == ""
-    monkeypatch.setattr("service.commands.segment.must_compile", lambda _: True)
+    monkeypatch.setattr("service.commands.segment.must_compile", lambda groups: groups == FIRST)
     monkeypatch.setattr("service.commands.segment.compile_kernels", compile_kernels)
     assert main(["segment", str(mesh)]) == 0
     assert capsys.readouterr().err == "Compiling the kernels, which takes up to half a minute and is done once.\n"
@@ -149,3 +151,38 @@ def test_a_compilation_is_announced_by_a_line_or_shown_on_a_terminal(
     errors = capsys.readouterr().err
     assert "compiling, once: 14 of 52" in errors
     assert "half a minute" not in errors
+
+
+def test_a_file_that_cannot_be_read_is_reported_while_the_kernels_of_segmentations_are_compiled(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    reported, has_readers = threading.Event(), False
+
+    def must_compile(groups: Sequence[str]) -> bool:
+        return "segment" in groups or not has_readers
+
+    def compile_kernels(groups: Sequence[str], _: object) -> None:
+        nonlocal has_readers
+        assert list(groups) == ["read", "segment"]
+        has_readers = True
+        assert reported.wait(60)
+
+    monkeypatch.setattr("service.commands.segment.must_compile", must_compile)
+    monkeypatch.setattr("service.commands.segment.compile_kernels", compile_kernels)
+    bad = tmp_path / "bad.off"
+    bad.write_text("OFF 3 1 0\n0 0 0\n")
+    assert main(["segment", str(bad)]) == 1
+    reported.set()
+    assert "it is cut short" in capsys.readouterr().err
+
+
+def test_a_compilation_that_cannot_write_ends_the_command(
+    mesh: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    def compile_kernels(*_: object) -> None:
+        raise OSError(errno.ENOSPC, "No space left on device")
+
+    monkeypatch.setattr("service.commands.segment.must_compile", lambda _: True)
+    monkeypatch.setattr("service.commands.segment.compile_kernels", compile_kernels)
+    assert main(["segment", str(mesh)]) != 0
+    assert "No space left on device" in capsys.readouterr().err
