@@ -171,7 +171,7 @@ def test_a_file_that_cannot_be_read_is_reported_while_the_kernels_of_segmentatio
     monkeypatch.setattr("service.commands.segment.compile_kernels", compile_kernels)
     bad = tmp_path / "bad.off"
     bad.write_text("OFF 3 1 0\n0 0 0\n")
-    assert main(["segment", str(bad)]) == 1
+    assert main(["segment", str(bad)]) == 2
     reported.set()
     assert "it is cut short" in capsys.readouterr().err
 
