@@ -2,6 +2,7 @@
 
 import os
 import signal
+import time
 
 from helpers.jobs import SMALL, accepted, sphere
 from helpers.processes import StartWorker, is_alive, spares_of
@@ -21,6 +22,17 @@ def perform(store, settings, job_id, *_):
     store.finish(job_id, Failed(finished_at=now(), code="internal_error", message=f"{os.getpid()} {' '.join(ran)}"))
 process.perform = perform
 process.main()
+"""
+# Cannot segment a small mesh in a child process, for example because of its limit on memory.
+_NOT_PREPARED = f"""
+import os, segcore
+parent, warm_up = os.getpid(), segcore.warm_up
+def in_parent_alone(*groups):
+    if os.getpid() != parent:
+        raise MemoryError
+    warm_up(*groups)
+segcore.warm_up = in_parent_alone
+{_PROGRAM}
 """
 
 
@@ -78,3 +90,12 @@ def test_a_spare_that_is_killed_costs_no_attempt_and_none_outlives_its_worker(
     stopped.send_signal(signal.SIGTERM)
     assert stopped.wait(30) == 0
     assert not is_alive(left)
+
+
+def test_a_spare_that_cannot_be_prepared_runs_its_job(
+    start_worker: StartWorker, store: JobStore, queue: JobQueue
+) -> None:
+    worker = start_worker(program=("-c", _NOT_PREPARED))
+    spare = the_spare(worker.pid)
+    time.sleep(0.5)  # more than it waits for a job before it prepares
+    assert run(store, queue)[0] == spare
