@@ -37,7 +37,7 @@ class ProgressReports:
         if stage == self._stage and time.monotonic() < self._next_at:
             return
         with suppress(BlockingIOError, BrokenPipeError):
-            os.write(self._pipe, f"{stage} {fraction!r}\n".encode())
+            os.write(self._pipe, f"{stage} {float(fraction)!r}\n".encode())
         self._stage, self._next_at = stage, time.monotonic() + _INTERVAL_S
 
 

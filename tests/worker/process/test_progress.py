@@ -4,6 +4,7 @@ import os
 import select
 from collections.abc import Iterator
 
+import numpy as np
 import pytest
 
 from helpers.waiting import wait_until
@@ -37,7 +38,7 @@ def pipe() -> Iterator[tuple[int, int]]:
 def test_every_stage_is_reported_and_progress_within_one_a_few_times_a_second(pipe: tuple[int, int]) -> None:
     reader, writer = pipe
     report = ProgressReports(writer)
-    report("clean", 0.1)
+    report("clean", np.float64(0.1))
     report("coarsen", 0.2)
     report("coarsen", 0.25)
     assert os.read(reader, 1000) == b"clean 0.1\ncoarsen 0.2\n"
