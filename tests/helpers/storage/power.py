@@ -21,6 +21,10 @@ class Disk:
 
         monkeypatch.setattr(os, "fsync", recording)
 
+    def has_bytes(self, path: Path) -> bool:
+        """Whether the bytes of a file are on the disk, whatever its names."""
+        return self._bytes.get(path.stat().st_ino) == path.read_bytes()
+
     def leave(self, folder: Path, target: Path) -> Path:
         """Copy what is left of a folder, which existed before, to a new one and return that."""
         target.mkdir(parents=True)

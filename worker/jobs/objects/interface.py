@@ -54,10 +54,11 @@ class ObjectStorage(Protocol):
     def put(self, key: str, data: bytes, *, durable: bool = True) -> None:
         """Write or replace an object; one that is not ``durable`` may also be empty after a crash of the machine."""
 
-    def put_file(self, key: str, path: Path, *, durable: bool = True) -> None:
-        """Write or replace an object with the contents of a file, which may be moved; ``durable`` as in ``put``.
+    def put_file(self, key: str, path: Path) -> None:
+        """Write or replace an object with the contents of a file, which may be moved.
 
-        A durable one may be absent after a crash of the machine until another object is created beside it, durably.
+        After a crash of the machine it may be absent, but not incomplete, until ``sync`` was called for it or for
+        another object beside it.
         """
 
     def copy(self, key: str, target: str) -> None:

@@ -40,12 +40,11 @@ class LocalObjects:
         if durable:
             sync_folder(path.parent)
 
-    def put_file(self, key: str, path: Path, *, durable: bool = True) -> None:
+    def put_file(self, key: str, path: Path) -> None:
         target = self._path(key)
-        if durable:
-            sync_path(path)
+        sync_path(path)
         try:
-            self._in_folder(target.parent, lambda: os.replace(path, target), durable=durable)
+            self._in_folder(target.parent, lambda: os.replace(path, target), durable=False)
         except OSError as error:
             if error.errno != errno.EXDEV:
                 raise

@@ -45,7 +45,7 @@ class RemoteObjects:
         with _translated_errors(), _missing_bucket_reported():
             self._bucket.writes.put(key, data, use_multipart=False)
 
-    def put_file(self, key: str, path: Path, *, durable: bool = True) -> None:  # noqa: ARG002
+    def put_file(self, key: str, path: Path) -> None:
         path.stat()  # a FileNotFoundError below then means that there is no bucket
         with _translated_errors(), _missing_bucket_reported():
             self._bucket.transfers.put(key, path)

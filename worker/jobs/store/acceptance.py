@@ -62,7 +62,7 @@ class Acceptance:
     def _prepare(self, job: Job, mesh: Path) -> None:
         """Write everything but the record; the marker comes first, so that the rest can be found after a crash."""
         self._pending.add(job)
-        self._objects.put_file(job_key(job.id, mesh_name(job)), mesh, durable=False)
+        self._objects.put_file(job_key(job.id, mesh_name(job)), mesh)
         self._index.add(job)
         if job.webhook_url is not None:
             self._outbox.put(job.id, Delivery())

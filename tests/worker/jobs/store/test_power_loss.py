@@ -55,6 +55,9 @@ def accept(store: JobStore, job: Job, disk: Disk | None = None, folder: Path | N
         assert store.records.job(job.id) == job
         if disk is not None and folder is not None:
             assert unfinished(after_crash(disk, folder, "begun")) == {}
+            files = [one for one in (folder / "jobs" / job.id).iterdir() if one.is_file()]
+            assert len(files) == 2  # of which any may have kept its name
+            assert all(map(disk.has_bytes, files))
 
     with store.spool.begin_upload() as upload:
         upload.write(b"mesh")
