@@ -1,4 +1,4 @@
-"""Rows for the split models and the forest: for cuts, the share of the separated pairs of points that people join."""
+"""Rows for the models of splits and of the order: for cuts, the share of separated pairs that people join."""
 
 from __future__ import annotations
 

@@ -12,7 +12,7 @@ import numpy as np
 from bench.learning.boundaries import boundary_rows
 from bench.learning.fitting import fit
 from bench.learning.folds import Fold, apply_unseen, with_unseen
-from bench.learning.forests import grow_forest
+from bench.learning.processes import fit_process
 from bench.learning.rows import concatenated
 from bench.learning.splits import cut_rows, split_rows
 from bench.pool import OF_SEGMENTATIONS, map_in_processes
@@ -26,7 +26,8 @@ from segcore.learned.models import LearnedModels
 
 if TYPE_CHECKING:
     from bench.learning.examples import Example
-    from bench.learning.rows import Rows
+    from bench.learning.processes import fit_process
+from bench.learning.rows import Rows
 
 Grouping = Literal["category", "fifth"]
 
@@ -36,9 +37,9 @@ _SPLIT_RIDGE = 1e-2
 _BODIES_RIDGE = 3e-2  # of the model for surfaces of several bodies, of which there are fewer kinds
 _ROUNDS = 2  # of growing trees and fitting to them, because the fitted rule grows other trees
 
-# On the weights of assets in the forest: with it a set counts as much as 10 models of the benchmark. That does not make
-# the forest worse on the benchmark, as it does the logistic models. Set by hand.
-_ASSETS_IN_FOREST = 4.0
+# On the weights of assets in the model of the order: a set counts as much as 10 models of the benchmark. That does not
+# make it worse on the benchmark, as it does the logistic models. Set by hand.
+_ASSETS_IN_ORDER = 4.0
 
 # Of meshes of one body in the model for several bodies, beside the others: they are most of the meshes. Set by hand.
 _ONE_BODY_WEIGHT = 0.1
@@ -51,8 +52,8 @@ def train(meshes: Sequence[Example], grouping: Grouping, jobs: int) -> list[Fold
     """Learn from all meshes, and for every group of meshes from all others.
 
     The tree of a mesh is grown with a boundary model that was learned without its group. Otherwise the trees of the
-    training would be better than those of new meshes. The forest is grown last, from the trees that the other models
-    give on meshes without whose group they were learned.
+    training would be better than those of new meshes. The model of the order is fitted last, to the trees that the
+    other models give on meshes without whose group they were learned.
 
     Returns
     -------
@@ -73,8 +74,8 @@ def train(meshes: Sequence[Example], grouping: Grouping, jobs: int) -> list[Fold
         cuts = map_in_processes(partial(apply_unseen, cut_rows), with_unseen(meshes, _documents(folds)), jobs, _WARM_UP)
         folds = [replace(fold, models=_with_splits(fold.models, _seen(meshes, cuts, fold.left_out))) for fold in folds]
     splits = map_in_processes(partial(apply_unseen, split_rows), with_unseen(meshes, _documents(folds)), jobs, _WARM_UP)
-    seen = [_seen(meshes, splits, fold.left_out, _ASSETS_IN_FOREST) for fold in folds]
-    orders = map_in_processes(grow_forest, seen, jobs, _WARM_UP)
+    seen = [_seen(meshes, splits, fold.left_out, _ASSETS_IN_ORDER) for fold in folds]
+    orders = map_in_processes(fit_process, seen, jobs, _WARM_UP)
     return [replace(fold, models=replace(fold.models, order=order)) for fold, order in zip(folds, orders, strict=True)]
 
 

@@ -250,7 +250,7 @@ class LearnedRule:
         kept = np.array([split.priority for split in splits])
         if self._order is None or not splits:
             return kept
-        again = self._order.mean(order_features(kept, np.array([split.features for split in splits])))
+        again = self._order.estimate(order_features(kept, np.array([split.features for split in splits])))
         again = np.where([split.late for split in splits], np.maximum(again, MOST_KEPT), again)
         return np.where(kept > 1.0, kept, again)  # beyond 1: of a step that is not complete
 
