@@ -17,6 +17,7 @@ if TYPE_CHECKING:
     from segcore.arrays import FloatArray, IntArray
     from segcore.clean.surface import Surface
 
+_DIGITS = 6  # of a distance over the extent: images that agree in these are equally near
 _COPLANAR = math.radians(1)  # largest angle between faces that count as coplanar; set by hand
 
 
@@ -45,8 +46,8 @@ def mirror_disagreement(centres: FloatArray, area: FloatArray, label: IntArray) 
     """1 - Rand, by area, of a segmentation against its own mirror image; 0 for a symmetric one.
 
     The plane of the reflection is perpendicular to the x, y or z axis, in the middle of the bounding box of the
-    centres: of the three the one in which the shape is most symmetric. The mirror image of a face has the label of the
-    face with the nearest centre.
+    centres: of the three the one in which the shape is most symmetric, the first of equal ones. The mirror image of a
+    face has the label of the face with the nearest centre.
 
     Parameters
     ----------
@@ -55,5 +56,6 @@ def mirror_disagreement(centres: FloatArray, area: FloatArray, label: IntArray) 
     middle = (centres.min(axis=0) + centres.max(axis=0)) / 2
     tree = KDTree(centres)
     images = [tree.query(np.where(np.arange(3) == axis, 2 * middle - centres, centres)) for axis in range(3)]
-    _, nearest = min(images, key=lambda image: float(np.dot(image[0], area)))
+    size = float(np.ptp(centres, axis=0).max() * area.sum()) or 1.0
+    _, nearest = min(images, key=lambda image: round(float(np.dot(image[0], area)) / size, _DIGITS))
     return one_minus_rand(Reference(label[nearest].astype(np.int64), area).shared_areas(label))
