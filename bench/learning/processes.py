@@ -8,11 +8,11 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from bench.learning.fitting import LEAST_SCALE, fit, rounded
-from bench.learning.rows import Rows
 from segcore.cut.rules import ORDER_FEATURES
 from segcore.learned.gaussian_process import GaussianProcess, quantised, similarities
 
 if TYPE_CHECKING:
+    from bench.learning.rows import Rows
     from segcore.arrays import FloatArray
 
 # Set by hand; see bench/RESULTS.md, "Authored assets": their neighbours make no difference beyond noise.
@@ -33,7 +33,7 @@ def fit_process(rows: Rows, seed: int = 0) -> GaussianProcess | None:
     if len(rows.target) == 0:
         return None
     names = ORDER_FEATURES
-    trend = fit(_TREND, _columns(rows, [names.index(name) for name in _TREND]), _TREND_RIDGE)
+    trend = fit(_TREND, rows.columns([names.index(name) for name in _TREND]), _TREND_RIDGE)
     weight = rows.weight / rows.weight.sum()
     mean = rounded(np.einsum("i,ij->j", weight, rows.features))
     deviation = np.sqrt(np.einsum("i,ij->j", weight, (rows.features - mean) ** 2))
@@ -59,7 +59,3 @@ def _solved(basis: FloatArray, between: FloatArray, left: FloatArray, weight: Fl
     equations = (basis * weight[:, None]).T @ basis + _NOISE * between + _JITTER * np.eye(len(between))
     solution = np.linalg.solve(equations, basis.T @ (weight * left))
     return rounded(solution.astype(np.float64, copy=False))
-
-
-def _columns(rows: Rows, columns: list[int]) -> Rows:
-    return Rows(rows.features[:, columns], rows.target, rows.weight)

@@ -24,6 +24,10 @@ class Rows:
         """Return the rows for which (N,) ``chosen`` is True."""
         return Rows(self.features[chosen], self.target[chosen], self.weight[chosen])
 
+    def columns(self, chosen: Sequence[int]) -> Rows:
+        """Return the rows with some of the features alone."""
+        return Rows(self.features[:, list(chosen)], self.target, self.weight)
+
 
 def concatenated(tables: Sequence[Rows]) -> Rows:
     """Return the rows of all tables in one, in double precision."""

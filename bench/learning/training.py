@@ -26,8 +26,7 @@ from segcore.learned.models import LearnedModels
 
 if TYPE_CHECKING:
     from bench.learning.examples import Example
-    from bench.learning.processes import fit_process
-from bench.learning.rows import Rows
+    from bench.learning.rows import Rows
 
 Grouping = Literal["category", "fifth"]
 
@@ -100,7 +99,7 @@ def _with_splits(models: LearnedModels, rows: Rows) -> LearnedModels:
 
 
 def _columns(rows: Rows, names: Sequence[str]) -> Rows:
-    return replace(rows, features=rows.features[:, [CUT_FEATURES.index(name) for name in names]])
+    return rows.columns([CUT_FEATURES.index(name) for name in names])
 
 
 def _groups(meshes: Sequence[Example], grouping: Grouping) -> dict[str, frozenset[int | str]]:

@@ -61,8 +61,9 @@ class GaussianProcess:
         """(N,) in 0..1 for features (N, M)."""
         columns = [self.names.index(name) for name in self.trend.names]
         trend = self.trend.probability(np.ascontiguousarray(features[:, columns]))
-        correction = similarities(self.scaled(features), self.scaled_centres()) @ self.weight
-        return np.clip(trend + correction, 0.0, 1.0)
+        correction = similarities(self.scaled(features), self.scaled_centres()) * self.weight
+        # The sum does not depend on the number of threads, as a product of matrices would.
+        return np.clip(trend + correction.sum(axis=1), 0.0, 1.0)
 
     def scaled(self, features: FloatArray) -> FloatArray:
         """(N, M) features over the length scale."""
