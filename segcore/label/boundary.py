@@ -149,7 +149,8 @@ class _Drawing:
         return broken
 
     def _move(self, faces: IntArray, places: IntArray) -> None:
-        move(faces, places, self._placement, self._graph.rows)
+        # Arrays in one order, so that the kernel is compiled once.
+        move(np.ascontiguousarray(faces), np.ascontiguousarray(places), self._placement, self._graph.rows)
 
     def _remember(self, edges: IntArray) -> None:
         """Add edges to the lists of the splits that they cross now."""

@@ -10,10 +10,9 @@ import numpy.typing as npt
 
 from segcore.arrays import FloatArray
 from segcore.jit.decorators import kernel
-from segcore.learned.logistic import LogisticModel
+from segcore.learned.logistic import CLIP, LogisticModel
 
-_CLIP = 4.0  # standard deviations at which features are clipped: a limit on extrapolation, set by hand
-_STEP = _CLIP / 127.0  # of the stored centres, in standard deviations
+_STEP = CLIP / 127.0  # of the stored centres, in standard deviations
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -66,9 +65,8 @@ class GaussianProcess:
         return np.clip(trend + correction.sum(axis=1), 0.0, 1.0)
 
     def scaled(self, features: FloatArray) -> FloatArray:
-        """(N, M) features over the length scale."""
-        scaled: FloatArray = np.clip((features - self.mean) / self.scale, -_CLIP, _CLIP) / self.length
-        return scaled
+        """(N, M) features over the length scale, in one order in memory, so that the kernel is compiled once."""
+        return np.ascontiguousarray(np.clip((features - self.mean) / self.scale, -CLIP, CLIP) / self.length)
 
     def scaled_centres(self) -> FloatArray:
         """(C, M) the centres over the length scale."""
@@ -77,7 +75,7 @@ class GaussianProcess:
 
 def quantised(standardised: FloatArray) -> npt.NDArray[np.int8]:
     """(N, M) features in standard deviations as centres are stored."""
-    return np.rint(np.clip(standardised, -_CLIP, _CLIP) / _STEP).astype(np.int8)
+    return np.rint(np.clip(standardised, -CLIP, CLIP) / _STEP).astype(np.int8)
 
 
 @kernel

@@ -9,7 +9,7 @@ import numpy as np
 from segcore.arrays import FloatArray
 from segcore.jit.decorators import kernel
 
-_CLIP = 4.0  # standard deviations at which features are clipped: a limit on extrapolation, set by hand
+CLIP = 4.0  # standard deviations at which features are clipped: a limit on extrapolation, set by hand
 _HINGE = 1.0  # standard deviations at which the hinges begin; set by hand
 
 
@@ -62,7 +62,7 @@ class LogisticArrays(NamedTuple):
 
 def basis(standardised: FloatArray) -> FloatArray:
     """(N, 4 M) z, z^2, max(0, z - 1) and max(0, -z - 1) of features (N, M) in standard deviations, z clipped at +-4."""
-    z = np.clip(standardised, -_CLIP, _CLIP)
+    z = np.clip(standardised, -CLIP, CLIP)
     return np.concatenate([z, z * z, np.maximum(z - _HINGE, 0.0), np.maximum(-z - _HINGE, 0.0)], axis=1)
 
 
@@ -77,7 +77,7 @@ def write_probabilities(columns, model, probability):  # type: ignore[no-untyped
         mean, scale = model.mean[j], model.scale[j]
         a, b, c, d = model.weight[0, j], model.weight[1, j], model.weight[2, j], model.weight[3, j]
         for i in range(len(probability)):
-            z = min(max((columns[j, i] - mean) / scale, -_CLIP), _CLIP)
+            z = min(max((columns[j, i] - mean) / scale, -CLIP), CLIP)
             score = probability[i] + (a * z + b * z * z)
             probability[i] = score + (c * max(z - _HINGE, 0.0) + d * max(-z - _HINGE, 0.0))
     for i in range(len(probability)):

@@ -3,7 +3,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from segcore.learned.gaussian_process import GaussianProcess, quantised
+from segcore.learned.gaussian_process import GaussianProcess, quantised, similarities
 from segcore.learned.logistic import LogisticModel
 
 
@@ -48,6 +48,13 @@ def test_a_document_contains_the_whole_process():
     rows = np.random.default_rng(0).normal(size=(20, 2))
     np.testing.assert_array_equal(again.estimate(rows), process().estimate(rows))
     assert again.document() == process().document()
+
+
+def test_the_kernel_is_compiled_once_whatever_the_order_of_the_rows_in_memory():
+    rows = np.random.default_rng(0).normal(size=(3, 2))
+    for given in (rows, np.asfortranarray(rows), rows[:1], np.asfortranarray(rows)[:1]):
+        process().estimate(given)
+    assert len(similarities.signatures) == 1
 
 
 def test_no_rows_have_no_estimates():
