@@ -54,15 +54,20 @@ def fit(names: tuple[str, ...], rows: Rows, ridge: float) -> LogisticModel:
     The model, its numbers rounded to five significant digits so that they are the same on every machine.
     """
     weight = rows.weight / rows.weight.sum()
-    mean = rounded(np.einsum("i,ij->j", weight, rows.features))
-    deviation = np.sqrt(np.einsum("i,ij->j", weight, (rows.features - mean) ** 2))
-    scale = rounded(np.maximum(deviation, LEAST_SCALE))
+    mean, scale = mean_and_scale(rows.features, weight)
     columns = basis((rows.features - mean) / scale)
     columns = np.concatenate([columns, np.ones((len(columns), 1))], axis=1)
     penalty = np.full(columns.shape[1], ridge)
     penalty[-1] = 0.0
     solution = rounded(_minimise(_Problem(columns, rows.target, weight, penalty)))
     return LogisticModel(names, mean, scale, solution[:-1], float(solution[-1]))
+
+
+def mean_and_scale(features: FloatArray, weight: FloatArray) -> tuple[FloatArray, FloatArray]:
+    """(M,) weighted means of features (N, M), and their standard deviations, both rounded; the weights sum to 1."""
+    mean = rounded(np.einsum("i,ij->j", weight, features))
+    deviation = np.sqrt(np.einsum("i,ij->j", weight, (features - mean) ** 2))
+    return mean, rounded(np.maximum(deviation, LEAST_SCALE))
 
 
 def _minimise(problem: _Problem) -> FloatArray:

@@ -12,7 +12,7 @@ import numpy as np
 from bench.learning.boundaries import boundary_rows
 from bench.learning.fitting import fit
 from bench.learning.folds import Fold, apply_unseen, with_unseen
-from bench.learning.processes import fit_process
+from bench.learning.gaussian_process import fit_gaussian_process
 from bench.learning.rows import concatenated
 from bench.learning.splits import cut_rows, split_rows
 from bench.pool import OF_SEGMENTATIONS, map_in_processes
@@ -74,7 +74,7 @@ def train(meshes: Sequence[Example], grouping: Grouping, jobs: int) -> list[Fold
         folds = [replace(fold, models=_with_splits(fold.models, _seen(meshes, cuts, fold.left_out))) for fold in folds]
     splits = map_in_processes(partial(apply_unseen, split_rows), with_unseen(meshes, _documents(folds)), jobs, _WARM_UP)
     seen = [_seen(meshes, splits, fold.left_out, _ASSETS_IN_ORDER) for fold in folds]
-    orders = map_in_processes(fit_process, seen, jobs, _WARM_UP)
+    orders = map_in_processes(fit_gaussian_process, seen, jobs, _WARM_UP)
     return [replace(fold, models=replace(fold.models, order=order)) for fold, order in zip(folds, orders, strict=True)]
 
 

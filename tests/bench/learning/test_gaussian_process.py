@@ -4,7 +4,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from bench.learning.processes import CENTRES, fit_process
+from bench.learning.gaussian_process import CENTRES, fit_gaussian_process
 from bench.learning.rows import Rows
 from segcore.cut.rules import ORDER_FEATURES
 from segcore.learned.gaussian_process import GaussianProcess, similarities
@@ -20,7 +20,7 @@ def rows(count: int) -> Rows:
 
 
 def fitted(table: Rows) -> GaussianProcess:
-    process = fit_process(table)
+    process = fit_gaussian_process(table)
     assert process is not None
     return process
 
@@ -51,4 +51,4 @@ def test_with_a_centre_at_every_row_it_is_the_posterior_mean() -> None:
 
 
 def test_no_rows_give_no_process() -> None:
-    assert fit_process(rows(0)) is None
+    assert fit_gaussian_process(rows(0)) is None

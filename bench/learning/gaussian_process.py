@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from bench.learning.fitting import LEAST_SCALE, fit, rounded
+from bench.learning.fitting import fit, mean_and_scale, rounded
 from segcore.cut.rules import ORDER_FEATURES
 from segcore.learned.gaussian_process import GaussianProcess, quantised, similarities
 
@@ -15,7 +15,7 @@ if TYPE_CHECKING:
     from bench.learning.rows import Rows
     from segcore.arrays import FloatArray
 
-# Set by hand; see bench/RESULTS.md, "Authored assets": their neighbours make no difference beyond noise.
+# Set by hand: decision 24 compares neighbours of some.
 CENTRES = 1000  # rows at which the correction of the trend is anchored
 _LENGTH = 3.0  # in standard deviations of the features
 _NOISE = 0.3  # variance of a target over that of the process
@@ -24,7 +24,7 @@ _TREND = ("kept", "small_area", "large_area", "depth", "ncut")
 _TREND_RIDGE = 1e-2
 
 
-def fit_process(rows: Rows, seed: int = 0) -> GaussianProcess | None:
+def fit_gaussian_process(rows: Rows, seed: int = 0) -> GaussianProcess | None:
     """Fit a logistic trend, and a Gaussian process to what it leaves, to the rows of ``split_rows``.
 
     The weighted sum of squares of the errors over the noise, plus the norm of the correction, is least. The centres are
@@ -35,9 +35,7 @@ def fit_process(rows: Rows, seed: int = 0) -> GaussianProcess | None:
     names = ORDER_FEATURES
     trend = fit(_TREND, rows.columns([names.index(name) for name in _TREND]), _TREND_RIDGE)
     weight = rows.weight / rows.weight.sum()
-    mean = rounded(np.einsum("i,ij->j", weight, rows.features))
-    deviation = np.sqrt(np.einsum("i,ij->j", weight, (rows.features - mean) ** 2))
-    scale = rounded(np.maximum(deviation, LEAST_SCALE))
+    mean, scale = mean_and_scale(rows.features, weight)
     count = min(CENTRES, int(np.count_nonzero(weight)))
     drawn = np.random.default_rng(seed).choice(len(weight), count, replace=False, p=weight)
     centres = quantised((rows.features[drawn] - mean) / scale)
