@@ -8,8 +8,10 @@ from playwright.sync_api import Route
 
 from helpers.browser.meshes import small_burr
 from helpers.browser.visit import MAX_UPLOAD_BYTES, Visit
+from helpers.files.written import mesh_bytes
 from helpers.installation import Installation
 from helpers.waiting import wait_until
+from segcore.shapes import burr
 
 
 def problem(visit: Visit) -> tuple[str, str, str]:
@@ -139,7 +141,7 @@ def test_a_running_job_can_be_stopped(visit: Visit, installation: Installation) 
     visit.open()
     visit.page.route("**/v1/jobs/*/events", lambda route: held.append(route))
     with visit.page.expect_response("**/v1/jobs") as submitted:
-        visit.drop("stopped.ply", small_burr() + b"      ")
+        visit.drop("stopped.ply", mesh_bytes(burr(5).mesh, "ply") + b"      ")  # four times the usual work
     visit.page.click("#stop")
     visit.page.wait_for_selector("#start:not([hidden])")
     job = installation.get(f"/v1/jobs/{submitted.value.json()['id']}").json()
