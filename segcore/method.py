@@ -155,7 +155,7 @@ def _tree(
     chosen: SegmentationParameters, rng: np.random.Generator, on_split: Callable[[float], None], coarse: CoarseGraph
 ) -> Tree:
     """Cut the graph of the clusters of a surface into a tree of segments."""
-    rule = split_rule(coarse.refinement.surface, coarse.clusters, chosen, rng)
+    rule = split_rule(coarse.refinement.surface, coarse.clusters, coarse.links, chosen, rng)
     return cut_by_rule(coarse.clusters, rule, chosen, on_split)
 
 

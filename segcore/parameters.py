@@ -91,7 +91,7 @@ class SegmentationParameters:
         ),
     )
     clusters: int = field(
-        default=2500,
+        default=5000,
         metadata=_about(
             "Nodes of the coarse graph that is cut in place of the mesh; 0 cuts the mesh itself.",
             exception=0,

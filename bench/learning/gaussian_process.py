@@ -20,7 +20,7 @@ CENTRES = 1000  # rows at which the correction of the trend is anchored
 _LENGTH = 3.0  # in standard deviations of the features
 _NOISE = 0.3  # variance of a target over that of the process
 _JITTER = 1e-5  # makes the equations solvable if two centres are alike
-_TREND = ("kept", "small_area", "large_area", "depth", "ncut")
+_TREND = ("kept", "small_area", "large_area", "depth", "ncut", "paired")
 _TREND_RIDGE = 1e-2
 
 

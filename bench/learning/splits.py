@@ -15,7 +15,7 @@ from segcore.clean.surface import build_surface
 from segcore.cut.bisection import bisect
 from segcore.cut.features import FEATURES
 from segcore.cut.fields import ClusterFields, Segment, cluster_fields
-from segcore.cut.rules import ORDER_FEATURES, LearnedRule, Split, order_features
+from segcore.cut.rules import ORDER_FEATURES, LearnedRule, Split, order_features, paired
 from segcore.method import CoarseGraph, coarse_graph, cut_by_rule
 from segcore.parameters import USUAL_SEGMENTS, SegmentationParameters
 
@@ -43,7 +43,7 @@ def cut_rows(example: Example, seed: int = 0) -> Rows:
     parameters = SegmentationParameters(seed=seed, max_segments=USUAL_SEGMENTS)
     coarse, people, rng = _coarse(example, parameters, is_symmetric=False)
     clusters = coarse.clusters
-    rule = _Recorder(cluster_fields(coarse.refinement.surface, clusters), parameters, rng, people)
+    rule = _Recorder(cluster_fields(coarse.refinement.surface, clusters, coarse.links), parameters, rng, people)
     bisect(clusters.graph, clusters.points, rule, USUAL_SEGMENTS)
     return _rows(rule.rows, rule.target, rule.weight, FEATURES)
 
@@ -56,7 +56,7 @@ def split_rows(example: Example, seed: int = 0) -> Rows:
     parameters = SegmentationParameters(seed=seed)
     coarse, people, rng = _coarse(example, parameters, parameters.is_symmetric)
     clusters = coarse.symmetrised().clusters
-    rule = _Finisher(cluster_fields(coarse.refinement.surface, clusters), parameters, rng)
+    rule = _Finisher(cluster_fields(coarse.refinement.surface, clusters, coarse.links), parameters, rng)
     cut_by_rule(clusters, rule, parameters)
     tree, splits = rule.tree, rule.splits
     nodes = 2 * len(splits) + 1
@@ -64,6 +64,7 @@ def split_rows(example: Example, seed: int = 0) -> Rows:
     for s in reversed(range(len(splits))):
         for area in areas:
             area[tree.split_node[s]] = area[2 * s + 1] + area[2 * s + 2]
+    is_paired = paired(tree.step)
     rows, target, weight = [], [], []
     for s, split in enumerate(splits):
         if split is None or split.late or split.features is None:
@@ -73,7 +74,7 @@ def split_rows(example: Example, seed: int = 0) -> Rows:
         pairs = sum(float(a.sum() * b.sum()) for a, b in sides)
         if pairs > 0.0:
             kept = np.array([min(split.priority, 1.0)])
-            rows.append(order_features(kept, split.features[None])[0])
+            rows.append(order_features(kept, split.features[None], is_paired[s : s + 1])[0])
             target.append(sum(float((a * b).sum()) for a, b in sides) / pairs)
             weight.append((pairs / all_pairs) ** _SIZE_EXPONENT)
     return _rows(rows, target, weight, ORDER_FEATURES)

@@ -70,6 +70,7 @@ def link_components(surface: Surface, component: IntArray, most: int) -> Links:
     return Links(
         np.concatenate([contacts.faces, points.face[attached]]),
         np.concatenate([contacts.length, np.maximum(length, _SHORTEST)]),
+        np.concatenate([contacts.concavity, np.zeros(len(length))]),
     )
 
 
@@ -78,7 +79,7 @@ def _within_parts(links: Links, authored: IntArray | None) -> Links:
     if authored is None:
         return links
     inside = authored[links.faces[:, 0]] == authored[links.faces[:, 1]]
-    return Links(links.faces[inside], links.length[inside])
+    return Links(links.faces[inside], links.length[inside], links.concavity[inside])
 
 
 def _assemblies(component: IntArray, links: Links) -> IntArray:

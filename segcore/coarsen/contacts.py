@@ -4,7 +4,7 @@ Contacts are measured between points that are spread evenly over the area, so th
 its meshing. Two components touch if points of theirs are closer than one *reach*. The *band* of the contact consists of
 the points of either that are more than one reach and at most two from the other. Its area over twice the reach is the
 length of the line along which two bodies meet, such as a leg and a seat, and twice the length of a curve in which two
-shells cross.
+shells cross. A contact is concave if the surfaces of the two bodies face each other.
 """
 
 from dataclasses import dataclass
@@ -34,6 +34,7 @@ class SurfacePoints:
 
     position: FloatArray  # (P, 3)
     face: IntArray  # (P,)
+    normal: FloatArray  # (P, 3) of the face
     area: FloatArray  # (P,) of the piece of surface that a point represents
 
 
@@ -43,11 +44,14 @@ class Links:
 
     faces: IntArray  # (C, 2)
     length: FloatArray  # (C,) of the border that a pair represents, > 0, in units of the surface
+    # (C,) mean cosine between the normals and the directions to the other face, -1..1: positive where the surfaces face
+    # each other, negative where the bodies run into each other, 0 where one surface continues or covers the other
+    concavity: FloatArray
 
     @classmethod
     def none(cls) -> "Links":
         """No pairs."""
-        return cls(np.empty((0, 2), dtype=np.int32), np.empty(0))
+        return cls(np.empty((0, 2), dtype=np.int32), np.empty(0), np.empty(0))
 
 
 def spread_points(surface: Surface, component: IntArray, count: int) -> SurfacePoints:
@@ -74,7 +78,7 @@ def spread_points(surface: Surface, component: IntArray, count: int) -> SurfaceP
     at = begin[interval] + (within + 0.5) * ((end - begin) / points)[interval]
     face = order[np.minimum(np.searchsorted(until, at, side="right"), last[interval])].astype(np.int32)
     share = ((end - begin) / points)[interval] * (total / count)
-    return SurfacePoints(_inside(surface.vertices[surface.faces[face]]), face, share)
+    return SurfacePoints(_inside(surface.vertices[surface.faces[face]]), face, surface.normals[face], share)
 
 
 def _inside(corners: FloatArray) -> FloatArray:
@@ -109,10 +113,19 @@ def find_contacts(points: SurfacePoints, component: IntArray, size: float) -> Li
     least = np.full(len(band), np.inf)
     np.minimum.at(least, of_pair, distance)
     closeness = np.maximum(0.0, 1.0 - (least / reach) ** 2)
-    share = closeness * np.minimum(1.0, within / np.maximum(band, np.finfo(float).tiny))
+    share = closeness * np.divide(np.minimum(within, band), band, out=np.zeros(len(band)), where=band > 0.0)
     length = area * np.where(near, 0.5 / (_LAYER * size), share[of_pair] * (0.5 / reach))
     touching = length > 0.0
-    return Links(points.face[pair[touching]], length[touching])
+    pair, length, distance = pair[touching], length[touching], distance[touching]
+    return Links(points.face[pair], length, _concavity(points, pair, distance))
+
+
+def _concavity(points: SurfacePoints, pair: IntArray, distance: FloatArray) -> FloatArray:
+    """(C,) the concavity of ``Links`` for pairs (C, 2) of points at distances (C,)."""
+    position, normal = points.position[pair], points.normal[pair]
+    ahead = np.einsum("ck,ck->c", position[:, 1] - position[:, 0], normal[:, 0] - normal[:, 1])
+    concavity: FloatArray = np.divide(0.5 * ahead, distance, out=np.zeros(len(pair)), where=distance > 0.0)
+    return concavity
 
 
 class _Found(NamedTuple):

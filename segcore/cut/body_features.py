@@ -17,6 +17,7 @@ class BodyFeatures(NamedTuple):
 
     contact_share: float  # share of the length of the cut that is contact between bodies
     contact_over_small: float  # logarithm of the length of the contact over sqrt(area of the small side)
+    contact_concavity: float  # mean over the contact of the concavity of ``Links``; 0 if there is none
     small_pieces: float  # logarithm of one more than the number of pieces that have a part in the small side
     large_pieces: float
     divided: float  # share of the area of the segment in pieces that the cut divides
@@ -49,6 +50,7 @@ def body_features(sides: SideSums, cuts: CutSums, n: int, whole: Whole) -> BodyF
     return BodyFeatures(
         cuts.contact[n] / border,
         np.log(cuts.contact[n] / root + _LEAST_CONTACT),
+        cuts.concavity[n] / cuts.contact[n] if cuts.contact[n] > 0.0 else 0.0,
         np.log1p(sides.pieces[n, 0]),
         np.log1p(sides.pieces[n, 1]),
         cuts.divided[n] / (small + large),

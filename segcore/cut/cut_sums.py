@@ -36,6 +36,7 @@ class CutSums(NamedTuple):
     weight: FloatArray  # (N,)
     contact: FloatArray  # (N,) length of the contacts between bodies in it
     flat: FloatArray  # (N,) length of what runs between coplanar faces
+    concavity: FloatArray  # (N,) of the contacts, times their length
     thickness: FloatArray  # (N,) mean along the border
     divided: FloatArray  # (N,) area of the pieces with parts in both sides
     touched: FloatArray  # (N,) area of the bodies with a part in the small side
@@ -60,7 +61,7 @@ def sums_of_cuts(part: SegmentFields, chosen: BoolArray, body_area: FloatArray) 
     )  # fmt: skip
     cuts = CutSums(
         np.zeros(count), np.zeros(count), np.zeros(count), np.zeros(count), np.zeros(count), np.zeros(count),
-        np.zeros(count), np.full(count, -1, dtype=np.int32), np.zeros(count),
+        np.zeros(count), np.zeros(count), np.full(count, -1, dtype=np.int32), np.zeros(count),
     )  # fmt: skip
     for n in range(count):
         small = _smaller(part, chosen[n])
@@ -96,6 +97,7 @@ def _add_edges(part: SegmentFields, small: BoolArray, n: int, sides: SideSums, c
             cuts.thickness[n] += length * 0.5 * (part.thickness[a] + part.thickness[b])
             if part.body[a] != part.body[b]:
                 cuts.contact[n] += length
+                cuts.concavity[n] += length * part.concavity[e]
     cuts.thickness[n] /= cuts.border[n]
 
 

@@ -9,6 +9,7 @@ from segcore.arrays import FloatArray, IntArray, group_sums
 from segcore.clean.edge_geometry import dihedral_angles, edge_lengths
 from segcore.clean.surface import Surface
 from segcore.coarsen.clusters import Clusters
+from segcore.coarsen.contacts import Links
 from segcore.cut.bodies import Bodies, pieces_of
 from segcore.graphs.surface_graph import EdgeIndex, SurfaceGraph, induced_edges
 from segcore.jit.decorators import kernel
@@ -27,6 +28,7 @@ class ClusterFields:
     confidence: FloatArray  # (N,) share of the rays of the thickness that met the other side from inside
     open_border: FloatArray  # (N,) length of the edges that have one face
     flat: FloatArray  # (E,) share of each edge of the graph that runs between coplanar faces
+    concavity: FloatArray  # (E,) mean concavity of the contacts between bodies, see ``Links``; 0 for other edges
     degree: FloatArray  # (N,) total length of the edges of every cluster
     bodies: Bodies
     whole: "Whole"
@@ -42,6 +44,7 @@ class ClusterFields:
         confidence: FloatArray | None = None,
         open_border: FloatArray | None = None,
         flat: FloatArray | None = None,
+        concavity: FloatArray | None = None,
     ) -> "ClusterFields":
         """The fields of a graph; by default those of one closed body without flat faces."""
         count = graph.node_count
@@ -57,6 +60,7 @@ class ClusterFields:
             confidence=np.ones(count) if confidence is None else confidence,
             open_border=np.zeros(count) if open_border is None else open_border,
             flat=np.zeros(len(graph.edges)) if flat is None else flat,
+            concavity=np.zeros(len(graph.edges)) if concavity is None else concavity,
             degree=group_sums(graph.edges.ravel(), np.repeat(graph.length, 2), count),
             bodies=bodies,
             whole=Whole(
@@ -68,11 +72,13 @@ class ClusterFields:
         """The fields of a segment."""
         nodes, graph = segment.nodes, segment.graph
         body = self.bodies.of_cluster[nodes]
+        edges = induced_edges(self.graph.edges, nodes, self.graph.node_count)[1]
         return SegmentFields(
             edges=graph.edges,
             weight=graph.weight,
             length=graph.length,
-            flat=self.flat[induced_edges(self.graph.edges, nodes, self.graph.node_count)[1]],
+            flat=self.flat[edges],
+            concavity=self.concavity[edges],
             volume=graph.volume,
             degree=self.degree[nodes],
             thickness=self.thickness[nodes],
@@ -111,6 +117,7 @@ class SegmentFields(NamedTuple):
     weight: FloatArray  # (E,)
     length: FloatArray  # (E,)
     flat: FloatArray  # (E,)
+    concavity: FloatArray  # (E,)
     volume: FloatArray  # (M,)
     degree: FloatArray  # (M,) in the whole graph
     thickness: FloatArray  # (M,)
@@ -121,8 +128,13 @@ class SegmentFields(NamedTuple):
     piece: IntArray  # (M,) see ``segcore.cut.bodies.pieces_of``
 
 
-def cluster_fields(surface: Surface, clusters: Clusters) -> ClusterFields:
-    """The fields of clusters of the faces of a surface, whose thickness was measured."""
+def cluster_fields(surface: Surface, clusters: Clusters, links: Links) -> ClusterFields:
+    """The fields of clusters of the faces of a surface, whose thickness was measured.
+
+    Parameters
+    ----------
+    links : between the components of the surface.
+    """
     assert clusters.thickness is not None
     count = clusters.graph.node_count
     length = edge_lengths(surface)
@@ -134,6 +146,7 @@ def cluster_fields(surface: Surface, clusters: Clusters) -> ClusterFields:
         confidence=clusters.confidence,
         open_border=group_sums(clusters.of_node, _open_border(surface, length), count),
         flat=_flat_share(surface, length, clusters),
+        concavity=_contact_concavity(links, clusters),
     )
 
 
@@ -178,3 +191,16 @@ def _flat_share(surface: Surface, length: FloatArray, clusters: Clusters) -> Flo
     border = group_sums(edge, length[crossing], len(graph.edges))
     share: FloatArray = np.divide(flat, border, out=np.zeros(len(border)), where=border > 0.0)
     return share
+
+
+def _contact_concavity(links: Links, clusters: Clusters) -> FloatArray:
+    """(E,) the mean concavity of the links of each edge of the graph of the clusters, 0 if there are none."""
+    count = len(clusters.graph.edges)
+    if len(links.length) == 0:
+        return np.zeros(count)
+    edge = EdgeIndex.of(clusters.graph).find(clusters.of_node[links.faces])
+    known = edge >= 0  # as in _flat_share
+    length = links.length[known]
+    total = group_sums(edge[known], length, count)
+    concavity: FloatArray = group_sums(edge[known], length * links.concavity[known], count)
+    return np.divide(concavity, total, out=np.zeros(count), where=total > 0.0)

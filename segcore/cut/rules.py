@@ -9,6 +9,7 @@ import numpy as np
 from segcore.arrays import BoolArray, FloatArray, IntArray
 from segcore.clean.surface import Surface
 from segcore.coarsen.clusters import Clusters
+from segcore.coarsen.contacts import Links
 from segcore.cut.bodies import cuts_between_pieces
 from segcore.cut.features import FEATURES, cut_features
 from segcore.cut.fields import ClusterFields, Segment, SegmentFields, cluster_fields
@@ -51,7 +52,8 @@ _LEAST_CHANCE = 1e-4  # of a share whose log-odds are taken
 # sets that they have not seen.
 OF_SETS = ("bodies", "mean_affinity", "small_confidence", "large_confidence")
 SEVERAL_BODIES_FEATURES = tuple(name for name in FEATURES if name not in OF_SETS)
-ORDER_FEATURES = ("kept", *SEVERAL_BODIES_FEATURES)  # kept: the log-odds of the share by the model of the cut
+# kept: the log-odds of the share by the model of the cut. paired: 1 if the step cuts off the mirror image as well.
+ORDER_FEATURES = ("kept", *SEVERAL_BODIES_FEATURES, "paired")
 _ORDER_COLUMNS = [FEATURES.index(name) for name in SEVERAL_BODIES_FEATURES]
 _NEARLY = 1e-6  # of a share of 0 or 1, for rounding
 
@@ -115,12 +117,17 @@ class SplitRule(Protocol):
 
 
 def split_rule(
-    surface: Surface, clusters: Clusters, parameters: SegmentationParameters, rng: np.random.Generator
+    surface: Surface, clusters: Clusters, links: Links, parameters: SegmentationParameters, rng: np.random.Generator
 ) -> SplitRule:
-    """Return the rule that the parameters name; the learned one needs the thickness of the clusters."""
+    """Return the rule that the parameters name; the learned one needs the thickness of the clusters.
+
+    Parameters
+    ----------
+    links : between the components of the surface.
+    """
     if parameters.split_order != "learned" or clusters.thickness is None:
         return RatioRule(clusters.graph, parameters, rng)
-    return LearnedRule(cluster_fields(surface, clusters), parameters, rng)
+    return LearnedRule(cluster_fields(surface, clusters, links), parameters, rng)
 
 
 class RatioRule:
@@ -245,12 +252,17 @@ class LearnedRule:
         is_large = features[:, _SMALL_AREA] >= np.log(LARGE_BODY)
         return np.where(between, np.where(is_large, BETWEEN_LARGE_BODIES, BETWEEN_BODIES) * kept, through)
 
-    def _kept_in_tree(self, splits: Sequence[Split]) -> FloatArray:
-        """(S,) the share of the pairs across the splits of a tree that people keep together, again for the order."""
+    def _kept_in_tree(self, splits: Sequence[Split], step: IntArray) -> FloatArray:
+        """(S,) the share of the pairs across the splits of a tree that people keep together, again for the order.
+
+        Parameters
+        ----------
+        step : (S,) of every split.
+        """
         kept = np.array([split.priority for split in splits])
         if self._order is None or not splits:
             return kept
-        again = self._order.estimate(order_features(kept, np.array([split.features for split in splits])))
+        again = self._order.estimate(order_features(kept, np.array([split.features for split in splits]), paired(step)))
         again = np.where([split.late for split in splits], np.maximum(again, MOST_KEPT), again)
         return np.where(kept > 1.0, kept, again)  # beyond 1: of a step that is not complete
 
@@ -266,17 +278,24 @@ class LearnedRule:
         # The cost of a split is the share of all pairs of points that it separates. Its gain is the part of them that
         # people separate, less the part that they keep together.
         pairs = np.array([2.0 * split.cut.inside * split.cut.outside / self._total**2 for split in learned])
-        gain = pairs * (1.0 - 2.0 * self._kept_in_tree(learned))
+        step = tree.step[apart:] - apart
+        gain = pairs * (1.0 - 2.0 * self._kept_in_tree(learned, step))
         least = 0.0 if apart else LEAST_SEPARATED
         most_loss = 2.0 * MOST_KEPT_AT_FIRST - 1.0
-        order, worthwhile = best_order_of_steps(tree.step[apart:] - apart, parent, gain, pairs, least, most_loss)
+        order, worthwhile = best_order_of_steps(step, parent, gain, pairs, least, most_loss)
         return tree.reordered([*range(apart), *(apart + s for s in order)], apart + worthwhile + 1)
 
 
-def order_features(kept: FloatArray, features: FloatArray) -> FloatArray:
-    """(S, M) of ``ORDER_FEATURES`` for splits with the learned share (S,) and the features of their cuts."""
+def paired(step: IntArray) -> BoolArray:
+    """(S,) True for the splits whose step (S,) has several, which are images of each other."""
+    is_paired: BoolArray = np.bincount(step)[step] > 1
+    return is_paired
+
+
+def order_features(kept: FloatArray, features: FloatArray, is_paired: BoolArray) -> FloatArray:
+    """(S, M) of ``ORDER_FEATURES`` for splits with the learned share (S,), the features of their cuts, and images."""
     chance = np.clip(kept, _LEAST_CHANCE, 1.0 - _LEAST_CHANCE)
-    return np.column_stack([np.log(chance / (1.0 - chance)), features[:, _ORDER_COLUMNS]])
+    return np.column_stack([np.log(chance / (1.0 - chance)), features[:, _ORDER_COLUMNS], is_paired])
 
 
 def _between_bodies(features: FloatArray) -> BoolArray:

@@ -10,14 +10,26 @@ from segcore.coarsen.contacts import REACH, _partners, find_contacts, spread_poi
 from segcore.mesh import Mesh
 
 
-def length_of_contact(*meshes):
-    """The length of all contacts in the unit of the meshes."""
+def contacts_between(*meshes):
+    """The contacts between meshes, and the unit of their surface."""
     shape = shapes.joined(*meshes)
     surface = build_surface(shape.mesh)
     points = spread_points(surface, shape.parts, 32768)
     links = find_contacts(points, shape.parts[points.face], float(np.sqrt(surface.areas.sum())))
     assert (shape.parts[links.faces[:, 0]] != shape.parts[links.faces[:, 1]]).all()
-    return links.length.sum() * surface.unit
+    return links, surface.unit
+
+
+def length_of_contact(*meshes):
+    """The length of all contacts in the unit of the meshes."""
+    links, unit = contacts_between(*meshes)
+    return links.length.sum() * unit
+
+
+def concavity_of_contact(*meshes):
+    """The mean concavity of all contacts."""
+    links, _ = contacts_between(*meshes)
+    return links.length @ links.concavity / links.length.sum()
 
 
 SEAT = shapes.box((2, 2, 0.2))
@@ -78,6 +90,20 @@ def test_a_contact_fades_as_a_gap_opens():
     assert lengths == sorted(lengths, reverse=True)
     assert lengths[2] < 0.6 * lengths[0]
     assert lengths[3] == 0
+
+
+def test_a_contact_is_concave_where_bodies_stand_on_each_other():
+    assert concavity_of_contact(SEAT, leg()) > 0.2
+    assert concavity_of_contact(shapes.box(), shapes.box((1, 1, 1), (1.005, 0, 0))) > 0.2
+
+
+def test_a_contact_is_convex_where_one_body_is_sunk_into_the_other():
+    assert concavity_of_contact(shapes.box(), shapes.box((1, 1, 1), (0.98, 0, 0))) < -0.1
+
+
+def test_the_contact_of_a_coat_is_neither():
+    """The coat is in front of what it covers, which is behind the coat."""
+    assert abs(concavity_of_contact(SEAT, shapes.box((2.02, 2.02, 0.22)))) < 0.05
 
 
 def test_layers_that_lie_on_each_other_have_a_contact_in_proportion_to_their_area():

@@ -9,8 +9,9 @@ from helpers.meshes import rotation
 from helpers.trees import members
 from segcore.affinity.mesh_graphs import mesh_graph
 from segcore.clean.surface import build_surface
+from segcore.coarsen.contacts import Links
 from segcore.cut.bisection import bisect
-from segcore.cut.rules import AUTOMATIC_NCUT, RatioRule, split_rule
+from segcore.cut.rules import AUTOMATIC_NCUT, RatioRule, paired, split_rule
 from segcore.graphs.surface_graph import connected_components
 from segcore.parameters import SegmentationParameters
 from segcore.symmetry.clusters import clusters_with_images, symmetrised
@@ -105,6 +106,11 @@ def test_cuts_of_less_than_a_five_hundredth_do_not_count_as_left():
     assert grown(graph_of(edges, 4, weight, np.ones(4)), 2).limit_reached
 
 
+def test_splits_are_paired_if_their_step_has_several():
+    assert paired(np.array([0, 1, 1, 2, 3, 3, 3])).tolist() == [False, True, True, False, True, True, True]
+    assert paired(np.array([], dtype=np.int32)).tolist() == []
+
+
 def symmetric_tree(mesh, max_segments, **parameters):
     """The tree of a symmetric body over its clusters, and the clusters."""
     chosen = SegmentationParameters(**parameters)
@@ -112,7 +118,7 @@ def symmetric_tree(mesh, max_segments, **parameters):
     nodes, mirror = mesh_graph(surface, chosen), mirror_image(surface)
     rng = np.random.default_rng(0)
     clusters = symmetrised(clusters_with_images(nodes, mirror, 600, rng), mirror)
-    rule = split_rule(surface, clusters, chosen, rng)
+    rule = split_rule(surface, clusters, Links.none(), chosen, rng)
     return bisect(clusters.graph, clusters.points, rule, max_segments, image=clusters.image), clusters
 
 

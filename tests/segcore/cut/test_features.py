@@ -34,6 +34,7 @@ def cuts_of_segments(draw: st.DrawFn) -> tuple[ClusterFields, Segment, Cut]:
         confidence=rng.integers(0, 9, count) / 8,
         open_border=rng.integers(0, 2, count) * 0.5,
         flat=rng.integers(0, 2, len(length)) * 0.75,
+        concavity=rng.integers(-4, 5, len(length)) / 4,
     )
     inside = np.array(draw(st.lists(st.booleans(), min_size=count, max_size=count)))
     assume(inside.sum() >= 2 and is_connected(whole, inside))
@@ -111,14 +112,18 @@ def plain_body_features(
     is_whole = [amount >= fields.bodies.area * (1 - 1e-9) for amount in of_body]
     touched = of_body[0] > 0
     is_one = touched.sum() == 1 and is_whole[0][touched].all()
-    flat = {tuple(edge): share for edge, share in zip(fields.graph.edges.tolist(), fields.flat, strict=True)}
-    shares = np.array([flat[tuple(sorted(nodes[edge].tolist()))] for edge in graph.edges])
+    index = {tuple(edge): place for place, edge in enumerate(fields.graph.edges.tolist())}
+    whole_edge = np.array([index[tuple(sorted(nodes[edge].tolist()))] for edge in graph.edges])
+    in_contact = graph.length[contact]
     inside = fields.bodies.of_cluster[fields.graph.edges]
     same = inside[:, 0] == inside[:, 1]
     mean_affinity = fields.graph.weight[same].sum() / fields.graph.length[same].sum() if same.any() else 1.0
     return {
-        "contact_share": graph.length[contact].sum() / border,
-        "contact_over_small": np.log(graph.length[contact].sum() / np.sqrt(area[0]) + 1e-4),
+        "contact_share": in_contact.sum() / border,
+        "contact_over_small": np.log(in_contact.sum() / np.sqrt(area[0]) + 1e-4),
+        "contact_concavity": in_contact @ fields.concavity[whole_edge[contact]] / in_contact.sum()
+        if len(in_contact)
+        else 0.0,
         "small_pieces": np.log(1 + len(np.unique(piece[small]))),
         "large_pieces": np.log(1 + len(np.unique(piece[~small]))),
         "divided": volume[np.isin(piece, in_both)].sum() / sum(area),
@@ -134,7 +139,7 @@ def plain_body_features(
         "small_confidence": np.average(fields.confidence[nodes[small]], weights=volume[small]),
         "large_confidence": np.average(fields.confidence[nodes[~small]], weights=volume[~small]),
         "repeats": np.log(fields.bodies.repeats[np.argmax(touched)]) if is_one else 0.0,
-        "flat_share": (graph.length * shares)[crossing].sum() / border,
+        "flat_share": (graph.length * fields.flat[whole_edge])[crossing].sum() / border,
         "bodies": np.log(fields.bodies.count),
         "mean_affinity": np.log(mean_affinity),
     }

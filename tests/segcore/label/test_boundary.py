@@ -119,7 +119,7 @@ def test_parts_in_several_components_stay_linked():
     upper, lower = np.flatnonzero(mesh.parts == 1), np.flatnonzero(mesh.parts == 0)
     link = np.array([[lower[np.argmax(nodes.points[lower, 2])], upper[np.argmin(nodes.points[upper, 2])]]], np.int32)
     tree = two_sides(nodes.points[:, 0] > 0.01)
-    drawn = draw_boundaries(replace(tree), nodes, Links(link, np.ones(1)), surface)
+    drawn = draw_boundaries(replace(tree), nodes, Links(link, np.ones(1), np.zeros(1)), surface)
     linked = nodes.graph.with_edges(link, np.ones(1), np.ones(1))
     before, after = ([pieces(linked, leaf == k) for k in (1, 2)] for leaf in (tree.leaf, drawn.leaf))
     assert after <= before
