@@ -15,7 +15,7 @@ if TYPE_CHECKING:
     from bench.learning.rows import Rows
     from segcore.arrays import FloatArray
 
-# Set by hand: decision 24 compares neighbours of some.
+# Set by hand: decisions 24 and 25 compare neighbours of some.
 CENTRES = 1000  # rows at which the correction of the trend is anchored
 _LENGTH = 3.0  # in standard deviations of the features
 _NOISE = 0.3  # variance of a target over that of the process

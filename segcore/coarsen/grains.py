@@ -10,7 +10,7 @@ from segcore.arrays import IntArray, group_sums
 from segcore.graphs.surface_graph import SurfaceGraph, components_inside, edges_between
 from segcore.jit.decorators import kernel
 
-# Set by hand. There are about 16 grains or more in each of 2,500 clusters, whose outlines are drawn again afterwards.
+# Set by hand. There are about 8 grains or more in each of 5,000 clusters, whose outlines are drawn again afterwards.
 MANY = 1 << 17  # nodes from which on there are grains
 _COUNT = 40_000  # grains, at least, if each has as many nodes as it may have
 _MOST = 32  # nodes of a grain

@@ -5,7 +5,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from segcore.arrays import FloatArray, IntArray, group_sums
+from segcore.arrays import BoolArray, FloatArray, IntArray, group_sums
 from segcore.clean.edge_geometry import dihedral_angles, edge_lengths
 from segcore.clean.surface import Surface
 from segcore.coarsen.clusters import Clusters
@@ -138,6 +138,7 @@ def cluster_fields(surface: Surface, clusters: Clusters, links: Links) -> Cluste
     assert clusters.thickness is not None
     count = clusters.graph.node_count
     length = edge_lengths(surface)
+    index = EdgeIndex.of(clusters.graph)
     return ClusterFields.of(
         clusters.graph,
         clusters.points,
@@ -145,8 +146,8 @@ def cluster_fields(surface: Surface, clusters: Clusters, links: Links) -> Cluste
         body=clusters.body,
         confidence=clusters.confidence,
         open_border=group_sums(clusters.of_node, _open_border(surface, length), count),
-        flat=_flat_share(surface, length, clusters),
-        concavity=_contact_concavity(links, clusters),
+        flat=_flat_share(surface, length, clusters, index),
+        concavity=_means_on_edges(index, clusters.of_node[links.faces], links.length, links.concavity),
     )
 
 
@@ -178,29 +179,24 @@ def _sums_at_ends(edges: IntArray, values: FloatArray, count: int) -> FloatArray
     return sums
 
 
-def _flat_share(surface: Surface, length: FloatArray, clusters: Clusters) -> FloatArray:
+def _flat_share(surface: Surface, length: FloatArray, clusters: Clusters, index: EdgeIndex) -> FloatArray:
     """(E,) the share of each edge of the graph of the clusters that runs between coplanar faces."""
-    graph = clusters.graph
     ends = clusters.of_node[surface.edge_faces]
     crossing = np.flatnonzero(ends[:, 0] != ends[:, 1])
-    edge = EdgeIndex.of(graph).find(ends[crossing])
-    known = edge >= 0  # a surface that is nearly symmetric has borders that the symmetric graph leaves out
-    crossing, edge = crossing[known], edge[known]
     is_flat = np.abs(dihedral_angles(surface, crossing)) < _COPLANAR
-    flat = group_sums(edge, length[crossing] * is_flat, len(graph.edges))
-    border = group_sums(edge, length[crossing], len(graph.edges))
-    share: FloatArray = np.divide(flat, border, out=np.zeros(len(border)), where=border > 0.0)
-    return share
+    return _means_on_edges(index, ends[crossing], length[crossing], is_flat)
 
 
-def _contact_concavity(links: Links, clusters: Clusters) -> FloatArray:
-    """(E,) the mean concavity of the links of each edge of the graph of the clusters, 0 if there are none."""
-    count = len(clusters.graph.edges)
-    if len(links.length) == 0:
-        return np.zeros(count)
-    edge = EdgeIndex.of(clusters.graph).find(clusters.of_node[links.faces])
-    known = edge >= 0  # as in _flat_share
-    length = links.length[known]
-    total = group_sums(edge[known], length, count)
-    concavity: FloatArray = group_sums(edge[known], length * links.concavity[known], count)
-    return np.divide(concavity, total, out=np.zeros(count), where=total > 0.0)
+def _means_on_edges(index: EdgeIndex, ends: IntArray, length: FloatArray, values: FloatArray | BoolArray) -> FloatArray:
+    """(E,) the means on the edges of a graph of values (B,) of borders between its nodes (B, 2), weighted by length.
+
+    Borders that are no edge of the graph do not count: a graph that was made symmetric can lack some. An edge without
+    borders has 0.
+    """
+    edge = index.find(ends)
+    known = edge >= 0
+    edge, length, values = edge[known], length[known], values[known]
+    total = group_sums(edge, length, len(index.edge))
+    weighted = group_sums(edge, length * values, len(index.edge))
+    means: FloatArray = np.divide(weighted, total, out=np.zeros(len(total)), where=total > 0.0)
+    return means
