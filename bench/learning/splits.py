@@ -138,7 +138,7 @@ class _Recorder(LearnedRule):
         inside = self._fields.inside(segment)
         candidates = self.candidates(segment, inside)
         features = self.features(segment, inside, candidates)
-        best = self.best_of(candidates, features)
+        best = self.best_for_bodies(inside, candidates, features)
         self._record(segment, candidates, features, best.cut)
         return best
 

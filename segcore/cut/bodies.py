@@ -101,20 +101,27 @@ def cuts_between_pieces(graph: SurfaceGraph, piece: IntArray) -> list[Cut]:
     across = ends[:, 0] != ends[:, 1]
     volume = group_sums(piece, graph.volume, count)
     pairs, weight = ends[across], graph.weight[across]
-    first, last = _subtrees(pairs, weight, count)
-    # The pieces below a node of the tree are those with first[node] <= first[piece] < last[node].
-    inside = (first[None, :] >= first[:, None]) & (first[None, :] < last[:, None])
-    inside = inside[first > 0]
-    crossing = inside[:, pairs[:, 0]] != inside[:, pairs[:, 1]]
-    cut = np.array([float(weight[row].sum()) for row in crossing])
-    below = np.array([float(volume[row].sum()) for row in inside])
-    ncc = cut / np.minimum(below, volume.sum() - below)
+    place, end, parent = _spanning_tree(pairs, weight, count)
+    # What a pair of pieces adds to the cut of a subtree that has both of them is subtracted where their paths meet.
+    low, high = place[pairs].T
+    common = _common_ancestors(low, high, parent)
+    added = group_sums(np.concatenate([low, high]), np.tile(weight, 2), count) - 2.0 * group_sums(common, weight, count)
+    cut = _subtree_sums(added, end)[1:]  # without the whole tree
+    below = _subtree_sums(group_sums(place, volume, count), end)[1:]
+    ncc = cut / np.maximum(np.minimum(below, volume.sum() - below), np.finfo(float).tiny)
     chosen = np.argsort(ncc, kind="stable")[:MOST_CUTS]
-    return [cut_of(graph, inside[i][piece]).canonical for i in chosen]
+    at = place[piece]
+    return [cut_of(graph, (first <= at) & (at < end[first])).canonical for first in chosen + 1]
 
 
-def _subtrees(pairs: IntArray, weight: FloatArray, count: int) -> tuple[IntArray, IntArray]:
-    """The places (C,) of the pieces in an order of the maximum spanning tree, and the ends (C,) of their subtrees."""
+def _spanning_tree(pairs: IntArray, weight: FloatArray, count: int) -> tuple[IntArray, IntArray, IntArray]:
+    """The maximum spanning tree of C pieces, as places 0, 1, ... such that those of every subtree are consecutive.
+
+    Returns
+    -------
+    The places (C,) of the pieces; for every place the end (C,) of its subtree, and the place (C,) of its parent, which
+    is smaller, or -1.
+    """
     low, high = pairs.min(axis=1), pairs.max(axis=1)
     contact = coo_matrix((weight, (low, high)), shape=(count, count)).tocsr()
     contact.data = 1.0 / contact.data  # a minimum spanning tree of these is a maximum spanning tree of the weights
@@ -130,4 +137,23 @@ def _subtrees(pairs: IntArray, weight: FloatArray, count: int) -> tuple[IntArray
         first[node] = free[above]
         free[above] += size[node]
         free[node] = first[node] + 1
-    return first, first + size
+    end, above = np.empty_like(first), np.full_like(first, -1)
+    end[first] = first + size
+    above[first[order[1:]]] = first[parent[order[1:]]]
+    return first, end, above
+
+
+def _common_ancestors(one: IntArray, other: IntArray, parent: IntArray) -> IntArray:
+    """(P,) the last common ancestor of each pair of places in a tree in which parents have smaller places."""
+    a, b = one.copy(), other.copy()
+    while len(apart := np.flatnonzero(a != b)):
+        low, high = np.minimum(a[apart], b[apart]), np.maximum(a[apart], b[apart])
+        a[apart], b[apart] = parent[high], low
+    return a
+
+
+def _subtree_sums(values: FloatArray, end: IntArray) -> FloatArray:
+    """(C,) the sums of values (C,) over the subtrees of the places 0, 1, ..., which end before ``end``."""
+    before = np.concatenate([[0.0], np.cumsum(values)])
+    sums: FloatArray = before[end] - before[:-1]
+    return sums

@@ -11,6 +11,7 @@ from segcore.clean.surface import Surface
 from segcore.coarsen.clusters import Clusters
 from segcore.coarsen.contacts import Links
 from segcore.cut.bodies import cuts_between_pieces
+from segcore.cut.equal_cuts import PartedBodies, equal_cuts, means_of_groups
 from segcore.cut.features import FEATURES, cut_features
 from segcore.cut.fields import ClusterFields, Segment, SegmentFields, cluster_fields
 from segcore.cut.order import best_order_of_steps
@@ -43,6 +44,9 @@ BETWEEN_BODIES = 0.7
 BETWEEN_LARGE_BODIES = 0.3  # if the smaller side has at least a tenth of the total area
 LARGE_BODY = 0.1
 THROUGH_BODY = 0.8
+# Factor on the loss of a cut that cuts off what is congruent to bodies that were cut off before. Set by hand, as the
+# weakest at which 110 bodies with equal limbs in different poses are all cut alike.
+REPEATED = 0.7
 
 _CONTACT_SHARE, _DIVIDED, _SMALL_WHOLE = (FEATURES.index(name) for name in ("contact_share", "divided", "small_whole"))
 _SMALL_AREA = FEATURES.index("small_area")
@@ -185,6 +189,7 @@ class LearnedRule:
         self._rng = rng
         self._total = fields.graph.total_volume
         self._elimination = minimum_degree(fields.graph.rows())
+        self._parted = PartedBodies()
 
     @property
     def smallest_segment(self) -> float:
@@ -196,7 +201,7 @@ class LearnedRule:
         if image is not None and (symmetric := self._symmetric_candidates(segment, inside, image)):
             return self.best_of(symmetric, self.features(segment, inside, symmetric)).with_image(image)
         candidates = self.candidates(segment, inside)
-        return self.best_of(candidates, self.features(segment, inside, candidates))
+        return self.best_for_bodies(inside, candidates, self.features(segment, inside, candidates))
 
     def is_sensible(self, late: bool, priority: float, /) -> bool:
         return not late and priority <= MOST_KEPT
@@ -204,15 +209,31 @@ class LearnedRule:
     def best_among(self, segment: Segment, cuts: Sequence[Cut]) -> Split:
         return self.best_of(cuts, self.features(segment, self._fields.inside(segment), cuts))
 
-    def best_of(self, candidates: Sequence[Cut], features: FloatArray) -> Split:
-        """Return the candidate of least learned share and normalized cut; a late one only if there is no other."""
+    def best_of(self, candidates: Sequence[Cut], features: FloatArray, factor: FloatArray | None = None) -> Split:
+        """Return the candidate of least learned share and normalized cut; a late one only if there is no other.
+
+        Parameters
+        ----------
+        candidates : C cuts.
+        features : (C, M)
+        factor : (C,) on what is least.
+        """
         kept = self._kept(features)
         size = np.sqrt(self._total)
         late = self._is_late(candidates, features)
-        loss = [q + NCUT_WEIGHT * cut.ncut * size for q, cut in zip(kept, candidates, strict=True)]
+        loss = kept + NCUT_WEIGHT * np.array([cut.ncut for cut in candidates]) * size
+        if factor is not None:
+            loss = factor * loss
         best = min(range(len(candidates)), key=lambda i: (late[i], loss[i]))
         cut = candidates[best]
         return Split(cut, cut.ncut * size, float(kept[best]), bool(late[best]), features=features[best])
+
+    def best_for_bodies(self, inside: SegmentFields, candidates: Sequence[Cut], features: FloatArray) -> Split:
+        """``best_of``, with a preference for cutting off bodies like those that were cut off other segments."""
+        parts = self._parted.parts(inside, candidates, _between_bodies(features))
+        best = self.best_of(candidates, features, np.where(self._parted.has(parts), REPEATED, 1.0))
+        self._parted.add(parts[candidates.index(best.cut)])
+        return best
 
     def candidates(self, segment: Segment, inside: SegmentFields) -> list[Cut]:
         """Return different cuts of a segment, each with connected sides."""
@@ -279,7 +300,11 @@ class LearnedRule:
         # people separate, less the part that they keep together.
         pairs = np.array([2.0 * split.cut.inside * split.cut.outside / self._total**2 for split in learned])
         step = tree.step[apart:] - apart
-        gain = pairs * (1.0 - 2.0 * self._kept_in_tree(learned, step))
+        kept = self._kept_in_tree(learned, step)
+        # Equal cuts have one share, so that all of them are worth making or none is; beyond 1 a step is not complete.
+        equal = equal_cuts(self._fields.graph, self._fields.points, tree)[apart:]
+        shared = means_of_groups(equal, kept, np.where(kept > 1.0, _NEARLY, 1.0) * pairs)
+        gain = pairs * (1.0 - 2.0 * np.where(kept > 1.0, kept, shared))
         least = 0.0 if apart else LEAST_SEPARATED
         most_loss = 2.0 * MOST_KEPT_AT_FIRST - 1.0
         order, worthwhile = best_order_of_steps(step, parent, gain, pairs, least, most_loss)

@@ -13,7 +13,8 @@ from typing import NamedTuple
 
 import numpy as np
 
-from segcore.arrays import FloatArray, IntArray, group_sums
+from segcore.arrays import FloatArray, IntArray
+from segcore.cut.node_shapes import Shapes, cuts_of, shapes_of
 from segcore.graphs.surface_graph import SurfaceGraph
 from segcore.graphs.tree import Tree
 from segcore.nary import numbered_steps
@@ -43,7 +44,7 @@ def sibling_steps(graph: SurfaceGraph, points: FloatArray, tree: Tree) -> IntArr
     if len(tree.split_node) < 2:
         return tree.step
     cuts = _cuts(graph, tree)
-    groups = _groups(_shapes(graph, points, tree), cuts, tree)
+    groups = _groups(_values(shapes_of(graph, points, tree)), cuts, tree)
     step = tree.step.tolist()
     merged = list(range(max(step) + 1))
     for chain in _chains(groups, tree):
@@ -190,38 +191,16 @@ def _first(merged: list[int], step: int) -> int:
     return step
 
 
-def _shapes(graph: SurfaceGraph, points: FloatArray, tree: Tree) -> list[_Values]:
-    """The area and the spread of every node of the tree, without a length: the least one of no cuts."""
-    x, y, z = points.T
-    columns = [np.ones(len(points)), x, y, z, x * x, x * y, x * z, y * y, y * z, z * z]
-    count = 2 * len(tree.split_node) + 1
-    sums = np.stack([group_sums(tree.leaf, graph.volume * column, count) for column in columns], axis=1)
-    for split in reversed(range(len(tree.split_node))):
-        sums[tree.split_node[split]] = sums[2 * split + 1] + sums[2 * split + 2]
-    moments = sums[:, 1:] / sums[:, :1]
-    mean = moments[:, :3]
-    second = moments[:, [3, 4, 5, 4, 6, 7, 5, 7, 8]].reshape(-1, 3, 3)
-    variance = np.linalg.eigvalsh(second - mean[:, :, None] * mean[:, None, :]) + _node_variance(graph, points)
-    spread = np.sqrt(np.maximum(variance, 0.0)).tolist()
-    area = np.log(sums[:, 0]).tolist()
-    return [_Values(a, (p, q, r), inf) for a, (p, q, r) in zip(area, spread, strict=True)]
-
-
-def _node_variance(graph: SurfaceGraph, points: FloatArray) -> float:
-    """The variance within a node of the graph along an axis: that of an interval as long as neighbours are apart."""
-    if len(graph.edges) == 0:
-        return 0.0
-    between = points[graph.edges[:, 0]] - points[graph.edges[:, 1]]
-    return float(np.median(np.einsum("ij,ij->i", between, between))) / 12.0
+def _values(shapes: Shapes) -> list[_Values]:
+    """The values of every node, with the least length of no cuts."""
+    return [
+        _Values(area, (p, q, r), inf)
+        for area, (p, q, r) in zip(shapes.log_area.tolist(), shapes.spread.tolist(), strict=True)
+    ]
 
 
 def _cuts(graph: SurfaceGraph, tree: Tree) -> list[float | None]:
     """The logarithm of the length of the cut of every split; None if the cut is not clear."""
-    splits = len(tree.split_node)
-    split = tree.split_between(*tree.leaf[graph.edges].T)
-    crossing = split >= 0
-    length = group_sums(split[crossing], graph.length[crossing], splits)
-    weight = group_sums(split[crossing], graph.weight[crossing], splits)
-    is_clear = weight <= _AFFINITY * length
-    logarithm = np.log(np.maximum(length, np.finfo(float).tiny))  # components that lie apart: all alike
-    return [value if clear else None for value, clear in zip(logarithm.tolist(), is_clear.tolist(), strict=True)]
+    cuts = cuts_of(graph, tree)
+    is_clear = cuts.weight <= _AFFINITY * cuts.length
+    return [value if clear else None for value, clear in zip(cuts.log_length.tolist(), is_clear.tolist(), strict=True)]

@@ -1,7 +1,5 @@
 """A tree over the pieces of divided faces, carried over to the whole faces."""
 
-from dataclasses import replace
-
 import numpy as np
 
 from segcore.array_kernels import distinct_pairs, face_centroids
@@ -44,11 +42,28 @@ def draw_on_whole_faces(
         return draw_boundaries(tree, pieces, links, surface, mirror)
     drawn = draw_boundaries(tree, pieces, links, refinement.surface, mirror)
     faces = whole_faces(pieces, refinement, surface)
-    links = replace(links, faces=refinement.parent[links.faces])
+    links = links_of_faces(links, pieces, refinement, surface)
     linked = faces.graph.with_edges(links.faces, CONTACT * links.length, links.length)
     number = np.arange(pieces.graph.node_count, dtype=np.int32)
     projected = project(drawn, Votes(refinement.parent, number, pieces.graph.volume), linked)
     return draw_boundaries(projected, faces, links, surface, mirror_image(surface) if mirror else None)
+
+
+def links_of_faces(links: Links, pieces: MeshGraph, refinement: Refinement, surface: Surface) -> Links:
+    """The links between whole faces: those of their pieces, and the edges of pieces whose faces have none.
+
+    Patches can be stitched along more of their borders once these are divided.
+    """
+    of_pieces = refinement.parent[pieces.graph.edges]
+    known, which = distinct_pairs(np.concatenate([surface.edge_faces, of_pieces]))
+    is_new = np.ones(len(known), dtype=np.bool_)
+    is_new[which[: len(surface.edge_faces)]] = False
+    new = is_new[which[len(surface.edge_faces) :]] & (of_pieces[:, 0] != of_pieces[:, 1])
+    return Links(
+        np.concatenate([refinement.parent[links.faces], of_pieces[new]]),
+        np.concatenate([links.length, pieces.graph.length[new]]),
+        np.concatenate([links.concavity, np.zeros(np.count_nonzero(new))]),
+    )
 
 
 def whole_faces(pieces: MeshGraph, refinement: Refinement, surface: Surface) -> MeshGraph:

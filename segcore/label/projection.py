@@ -5,9 +5,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from segcore.arrays import BoolArray, FloatArray, IntArray, group_sums
-from segcore.graphs.cheeger import cut_of
-from segcore.graphs.connected_sides import with_connected_sides
-from segcore.graphs.surface_graph import SurfaceGraph
+from segcore.graphs.surface_graph import SurfaceGraph, components_within
 from segcore.graphs.tree import LeafIntervals, Tree
 from segcore.nary import numbered_steps
 
@@ -101,10 +99,30 @@ class _Part:
 
 
 def _connected(graph: SurfaceGraph, side: BoolArray) -> BoolArray:
-    """(M,) the sides made connected; True stays on the side that shares the larger area with it."""
-    connected = with_connected_sides(graph, cut_of(graph, side)).side
-    kept = graph.volume[connected == side].sum()
-    return connected if 2 * kept >= graph.total_volume else ~connected
+    """(M,) the sides made connected: the largest piece of each stays, and the other pieces join what surrounds them.
+
+    A piece that touches nothing, because its component was merged with another one, stays on its side.
+    """
+    piece, count = components_within(graph.edges, side)
+    if count <= 2:
+        return side
+    volume = group_sums(piece, graph.volume, count)
+    is_on_side = np.zeros(count, dtype=np.bool_)
+    is_on_side[piece] = side
+    owner = np.full(count, -1)
+    for which in (0, 1):
+        owner[np.argmax(np.where(is_on_side == which, volume, 0.0))] = which
+    ends = piece[graph.edges]
+    while True:
+        reached = (owner[ends] >= 0).sum(axis=1) == 1
+        if not reached.any():
+            break
+        known = owner[ends[reached]].max(axis=1)
+        new = ends[reached][owner[ends[reached]] < 0]
+        border = [group_sums(new, np.where(known == which, graph.length[reached], 0.0), count) for which in (0, 1)]
+        owner = np.where((owner < 0) & (border[0] + border[1] > 0.0), border[1] > border[0], owner)
+    connected: BoolArray = np.where(owner < 0, is_on_side, owner == 1)[piece]
+    return connected
 
 
 def _votes(part: _Part, places: LeafIntervals, one: int, other: int) -> BoolArray:

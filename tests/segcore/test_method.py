@@ -27,6 +27,18 @@ def test_the_automatic_number_is_that_of_the_parts(shape):
     assert segment(shape.mesh).automatic_segments == shape.parts.max() + 1
 
 
+def test_more_shells_than_have_clusters_of_their_own_leave_the_large_ones_apart():
+    """A base with two posts on 1,100 pins; the faces of the base and of the posts are divided for the computation."""
+    places = np.stack(np.meshgrid(np.arange(34), np.arange(34)), axis=-1).reshape(-1, 2)[:1100] / 34 - 0.485
+    pins = [shapes.box((0.015, 0.015, 0.015), (x, y, -0.507)) for x, y in places]
+    posts = [shapes.box((0.3, 0.3, 1.5), (x, x, 1.24)) for x in (-0.3, 0.2)]
+    hierarchy = segment(shapes.joined(shapes.box(), *posts, *pins).mesh)
+    assert hierarchy.max_segments > 900
+    labels = hierarchy.labels(3)[:36].reshape(3, 12)
+    assert (labels == labels[:, :1]).all()
+    assert len(set(labels[:, 0])) == 3
+
+
 @pytest.mark.parametrize("mesh", [BURR.mesh, DUMBBELL.mesh, shapes.icosphere(3), shapes.box()])
 def test_every_segment_at_every_level_is_connected(mesh):
     hierarchy = segment(mesh)

@@ -50,6 +50,7 @@ def test_cuts_between_pieces_divide_no_piece_and_have_connected_sides(seed: int,
     cuts = cuts_between_pieces(graph, piece)
     assert len(cuts) == min(MOST_CUTS, piece.max())
     assert len({cut.key for cut in cuts}) == len(cuts)
+    np.testing.assert_array_less(-1e-9, np.diff([cut.ncc for cut in cuts]))
     for cut in cuts:
         assert is_connected(graph, cut.side)
         assert is_connected(graph, ~cut.side)

@@ -1,84 +1,33 @@
 """Which splits are one step: those that separate equal parts of one body, and those of chains of equal parts."""
 
-from dataclasses import dataclass, replace
+from dataclasses import replace
 
 import numpy as np
 import pytest
 
+from helpers.jointed_parts import BODY, FLAT, LEG, LONG_LEG, Parts, one_by_one, star
 from segcore import shapes
 from segcore.cut.siblings import sibling_steps
-from segcore.graphs.surface_graph import SurfaceGraph
-from segcore.graphs.tree import Tree
 from segcore.mesh import Mesh
 from segcore.method import segment
 
-BODY, LEG, LONG_LEG, FLAT = (8, 8), (2, 6), (2, 9), (3, 4)  # rows and columns of nodes; FLAT has the size of LEG
 
-
-@dataclass(frozen=True, slots=True, eq=False)
-class Parts:
-    """Grids of nodes in space, far apart from one another, with joints between them."""
-
-    sizes: list[tuple[int, int]]
-    joints: list[tuple[int, int]]
-    affinity: float = 0.1  # of the joints
-    widths: dict[int, int] | None = None  # edges of a joint, 2 by default
-
-    def graph(self) -> tuple[SurfaceGraph, np.ndarray, np.ndarray]:
-        """The graph, the positions of its nodes and the part of each node."""
-        first = np.cumsum([0, *(rows * columns for rows, columns in self.sizes)])
-        part = np.repeat(np.arange(len(self.sizes)), np.diff(first))
-        grids = [np.indices(size).reshape(2, -1).T for size in self.sizes]
-        points = np.concatenate(
-            [np.pad(grid, ((0, 0), (0, 1)), constant_values=20.0 * i) for i, grid in enumerate(grids)]
-        )
-        edges, affinity = [], []
-        for at, (rows, columns) in zip(first, self.sizes, strict=False):
-            grid = at + np.arange(rows * columns).reshape(rows, columns)
-            inner = [*zip(grid[:-1].flat, grid[1:].flat, strict=True)]
-            inner += [*zip(grid[:, :-1].flat, grid[:, 1:].flat, strict=True)]
-            edges += inner
-            affinity += [1.0] * len(inner)
-        for joint, (a, b) in enumerate(self.joints):
-            width = (self.widths or {}).get(joint, 2)
-            edges += [(first[a] + i, first[b] + i) for i in range(width)]
-            affinity += [self.affinity] * width
-        length = np.ones(len(edges))
-        graph = SurfaceGraph(np.array(edges, np.int32), np.array(affinity), np.ones(len(part)), length)
-        return graph, points.astype(np.float64), part
-
-    def steps(self, cuts: list[tuple[set[int], set[int]]], step: list[int] | None = None) -> list[int]:
-        """The steps of the tree whose split s separates two sets of parts, the larger one first."""
-        graph, points, part = self.graph()
-        nodes: list[frozenset[int]] = [frozenset(range(len(self.sizes)))]
-        split_node = []
-        for larger, smaller in cuts:
-            split_node.append(nodes.index(frozenset(larger | smaller)))
-            nodes += [frozenset(larger), frozenset(smaller)]
-        leaf = np.array([nodes.index(frozenset([p])) for p in part], np.int32)
-        tree = Tree(np.array(split_node, np.int32), np.ones(len(cuts)), leaf, 1)
-        if step is not None:
-            tree = replace(tree, step=np.array(step, np.int32))
-        return sibling_steps(graph, points, tree).tolist()
-
-
-def star(legs: list[tuple[int, int]], **options: object) -> Parts:
-    """A body, part 0, with legs 1, 2, ... at it."""
-    return Parts([BODY, *legs], [(0, leg + 1) for leg in range(len(legs))], **options)
-
-
-def one_by_one(legs: list[int]) -> list[tuple[set[int], set[int]]]:
-    """The legs are cut off the body in this order."""
-    return [({0, *legs[i + 1 :]}, {leg}) for i, leg in enumerate(legs)]
+def steps(parts: Parts, cuts: list[tuple[set[int], set[int]]], step: list[int] | None = None) -> list[int]:
+    """The steps of the tree whose split s separates two sets of parts, the larger one first."""
+    graph, points, _ = parts.graph()
+    tree = parts.tree(cuts)
+    if step is not None:
+        tree = replace(tree, step=np.array(step, np.int32))
+    return sibling_steps(graph, points, tree).tolist()
 
 
 def test_four_legs_are_one_step() -> None:
-    assert star([LEG] * 4).steps(one_by_one([1, 2, 3, 4])) == [0, 0, 0, 0]
+    assert steps(star([LEG] * 4), one_by_one([1, 2, 3, 4])) == [0, 0, 0, 0]
 
 
 def test_the_last_leg_may_be_larger_than_the_body() -> None:
     small = Parts([(3, 3), LEG, LEG, LEG], [(0, 1), (0, 2), (0, 3)])
-    assert small.steps([({0, 2, 3}, {1}), ({0, 3}, {2}), ({3}, {0})]) == [0, 0, 0]
+    assert steps(small, [({0, 2, 3}, {1}), ({0, 3}, {2}), ({3}, {0})]) == [0, 0, 0]
 
 
 @pytest.mark.parametrize(
@@ -92,7 +41,7 @@ def test_the_last_leg_may_be_larger_than_the_body() -> None:
     ids=["another size", "another shape", "another length of the cut", "cuts that are not clear"],
 )
 def test_parts_that_differ_have_their_own_steps(legs: list[tuple[int, int]], options: dict[str, object]) -> None:
-    assert star(legs, **options).steps(one_by_one([1, 2])) == [0, 1]
+    assert steps(star(legs, **options), one_by_one([1, 2])) == [0, 1]
 
 
 def test_a_chain_that_is_halved_recursively_is_one_step() -> None:
@@ -100,57 +49,57 @@ def test_a_chain_that_is_halved_recursively_is_one_step() -> None:
     halves = [({0, 1, 2, 3}, {4, 5, 6, 7})]
     quarters = [({i, i + 1}, {i + 2, i + 3}) for i in (0, 4)]
     links = [({i}, {i + 1}) for i in (0, 2, 4, 6)]
-    assert chain.steps(halves + quarters + links) == [0] * 7
+    assert steps(chain, halves + quarters + links) == [0] * 7
 
 
 def test_a_chain_at_a_body_is_one_step_with_it() -> None:
     """A string of three beads that is cut off as a whole, and then into beads."""
     beads = Parts([BODY, LEG, LEG, LEG], [(0, 1), (1, 2), (2, 3)])
-    assert beads.steps([({0}, {1, 2, 3}), ({1, 2}, {3}), ({1}, {2})]) == [0, 0, 0]
+    assert steps(beads, [({0}, {1, 2, 3}), ({1, 2}, {3}), ({1}, {2})]) == [0, 0, 0]
 
 
 def test_another_branch_may_be_split_in_between() -> None:
     """The legs are the splits 1 and 3; the head, part 3, is cut off first and split in between."""
     parts = Parts([BODY, LEG, LEG, (4, 5), (4, 3)], [(0, 1), (0, 2), (0, 3), (3, 4)])
     cuts = [({0, 1, 2}, {3, 4}), ({0, 2}, {1}), ({3}, {4}), ({0}, {2})]
-    assert parts.steps(cuts) == [0, 1, 2, 1]
+    assert steps(parts, cuts) == [0, 1, 2, 1]
 
 
 def test_a_part_that_is_cut_off_between_two_legs_joins_their_step() -> None:
-    assert star([LEG, FLAT, LEG]).steps(one_by_one([1, 2, 3])) == [0, 0, 0]
+    assert steps(star([LEG, FLAT, LEG]), one_by_one([1, 2, 3])) == [0, 0, 0]
 
 
 def test_two_parts_between_two_legs_keep_them_apart() -> None:
-    assert star([LEG, FLAT, (4, 5), LEG]).steps(one_by_one([1, 2, 3, 4])) == [0, 1, 2, 3]
+    assert steps(star([LEG, FLAT, (4, 5), LEG]), one_by_one([1, 2, 3, 4])) == [0, 1, 2, 3]
 
 
 def test_two_parts_between_pairs_of_legs_join_their_step() -> None:
     parts = star([LEG, LEG, FLAT, (4, 5), LEG, LEG, (4, 4)])
-    assert parts.steps(one_by_one([1, 2, 3, 4, 5, 6, 7])) == [0, 0, 0, 0, 0, 0, 1]
+    assert steps(parts, one_by_one([1, 2, 3, 4, 5, 6, 7])) == [0, 0, 0, 0, 0, 0, 1]
 
 
 def test_halves_of_legs_are_not_siblings_of_the_body() -> None:
     """Each leg is cut in two equal halves where it is wider than at the body."""
     parts = Parts([BODY, *[LEG] * 4], [(0, 1), (1, 2), (0, 3), (3, 4)], widths={1: 6, 3: 6})
     cuts = [({0, 3, 4}, {1, 2}), ({0}, {3, 4}), ({1}, {2}), ({3}, {4})]
-    assert parts.steps(cuts) == [0, 0, 1, 2]
+    assert steps(parts, cuts) == [0, 0, 1, 2]
 
 
 def test_steps_that_are_given_are_only_merged() -> None:
     """Splits 1 and 2 are one step already: the step of the legs takes it over, and split 2 with it."""
     parts = Parts([BODY, LEG, LEG, (4, 5), (4, 3)], [(0, 1), (0, 2), (0, 3), (3, 4)])
     cuts = [({0, 1, 2}, {3, 4}), ({0, 2}, {1}), ({3}, {4}), ({0}, {2})]
-    assert parts.steps(cuts, [0, 1, 1, 2]) == [0, 1, 1, 1]
-    assert star([LEG, LONG_LEG]).steps(one_by_one([1, 2]), [0, 0]) == [0, 0]
+    assert steps(parts, cuts, [0, 1, 1, 2]) == [0, 1, 1, 1]
+    assert steps(star([LEG, LONG_LEG]), one_by_one([1, 2]), [0, 0]) == [0, 0]
 
 
 def test_equal_bodies_that_do_not_touch_are_one_step() -> None:
     apart = Parts([BODY, *[LEG] * 3], [])
-    assert apart.steps(one_by_one([1, 2, 3])) == [0, 0, 0]
+    assert steps(apart, one_by_one([1, 2, 3])) == [0, 0, 0]
 
 
 def test_a_tree_without_cuts_has_no_steps() -> None:
-    assert Parts([LEG], []).steps([]) == []
+    assert steps(Parts([LEG], []), []) == []
 
 
 def test_the_legs_of_a_table_are_children_of_one_node() -> None:

@@ -6,8 +6,10 @@ from helpers.graphs import is_connected
 from helpers.trees import members, two_sides
 from segcore import shapes
 from segcore.clean.surface import build_surface
+from segcore.graphs.surface_graph import components_within
 from segcore.graphs.tree import Tree
 from segcore.label.projection import Votes, _connected, project
+from segcore.mesh import Mesh
 
 SURFACE = build_surface(shapes.icosphere(1))
 FACES = SURFACE.face_graph()
@@ -48,12 +50,28 @@ def test_a_clean_cut_of_the_vertices_is_kept():
 
 @settings(max_examples=60)
 @given(st.integers(0, 10**6))
-def test_each_side_of_a_cut_keeps_most_of_its_faces_when_it_is_made_connected(seed):
+def test_the_largest_piece_of_each_side_stays_when_the_sides_are_made_connected(seed):
     side = np.random.default_rng(seed).random(len(SURFACE.faces)) < 0.5
     connected = _connected(FACES, side)
-    assert 2 * FACES.volume[connected == side].sum() >= FACES.total_volume
     assert is_connected(FACES, connected)
     assert is_connected(FACES, ~connected)
+    piece, count = components_within(FACES.edges, side)
+    volume = np.bincount(piece, FACES.volume, count)
+    for which in (True, False):
+        largest = max(set(piece[side == which]), key=lambda p: volume[p])
+        assert (connected[piece == largest] == which).all()
+
+
+def test_a_small_component_that_lies_apart_does_not_take_the_place_of_a_split():
+    """Of very many components the small ones are merged with others, and no edge leads to them."""
+    sphere = shapes.icosphere(1)
+    speck = Mesh(0.01 * sphere.vertices + [1.5, 0.0, 1.5], sphere.faces)
+    surface = build_surface(shapes.joined(sphere, speck).mesh)
+    upper = surface.vertices[:, 2] > 0.01
+    projected = project(two_sides(upper), Votes.of_corners(surface.faces), surface.face_graph())
+    votes = upper[surface.faces].sum(axis=1) >= 2
+    assert len(set(projected.leaf[votes])) == len(set(projected.leaf[~votes])) == 1
+    np.testing.assert_array_equal(projected.split_node, [0])
 
 
 def test_a_split_that_no_face_follows_is_left_out():
