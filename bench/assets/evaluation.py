@@ -54,6 +54,8 @@ class AssetResult:
     kmeans: float  # 1 - Rand of k-means of the face centroids with the true number
     flat: float  # share of the automatic cut's length inside flat faces
     mirror: float  # 1 - Rand of the automatic labels against their mirror image; nan if the set is not symmetric
+    repeats: int  # groups of congruent shells
+    unlike: int  # such groups of which not all shells are cut alike
     cpu_s: float  # CPU time of the segmentation alone, all threads of the process
 
     @property
@@ -98,6 +100,7 @@ def evaluate_asset(asset: Asset, segmenter: CleaveSegmenter, seed: int, drawn: b
 
 def _measured(asset: Asset, mesh: Mesh, reference: Reference, hierarchy: Hierarchy, cpu_s: float) -> AssetResult:
     # Imported here so that the other commands do not load the compiled kernels.
+    from bench.assets.repeats import repeats_of
     from bench.assets.shape import component_labels, flat_share, mirror_disagreement
     from segcore.clean.surface import build_surface
 
@@ -105,6 +108,8 @@ def _measured(asset: Asset, mesh: Mesh, reference: Reference, hierarchy: Hierarc
     automatic = hierarchy.labels()
     surface = build_surface(mesh)
     centres = mesh.corners.mean(axis=1)
+    shell = component_labels(surface)
+    repeats = repeats_of(mesh, reference.area, shell, automatic)
     symmetric = asset.collection in SYMMETRIC
     return AssetResult(
         collection=asset.collection,
@@ -115,9 +120,11 @@ def _measured(asset: Asset, mesh: Mesh, reference: Reference, hierarchy: Hierarc
         automatic=Agreement.of(reference, automatic),
         best_segments=int(np.argmin(levels)) + 1,
         best=float(levels.min()),
-        components=one_minus_rand(reference.shared_areas(component_labels(surface))),
+        components=one_minus_rand(reference.shared_areas(shell)),
         kmeans=asset.kmeans,
         flat=flat_share(surface, automatic),
         mirror=mirror_disagreement(centres, reference.area, automatic) if symmetric else math.nan,
+        repeats=repeats.groups,
+        unlike=repeats.unlike,
         cpu_s=cpu_s,
     )

@@ -53,6 +53,8 @@ def render(results: Sequence[AssetResult]) -> str:
             f"Half or fewer of the parts found: {halved} of {len(results)} models.",
             f"Sets with an automatic result worse than components or k-means by more than 0.005: {len(worse)} of "
             f"{len(sets)}{': ' if worse else ''}{', '.join(worse)}.",
+            f"Groups of congruent shells that are not cut alike: {sum(result.unlike for result in results)} of "
+            f"{sum(result.repeats for result in results)}.",
         ]
     )
 

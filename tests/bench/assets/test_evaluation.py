@@ -36,6 +36,8 @@ def result(collection: str, parts: int = 4, automatic: float = 0.2, segments: in
             kmeans=0.25,
             flat=0.5,
             mirror=math.nan,
+            repeats=2,
+            unlike=1,
             cpu_s=1.0,
         ),
         **values,
@@ -96,6 +98,7 @@ def test_half_of_the_parts_or_fewer_are_counted() -> None:
     results = [result("a", parts=5, segments=segments) for segments in (1, 2, 3)]
     assert by_set(results)[0].halved == 2
     assert "Half or fewer of the parts found: 2 of 3 models." in render(results)
+    assert "Groups of congruent shells that are not cut alike: 3 of 6." in render(results)
 
 
 def test_the_table_has_a_row_for_every_set_and_one_for_the_mean() -> None:
