@@ -1,6 +1,6 @@
 """A contact sheet: models of the benchmark, or any files, in the colours of their segments, as one PNG.
 
-Without --models and --files, it shows --limit models of the benchmark, spread evenly over the list. With --levels, each
+With --cad, the meshes are twenty solids as CAD programs write them. Without --models, --files and --cad, it shows --limit models of the benchmark, spread evenly over the list. With --levels, each
 mesh is a row: the automatic number of segments, then the levels, as far as the hierarchy of the mesh goes.
 """
 
@@ -12,6 +12,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from bench.cad import cad_meshes
 from bench.datasets import read_mesh
 from bench.princeton.dataset import Model, find_models, read_models
 
@@ -27,6 +28,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     source = parser.add_mutually_exclusive_group(required=True)
     source.add_argument("--data", type=Path, metavar="DIR", help="the folder of the benchmark")
     source.add_argument("--files", type=Path, nargs="+", metavar="FILE", help="draw these meshes instead")
+    source.add_argument("--cad", action="store_true", help="draw twenty solids as CAD programs write them")
     parser.add_argument(
         "--levels", type=_numbers, default=[], metavar="N,N", help="further numbers of segments to draw"
     )
@@ -55,6 +57,8 @@ def run(arguments: argparse.Namespace) -> None:
 
 def _meshes(arguments: argparse.Namespace) -> list[tuple[Mesh, int | None]]:
     """Return the meshes, each with the number of segments to draw, None for the automatic one."""
+    if arguments.cad:
+        return [(mesh, None) for mesh in cad_meshes().values()]
     if arguments.files is not None:
         return [(read_mesh(path, path.name), None) for path in arguments.files]
     given = arguments.segments == "given"

@@ -9,7 +9,7 @@ from segcore import shapes
 from segcore.mesh import Mesh, face_normals_and_areas
 
 ROD = shapes.box((0.3, 0.5, 2.0))
-TURNED = Mesh(Rotation.from_euler("xyz", (0.3, 0.7, 1.1)).apply(ROD.vertices + [3.0, 0.0, 0.0]), ROD.faces)
+TURNED = Mesh(Rotation.from_euler("xyz", (0.3, 0.7, 1.1)).apply(np.add(ROD.vertices, (3.0, 0.0, 0.0))), ROD.faces)
 LONGER = shapes.box((0.3, 0.5, 2.1), (6.0, 0.0, 0.0))
 SPECK = shapes.box((0.01, 0.01, 0.01), (9.0, 0.0, 0.0))
 OTHER_SPECK = shapes.box((0.01, 0.01, 0.01), (9.0, 1.0, 0.0))
