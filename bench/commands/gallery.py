@@ -1,7 +1,8 @@
 """A contact sheet: models of the benchmark, or any files, in the colours of their segments, as one PNG.
 
-With --cad, the meshes are twenty solids as CAD programs write them. Without --models, --files and --cad, it shows --limit models of the benchmark, spread evenly over the list. With --levels, each
-mesh is a row: the automatic number of segments, then the levels, as far as the hierarchy of the mesh goes.
+With --cad, the meshes are twenty solids as CAD programs write them. Without --models, --files and --cad, it shows
+--limit models of the benchmark, spread evenly over the list. With --levels, each mesh is a row: the automatic number of
+segments, then the levels, as far as the hierarchy of the mesh goes.
 """
 
 from __future__ import annotations
