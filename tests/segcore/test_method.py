@@ -4,7 +4,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from hypothesis.extra import numpy as npst
 
-from helpers.creatures import creature, limb_of_face, mirrored_labels
+from helpers.bodies.creatures import creature, limb_of_face, mirrored_labels
 from helpers.meshes import agreement, areas, exploded, pieces_of_labels, rotation
 from segcore import shapes
 from segcore.mesh import Mesh

@@ -5,7 +5,7 @@ from pathlib import Path
 import pytest
 
 from bench.__main__ import main
-from helpers.creatures import creature
+from helpers.bodies.creatures import creature
 from helpers.printing.bars import bar
 from helpers.printing.slicers import needs_slicer
 from segcore.io import write_mesh

@@ -6,9 +6,9 @@ import numpy as np
 import pytest
 import trimesh
 
+from helpers.bodies.creatures import creature
 from helpers.browser.edits import EditedJob, across, choose, stroke, wait_for_preview, wait_for_revision
 from helpers.browser.visit import Visit
-from helpers.creatures import creature
 from helpers.files.written import mesh_bytes
 from helpers.installation import Installation
 

@@ -3,7 +3,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from helpers.creatures import creature
+from helpers.bodies.creatures import creature
 from helpers.graphs import is_connected, weighted_graph
 from helpers.meshes import rotation
 from helpers.trees import members

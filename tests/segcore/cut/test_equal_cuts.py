@@ -3,8 +3,8 @@
 import numpy as np
 import pytest
 
-from helpers.jointed_parts import BODY, FLAT, LEG, LONG_LEG, Parts, one_by_one, star
-from helpers.limbs import body_with_limbs
+from helpers.bodies.jointed_parts import BODY, FLAT, LEG, LONG_LEG, Parts, one_by_one, star
+from helpers.bodies.limbs import body_with_limbs
 from segcore.cut.bodies import pieces_of
 from segcore.cut.equal_cuts import PartedBodies, equal_cuts, means_of_groups
 from segcore.cut.fields import ClusterFields, Segment

@@ -5,7 +5,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from helpers.jointed_parts import BODY, FLAT, LEG, LONG_LEG, Parts, one_by_one, star
+from helpers.bodies.jointed_parts import BODY, FLAT, LEG, LONG_LEG, Parts, one_by_one, star
 from segcore import shapes
 from segcore.cut.siblings import sibling_steps
 from segcore.mesh import Mesh

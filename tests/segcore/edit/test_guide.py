@@ -2,7 +2,7 @@ import numpy as np
 import pytest
 
 import segcore
-from helpers.creatures import LIMBS, creature, limb_of_face
+from helpers.bodies.creatures import LIMBS, creature, limb_of_face
 from helpers.meshes import agreement, areas, exploded, pieces_of_labels
 from segcore import shapes
 from segcore.edit import guide as guide_module

@@ -1,7 +1,7 @@
 import numpy as np
 import pytest
 
-from helpers.creatures import creature, limb_of_face
+from helpers.bodies.creatures import creature, limb_of_face
 from helpers.meshes import rotation
 from helpers.trees import grown_tree
 from segcore.array_kernels import face_centroids

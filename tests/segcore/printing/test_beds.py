@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from helpers.creatures import creature
+from helpers.bodies.creatures import creature
 from helpers.printing.bars import bar
 from helpers.printing.solids import volume
 from segcore.method import segment

@@ -3,7 +3,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from helpers.creatures import creature
+from helpers.bodies.creatures import creature
 from helpers.graphs import graph_of
 from helpers.meshes import rotation
 from segcore.affinity.mesh_graphs import mesh_graph

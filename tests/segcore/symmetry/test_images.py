@@ -1,7 +1,7 @@
 import numpy as np
 import pytest
 
-from helpers.creatures import creature
+from helpers.bodies.creatures import creature
 from helpers.meshes import moved, rotation
 from segcore import shapes
 from segcore.array_kernels import face_centroids

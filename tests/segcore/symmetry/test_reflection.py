@@ -1,7 +1,7 @@
 import numpy as np
 import pytest
 
-from helpers.creatures import creature
+from helpers.bodies.creatures import creature
 from helpers.meshes import moved, refined, rotation
 from segcore import shapes
 from segcore.array_kernels import area_moments

@@ -8,7 +8,7 @@ import trimesh
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from helpers.creatures import creature
+from helpers.bodies.creatures import creature
 from helpers.files.hierarchies import segmentations
 from helpers.meshes import moved
 from helpers.printing.solids import cup, fans, halves, lathe, pipe, volume

@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 from bench.printing.slicer import are_manifold, slice_file
-from helpers.creatures import creature
+from helpers.bodies.creatures import creature
 from helpers.files.written import members, written
 from helpers.meshes import exploded, moved
 from helpers.printing.slicers import needs_slicer

@@ -1,0 +1,1 @@
+"""Data sets for the tests of the benchmark, with values that are known by hand."""
