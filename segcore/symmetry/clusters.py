@@ -92,29 +92,49 @@ def _mirrored(graph: SurfaceGraph, mirror: MirrorImage, of_first: IntArray) -> I
     """(F,) clusters 0..C - 1 of the first half, and C..2 C - 1 of the second half, all connected and none empty.
 
     If a mesh is not symmetric itself, an image can be in several pieces or have no face. All pieces but the largest
-    then join a neighbour, in the same half if there is one there, and a cluster without an image joins the one that has
-    its place in the second half.
+    then join a neighbour, in the same half if there is one there. An image also comes apart at creases, unless its
+    cluster has some. A cluster without an image joins a neighbour.
 
     Parameters
     ----------
     of_first : (F / 2,) the clusters of the faces of the first half.
     """
     first, second = np.flatnonzero(mirror.is_first), np.flatnonzero(~mirror.is_first)
-    is_smooth = graph.weight >= _CREASE * graph.length
-    is_smooth |= mirror.is_first[graph.edges].all(axis=1)
-    smooth = SurfaceGraph(graph.edges[is_smooth], graph.weight[is_smooth], graph.volume, graph.length[is_smooth])
+    is_crease = graph.weight < _CREASE * graph.length
     while True:
         count = int(of_first.max()) + 1
         of_node = np.empty(graph.node_count, dtype=np.int32)
         of_node[first] = of_first
         of_node[second] = of_node[mirror.of_face[second]] + count
         half = np.repeat(np.arange(2, dtype=np.int32), count)
+        smooth = _without_edges(graph, is_crease & ~_keeps_creases(graph, of_node, is_crease, count))
         of_node = in_one_piece(graph, in_one_piece(smooth, of_node, half), half)
         of_first = of_node[first]
         is_empty = np.bincount(of_node, minlength=2 * count)[count:] == 0
         if not is_empty.any():
             return in_one_piece(graph, of_node, np.zeros(2 * count, dtype=np.int32))
         of_first = _without_empty(graph, mirror, of_node, is_empty)[first]
+
+
+def _keeps_creases(graph: SurfaceGraph, of_node: IntArray, is_crease: BoolArray, count: int) -> BoolArray:
+    """(E,) True for edges inside images of clusters that have creases themselves, and for those of the first half.
+
+    Parameters
+    ----------
+    of_node : (F,) clusters 0..C - 1 of the first half, and their images C..2 C - 1.
+    is_crease : (E,) whether the affinity of an edge is that of a crease.
+    count : C.
+    """
+    one, other = of_node[graph.edges].T
+    is_first = (one < count) & (other < count)
+    has_crease = np.zeros(count, dtype=np.bool_)
+    has_crease[one[is_first & is_crease & (one == other)]] = True
+    return is_first | ((one == other) & has_crease[one % count])
+
+
+def _without_edges(graph: SurfaceGraph, left_out: BoolArray) -> SurfaceGraph:
+    kept = ~left_out
+    return SurfaceGraph(graph.edges[kept], graph.weight[kept], graph.volume, graph.length[kept])
 
 
 def _without_empty(graph: SurfaceGraph, mirror: MirrorImage, of_node: IntArray, is_empty: BoolArray) -> IntArray:

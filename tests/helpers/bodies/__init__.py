@@ -1,1 +1,1 @@
-"""Data sets for the tests of the benchmark, with values that are known by hand."""
+"""Bodies with limbs and parts with joints for the tests of cuts."""
