@@ -35,7 +35,7 @@ def snowman():
 def test_the_back_of_a_chair_of_boxes_is_cut_off_before_its_slats(gap, times):
     shape = chair(gap, times)
     back = (shape.parts >= 5) & (shape.parts < 11)
-    labels = segment(shape.mesh).labels(4)
+    labels = segment(shape.mesh).labels(2)
     assert len(set(labels[back])) == 1
     assert labels[back][0] not in labels[~back]
 
