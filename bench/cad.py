@@ -7,7 +7,10 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from bench.errors import BenchmarkError
+from segcore.errors import MissingPackage
 from segcore.mesh import Mesh
+from segcore.printing.booleans import library
 
 if TYPE_CHECKING:
     from manifold3d import Manifold
@@ -21,10 +24,13 @@ def cad_meshes() -> dict[str, Mesh]:
 
     Raises
     ------
-    ImportError
-        If manifold3d, from the extra ``print``, is not installed.
+    BenchmarkError
+        If manifold3d is not installed.
     """
-    return {make.__name__.removeprefix("_"): _mesh(make()) for make in _SOLIDS}
+    try:
+        return {make.__name__.removeprefix("_"): _mesh(make()) for make in _SOLIDS}
+    except MissingPackage as error:
+        raise BenchmarkError(str(error)) from error
 
 
 def _mesh(solid: Manifold) -> Mesh:
@@ -33,30 +39,22 @@ def _mesh(solid: Manifold) -> Mesh:
 
 
 def _box(size: Point, centre: Point = (0.0, 0.0, 0.0)) -> Manifold:
-    from manifold3d import Manifold
-
-    return Manifold.cube(size, center=True).translate(centre)
+    return library().Manifold.cube(size, center=True).translate(centre)
 
 
 def _rod(radius: float, height: float, centre: Point = (0.0, 0.0, 0.0), turn: Point = (0.0, 0.0, 0.0)) -> Manifold:
     """A cylinder along z, turned by angles in degrees and moved."""
-    from manifold3d import Manifold
-
-    rod = Manifold.cylinder(height, radius, radius, _AROUND, center=True)
+    rod = library().Manifold.cylinder(height, radius, radius, _AROUND, center=True)
     return rod.rotate(turn).translate(centre)
 
 
 def _around(part: Manifold, count: int) -> Manifold:
     """Copies of a part around z."""
-    from manifold3d import Manifold
-
-    return Manifold.compose([part.rotate((0.0, 0.0, 360.0 * i / count)) for i in range(count)])
+    return library().Manifold.compose([part.rotate((0.0, 0.0, 360.0 * i / count)) for i in range(count)])
 
 
 def _union(*parts: Manifold) -> Manifold:
-    from manifold3d import Manifold, OpType
-
-    return Manifold.batch_boolean(list(parts), OpType.Add)
+    return library().Manifold.batch_boolean(list(parts), library().OpType.Add)
 
 
 def _plate() -> Manifold:
@@ -135,15 +133,11 @@ def _knob() -> Manifold:
 
 
 def _bolt() -> Manifold:
-    from manifold3d import Manifold
-
-    return _union(Manifold.cylinder(0.4, 0.55, 0.55, 6, center=True), _rod(0.3, 2, (0, 0, -1.1)))
+    return _union(library().Manifold.cylinder(0.4, 0.55, 0.55, 6, center=True), _rod(0.3, 2, (0, 0, -1.1)))
 
 
 def _lever() -> Manifold:
-    from manifold3d import Manifold
-
-    ball = Manifold.sphere(0.28, _AROUND).translate((0, 0, 1.6))
+    ball = library().Manifold.sphere(0.28, _AROUND).translate((0, 0, 1.6))
     return _union(_rod(0.6, 0.2, (0, 0, -0.1)), _rod(0.1, 1.6, (0, 0, 0.8)), ball)
 
 

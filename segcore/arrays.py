@@ -32,6 +32,24 @@ def pair_keys(pairs: NDArray[np.integer], count: int) -> LongArray:
     return keys
 
 
+def largest_options(
+    default: IntArray, item: NDArray[np.integer], option: NDArray[np.integer], value: FloatArray
+) -> IntArray:
+    """(N,) for every item the option for which the sum of its values is largest; of equal ones the last.
+
+    Parameters
+    ----------
+    default : (N,) the option of items that have none.
+    item, option, value : (P,) pairs of items and options, >= 0, which may be repeated.
+    """
+    count = int(option.max(initial=0)) + 1
+    keys, which = np.unique(item.astype(np.int64) * count + option, return_inverse=True)
+    ascending = np.argsort(group_sums(which, value), kind="stable")
+    chosen = default.copy()
+    chosen[keys[ascending] // count] = keys[ascending] % count
+    return chosen
+
+
 def significant(value: float) -> float:
     """Return a number with six significant digits, as reports give it."""
     return float(f"{value:.6g}")

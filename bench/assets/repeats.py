@@ -10,7 +10,7 @@ from segcore.arrays import group_sums
 from segcore.cut.node_shapes import Shapes, moment_sums
 
 if TYPE_CHECKING:
-    from segcore.arrays import BoolArray, FloatArray, IntArray
+    from segcore.arrays import FloatArray, IntArray
     from segcore.mesh import Mesh
 
 # Set by hand.
@@ -42,24 +42,18 @@ def repeats_of(mesh: Mesh, area: FloatArray, shell: IntArray, label: IntArray) -
     sums = moment_sums(shell, area, mesh.corners.mean(axis=1), count)
     large = np.flatnonzero(sums[:, 0] >= _SPECK * sums[:, 0].sum())
     shapes = Shapes.of(sums[large])
-    faces = np.bincount(shell, minlength=count)[large].astype(np.int32)
+    faces = np.bincount(shell, minlength=count)[large]
     state = _states(area, shell, label)[large]
     groups = unlike = 0
     waiting = np.ones(len(large), dtype=np.bool_)
     for first in range(len(large)):
-        members = waiting & _congruent(shapes, faces, first)
+        is_like = shapes.like(shapes.log_area[first], shapes.spread[first], _TOLERANCE, _TOLERANCE)
+        members = waiting & is_like & (faces == faces[first])
         waiting &= ~members
         if np.count_nonzero(members) > 1:
             groups += 1
             unlike += len(np.unique(state[members], axis=0)) > 1
     return Repeats(groups, unlike)
-
-
-def _congruent(shapes: Shapes, faces: IntArray, first: int) -> BoolArray:
-    spread = shapes.spread[first]
-    same: BoolArray = (faces == faces[first]) & (np.abs(shapes.log_area - shapes.log_area[first]) <= _TOLERANCE)
-    same &= np.all(np.abs(shapes.spread - spread) <= _TOLERANCE * spread[2], axis=1)
-    return same
 
 
 def _states(area: FloatArray, shell: IntArray, label: IntArray) -> IntArray:

@@ -13,6 +13,7 @@ from scipy.sparse.csgraph import breadth_first_order, minimum_spanning_tree
 from segcore.arrays import FloatArray, IntArray, group_sums
 from segcore.graphs.cheeger import Cut, cut_of
 from segcore.graphs.surface_graph import SurfaceGraph, connected_components
+from segcore.graphs.tree import common_ancestors
 from segcore.jit.decorators import kernel
 
 MOST_CUTS = 8  # between pieces, that are compared by their features; set by hand
@@ -104,7 +105,7 @@ def cuts_between_pieces(graph: SurfaceGraph, piece: IntArray) -> list[Cut]:
     place, end, parent = _spanning_tree(pairs, weight, count)
     # What a pair of pieces adds to the cut of a subtree that has both of them is subtracted where their paths meet.
     low, high = place[pairs].T
-    common = _common_ancestors(low, high, parent)
+    common = common_ancestors(parent, low, high)
     added = group_sums(np.concatenate([low, high]), np.tile(weight, 2), count) - 2.0 * group_sums(common, weight, count)
     cut = _subtree_sums(added, end)[1:]  # without the whole tree
     below = _subtree_sums(group_sums(place, volume, count), end)[1:]
@@ -141,15 +142,6 @@ def _spanning_tree(pairs: IntArray, weight: FloatArray, count: int) -> tuple[Int
     end[first] = first + size
     above[first[order[1:]]] = first[parent[order[1:]]]
     return first, end, above
-
-
-def _common_ancestors(one: IntArray, other: IntArray, parent: IntArray) -> IntArray:
-    """(P,) the last common ancestor of each pair of places in a tree in which parents have smaller places."""
-    a, b = one.copy(), other.copy()
-    while len(apart := np.flatnonzero(a != b)):
-        low, high = np.minimum(a[apart], b[apart]), np.maximum(a[apart], b[apart])
-        a[apart], b[apart] = parent[high], low
-    return a
 
 
 def _subtree_sums(values: FloatArray, end: IntArray) -> FloatArray:

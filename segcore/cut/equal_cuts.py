@@ -37,7 +37,7 @@ def equal_cuts(graph: SurfaceGraph, points: FloatArray, tree: Tree) -> IntArray:
     group = np.full(len(by_area), -1, dtype=np.int32)
     for first in range(len(by_area)):
         if group[first] < 0:
-            is_equal = _congruent(parts, parts.log_area[first], parts.spread[first])
+            is_equal = parts.like(parts.log_area[first], parts.spread[first], _AREA, _SPREAD)
             is_equal &= np.abs(length - length[first]) <= _LENGTH
             group[is_equal & (group < 0)] = first
     number = np.empty_like(group)
@@ -106,12 +106,5 @@ class PartedBodies:
             )
 
     def _has(self, part: _Part) -> bool:
-        is_known = _congruent(self._known, part.shape.log_area[0], part.shape.spread[0])
+        is_known = self._known.like(part.shape.log_area[0], part.shape.spread[0], _AREA, _SPREAD)
         return bool(np.any(is_known & (self._pieces == part.pieces)))
-
-
-def _congruent(shapes: Shapes, log_area: float, spread: FloatArray) -> BoolArray:
-    """(K,) True for the shapes that are about the same as one of an area and a spread (3,)."""
-    is_congruent: BoolArray = np.abs(shapes.log_area - log_area) <= _AREA
-    is_congruent &= np.all(np.abs(shapes.spread - spread) <= _SPREAD * spread[2], axis=1)
-    return is_congruent

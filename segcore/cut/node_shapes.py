@@ -4,7 +4,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from segcore.arrays import FloatArray, IntArray, group_sums
+from segcore.arrays import BoolArray, FloatArray, IntArray, group_sums
 from segcore.graphs.surface_graph import SurfaceGraph
 from segcore.graphs.tree import Tree
 
@@ -29,6 +29,18 @@ class Shapes:
         second = moments[:, [3, 4, 5, 4, 6, 7, 5, 7, 8]].reshape(-1, 3, 3)
         variance = np.linalg.eigvalsh(second - mean[:, :, None] * mean[:, None, :]) + node_variance
         return cls(np.log(sums[:, 0]), np.sqrt(np.maximum(variance, 0.0)))
+
+    def like(self, log_area: float, spread: FloatArray, of_area: float, of_spread: float) -> BoolArray:
+        """(K,) True for the shapes that are about the same as one with an area and a spread (3,).
+
+        Parameters
+        ----------
+        of_area : largest difference of the logarithms of the areas.
+        of_spread : largest difference of the standard deviations, in the largest one of ``spread``.
+        """
+        is_like: BoolArray = np.abs(self.log_area - log_area) <= of_area
+        is_like &= np.all(np.abs(self.spread - spread) <= of_spread * spread[2], axis=1)
+        return is_like
 
 
 @dataclass(frozen=True, slots=True, eq=False)

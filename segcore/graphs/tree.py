@@ -11,6 +11,21 @@ from segcore.hierarchy import renumbered_nodes
 from segcore.nary import numbered_steps, own_steps
 
 
+def common_ancestors(parent: IntArray, one: IntArray, other: IntArray) -> IntArray:
+    """(P,) the last common ancestor of each pair of nodes of a tree.
+
+    Parameters
+    ----------
+    parent : (N,) of every node, with a smaller number; that of the root does not matter.
+    one, other : (P,) nodes.
+    """
+    a, b = one.copy(), other.copy()
+    while len(apart := np.flatnonzero(a != b)):
+        low, high = np.minimum(a[apart], b[apart]), np.maximum(a[apart], b[apart])
+        a[apart], b[apart] = parent[high], low
+    return a
+
+
 @dataclass(frozen=True, slots=True, eq=False)
 class LeafIntervals:
     """Places 0, 1, ... for the leaves of a tree, such that the leaves of every node have consecutive ones."""
@@ -75,12 +90,7 @@ class Tree:
         split_of = np.full(2 * len(self.split_node) + 1, -1, dtype=np.int32)
         split_of[self.split_node] = np.arange(len(self.split_node))
         parent = np.concatenate([[-1], np.repeat(self.split_node, 2)])
-        a, b = a.copy(), b.copy()
-        while len(apart := np.flatnonzero(a != b)):
-            one, other = a[apart], b[apart]
-            a[apart] = parent[np.maximum(one, other)]  # nodes have larger numbers than the nodes above them
-            b[apart] = np.minimum(one, other)
-        return split_of[a]
+        return split_of[common_ancestors(parent, a, b)]
 
     def leaf_intervals(self) -> LeafIntervals:
         """Return the places of the leaves: those of the first child of a node come before those of the second."""

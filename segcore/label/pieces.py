@@ -3,7 +3,7 @@
 import numpy as np
 
 from segcore.array_kernels import distinct_pairs, face_centroids
-from segcore.arrays import at_least, group_sums
+from segcore.arrays import at_least, group_sums, pair_keys
 from segcore.clean.edge_geometry import edge_lengths
 from segcore.clean.refinement import Refinement
 from segcore.clean.surface import Surface
@@ -55,10 +55,8 @@ def links_of_faces(links: Links, pieces: MeshGraph, refinement: Refinement, surf
     Patches can be stitched along more of their borders once these are divided.
     """
     of_pieces = refinement.parent[pieces.graph.edges]
-    known, which = distinct_pairs(np.concatenate([surface.edge_faces, of_pieces]))
-    is_new = np.ones(len(known), dtype=np.bool_)
-    is_new[which[: len(surface.edge_faces)]] = False
-    new = is_new[which[len(surface.edge_faces) :]] & (of_pieces[:, 0] != of_pieces[:, 1])
+    of_faces, pairs = (pair_keys(pairs, len(surface.faces)) for pairs in (surface.edge_faces, of_pieces))
+    new = (of_pieces[:, 0] != of_pieces[:, 1]) & ~np.isin(pairs, of_faces)
     return Links(
         np.concatenate([refinement.parent[links.faces], of_pieces[new]]),
         np.concatenate([links.length, pieces.graph.length[new]]),

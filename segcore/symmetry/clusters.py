@@ -4,7 +4,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from segcore.arrays import BoolArray, IntArray, group_sums
+from segcore.arrays import BoolArray, IntArray, largest_options
 from segcore.coarsen.clusters import Clusters, cluster_nodes, clusters_of
 from segcore.graphs.mesh_graph import MeshGraph
 from segcore.graphs.surface_graph import SurfaceGraph, connected_components
@@ -113,7 +113,7 @@ def _mirrored(graph: SurfaceGraph, mirror: MirrorImage, of_first: IntArray) -> I
         is_empty = np.bincount(of_node, minlength=2 * count)[count:] == 0
         if not is_empty.any():
             return in_one_piece(graph, of_node, np.zeros(2 * count, dtype=np.int32))
-        of_first = _without_empty(graph, mirror, of_node, is_empty)[first]
+        of_first = _without_empty(graph, mirror, of_node, is_empty)
 
 
 def _keeps_creases(graph: SurfaceGraph, of_node: IntArray, is_crease: BoolArray, count: int) -> BoolArray:
@@ -138,26 +138,22 @@ def _without_edges(graph: SurfaceGraph, left_out: BoolArray) -> SurfaceGraph:
 
 
 def _without_empty(graph: SurfaceGraph, mirror: MirrorImage, of_node: IntArray, is_empty: BoolArray) -> IntArray:
-    """(F,) clusters 0, 1, ... of the first half; those whose image is empty have joined a neighbour.
+    """(F / 2,) clusters 0, 1, ... of the first half; those whose image is empty have joined a neighbour.
 
     Of several neighbours the one with the largest weight is taken, so that clusters do not continue across creases; if
     there is none, the one that has its place in the second half.
     """
     count = len(is_empty)
     ends = of_node[graph.edges]
-    inside = (ends < count).all(axis=1) & (ends[:, 0] != ends[:, 1])
-    one, other = np.concatenate([ends[inside], ends[inside][:, ::-1]]).T
-    keys, which = np.unique(one.astype(np.int64) * count + other, return_inverse=True)
-    weight = group_sums(which, np.tile(graph.weight[inside], 2))
-    neighbour = np.arange(count, dtype=np.int32)
+    between = (ends < count).all(axis=1) & (ends[:, 0] != ends[:, 1])
+    one, other = np.concatenate([ends[between], ends[between][:, ::-1]]).T
     first = np.flatnonzero(mirror.is_first)
-    neighbour[of_node[first][::-1]] = (of_node[mirror.of_face[first]] - count)[::-1]
-    ascending = np.argsort(weight, kind="stable")
-    neighbour[keys[ascending] // count] = keys[ascending] % count
+    place = np.empty(count, dtype=np.int32)
+    place[of_node[first][::-1]] = (of_node[mirror.of_face[first]] - count)[::-1]
+    neighbour = largest_options(place, one, other, np.tile(graph.weight[between], 2))
     empty = np.flatnonzero(is_empty).astype(np.int32)
     joined = connected_components(np.stack([empty, neighbour[empty]], axis=1), count)
-    cluster = np.minimum(of_node, count - 1)
-    return joined[cluster]
+    return joined[of_node[first]]
 
 
 def local_image(nodes: IntArray, image: IntArray) -> IntArray | None:

@@ -6,7 +6,7 @@ import numpy as np
 from scipy.spatial import KDTree
 
 from segcore.array_kernels import face_centroids
-from segcore.arrays import BoolArray, FloatArray, IntArray, group_sums
+from segcore.arrays import BoolArray, FloatArray, IntArray, group_sums, largest_options
 from segcore.clean.surface import Surface
 from segcore.coarsen.assembly import NEGLIGIBLE
 from segcore.graphs.surface_graph import connected_components
@@ -111,11 +111,7 @@ def _partners(component: IntArray, image: IntArray, areas: FloatArray) -> IntArr
     component, image : (F,) the component of every face, and that of its image.
     """
     count = int(component.max()) + 1
-    keys, which = np.unique(component.astype(np.int64) * count + image, return_inverse=True)
-    shared = group_sums(which, areas)
-    partner = np.empty(count, dtype=np.int32)
-    ascending = np.argsort(shared, kind="stable")
-    partner[keys[ascending] // count] = keys[ascending] % count
+    partner = largest_options(np.arange(count, dtype=np.int32), component, image, areas)
     is_alone = partner[partner] != np.arange(count)
     if (is_alone & (group_sums(component, areas) > NEGLIGIBLE * areas.sum())).any():
         return None

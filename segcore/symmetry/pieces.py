@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from segcore.arrays import IntArray, group_sums
+from segcore.arrays import IntArray, group_sums, largest_options
 from segcore.graphs.surface_graph import SurfaceGraph, components_inside, edges_between
 
 
@@ -38,9 +38,5 @@ def _joined_once(graph: SurfaceGraph, group: IntArray, kind: IntArray) -> IntArr
     ends = piece[graph.edges[edge]]
     one, other = np.concatenate([ends, ends[:, ::-1]]).T
     near = is_loose[one] & ~is_loose[other] & (kind[of_piece[one]] == kind[of_piece[other]])
-    keys, which = np.unique(one[near].astype(np.int64) * len(kind) + of_piece[other[near]], return_inverse=True)
-    border = group_sums(which, np.tile(graph.length[edge], 2)[near])
-    ascending = np.argsort(border, kind="stable")
-    of_piece[keys[ascending] // len(kind)] = keys[ascending] % len(kind)
-    joined: IntArray = of_piece[piece]
-    return joined
+    border = np.tile(graph.length[edge], 2)
+    return largest_options(of_piece, one[near], of_piece[other[near]], border[near])[piece]

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from segcore.array_kernels import distinct_pairs, dot
-from segcore.arrays import transformed
+from segcore.arrays import largest_options, transformed
 
 
 @pytest.mark.parametrize("count", [*range(18), 20_001])
@@ -28,3 +28,9 @@ def test_distinct_pairs_are_sorted_and_every_pair_is_one_of_them(pairs: int, ind
     expected = sorted({(int(min(pair)), int(max(pair))) for pair in drawn})
     assert distinct.tolist() == [list(pair) for pair in expected]
     np.testing.assert_array_equal(distinct[which], np.sort(drawn, axis=1))
+
+
+def test_the_option_with_the_largest_sum_is_taken_the_last_of_equal_ones_and_the_default_of_none() -> None:
+    item, option = np.array([0, 0, 0, 2, 2]), np.array([1, 4, 1, 3, 5])
+    value = np.array([1.0, 1.5, 1.0, 2.0, 2.0])
+    assert largest_options(np.array([7, 8, 9], dtype=np.int32), item, option, value).tolist() == [1, 8, 5]

@@ -3,9 +3,10 @@
 import numpy as np
 from scipy.spatial.transform import Rotation
 
-from segcore.arrays import FloatArray, IntArray
+from helpers.meshes import refined
+from segcore.arrays import IntArray
 from segcore.mesh import Mesh
-from segcore.shapes import box, subdivide
+from segcore.shapes import box, joined
 
 _HIPS = np.array([[0.8, 0.0, 0.2], [-0.8, 0.0, 0.3], [0.0, 0.5, 0.1], [0.0, -0.5, 0.0]])
 _OVERLAP = 0.02  # of a link of a limb with the one before
@@ -20,31 +21,22 @@ def body_with_limbs(seed: int, links: int = 4) -> tuple[Mesh, IntArray]:
     1 + limb * links + i for link i of a limb.
     """
     rng = np.random.default_rng(seed)
-    shells = [_divided(box((1.6, 1.0, 1.2)), 3)]
+    shells = [refined(box((1.6, 1.0, 1.2)), 3)]
     limb = _limb(rng, links)
     for hip in _HIPS:
         outwards = hip * [1.0, 1.0, 0.0]
         turn = Rotation.align_vectors([outwards], [[0.0, 0.0, 1.0]])[0] * Rotation.from_euler("z", rng.uniform(0, 6))
         pose = Rotation.from_rotvec(rng.normal(0.0, 0.25, 3)) * turn
-        shells += [(pose.apply(vertices) + hip, faces) for vertices, faces in limb]
-    first = np.cumsum([0, *(len(vertices) for vertices, _ in shells)])
-    faces = [faces + start for (_, faces), start in zip(shells, first, strict=False)]
-    link = np.repeat(np.arange(len(shells)), [len(f) for f in faces])
-    return Mesh(np.concatenate([vertices for vertices, _ in shells]), np.concatenate(faces)), link.astype(np.int32)
+        shells += [Mesh(pose.apply(shell.vertices) + hip, shell.faces) for shell in limb]
+    shape = joined(*shells)
+    return shape.mesh, shape.parts
 
 
-def _limb(rng: np.random.Generator, links: int) -> list[tuple[FloatArray, IntArray]]:
+def _limb(rng: np.random.Generator, links: int) -> list[Mesh]:
     """The shells of a limb along z, from the origin."""
     shells, height = [], 0.0
     for _ in range(links):
         width, depth, length = *rng.uniform(0.15, 0.4, 2), rng.uniform(0.3, 0.9)
-        shells.append(_divided(box((width, depth, length), (0.0, 0.0, height + length / 2)), 2))
+        shells.append(refined(box((width, depth, length), (0.0, 0.0, height + length / 2)), 2))
         height += length - _OVERLAP
     return shells
-
-
-def _divided(mesh: Mesh, times: int) -> tuple[FloatArray, IntArray]:
-    vertices, faces = mesh.vertices, mesh.faces
-    for _ in range(times):
-        vertices, faces = subdivide(vertices, faces)
-    return vertices, faces

@@ -6,9 +6,9 @@ import numpy as np
 import pytest
 
 from helpers.bodies.jointed_parts import BODY, FLAT, LEG, LONG_LEG, Parts, one_by_one, star
+from helpers.meshes import refined
 from segcore import shapes
 from segcore.cut.siblings import sibling_steps
-from segcore.mesh import Mesh
 from segcore.method import segment
 
 
@@ -106,18 +106,11 @@ def test_the_legs_of_a_table_are_children_of_one_node() -> None:
     """A top on four legs, all of them separate boxes."""
     top = shapes.box((2.0, 2.0, 0.2), (0.0, 0.0, 1.1))
     legs = [shapes.box((0.2, 0.2, 1.0), (x, y, 0.5)) for x in (-0.8, 0.8) for y in (-0.8, 0.8)]
-    fine = [divided(mesh, 4) for mesh in (top, *legs)]
+    fine = [refined(mesh, 4) for mesh in (top, *legs)]
     hierarchy = segment(shapes.joined(*fine).mesh)
     areas = [hierarchy.area[node] for node in hierarchy.nary_children[0]]
     np.testing.assert_allclose(areas, [2 * 4 + 4 * 2 * 0.2, *[2 * 0.04 + 4 * 0.2] * 4], rtol=1e-6)
     assert hierarchy.step_ends[:2].tolist() == [1, 5]
-
-
-def divided(mesh: Mesh, times: int) -> Mesh:
-    vertices, faces = mesh.vertices, mesh.faces
-    for _ in range(times):
-        vertices, faces = shapes.subdivide(vertices, faces)
-    return Mesh(vertices, faces)
 
 
 def test_the_arms_of_a_burr_are_children_of_one_node() -> None:
