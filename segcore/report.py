@@ -177,7 +177,9 @@ def _polygons(mesh: Mesh) -> int:
 
 
 def _slivers(surface: "Surface") -> int:
-    return int((~surface.normals.any(axis=1)).sum())
+    from segcore.clean.orientation import reliable_normals
+
+    return int((~reliable_normals(surface.vertices, surface.faces)[0].any(axis=1)).sum())
 
 
 def _volume(surface: "Surface") -> float:

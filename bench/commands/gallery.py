@@ -1,6 +1,6 @@
 """A contact sheet: models of the benchmark, or any files, in the colours of their segments, as one PNG.
 
-With --cad, the meshes are twenty solids as CAD programs write them. Without --models, --files and --cad, it shows
+With --cad, the meshes are forty solids as CAD programs write them. Without --models, --files and --cad, it shows
 --limit models of the benchmark, spread evenly over the list. With --levels, each mesh is a row: the automatic number of
 segments, then the levels, as far as the hierarchy of the mesh goes.
 """
@@ -29,7 +29,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     source = parser.add_mutually_exclusive_group(required=True)
     source.add_argument("--data", type=Path, metavar="DIR", help="the folder of the benchmark")
     source.add_argument("--files", type=Path, nargs="+", metavar="FILE", help="draw these meshes instead")
-    source.add_argument("--cad", action="store_true", help="draw twenty solids as CAD programs write them")
+    source.add_argument("--cad", action="store_true", help="draw forty solids as CAD programs write them")
     parser.add_argument(
         "--levels", type=_numbers, default=[], metavar="N,N", help="further numbers of segments to draw"
     )

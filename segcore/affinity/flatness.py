@@ -4,6 +4,7 @@ from typing import NamedTuple
 
 import numpy as np
 
+from segcore.affinity.holes import hole_walls
 from segcore.array_kernels import ascending
 from segcore.arrays import BoolArray, FloatArray, IntArray, group_sums
 from segcore.clean.edge_geometry import dihedral_angles, edge_lengths
@@ -21,10 +22,11 @@ _LEAST_BEND = np.deg2rad(3.0)  # mean angle along the outline of a flat region
 
 
 class SmoothEdges(NamedTuple):
-    """Which dual edges lie inside smooth faces."""
+    """Which dual edges lie inside smooth faces, and which faces are walls of holes."""
 
-    flat: BoolArray  # (E,) flat or convex
+    flat: BoolArray  # (E,) flat, convex, or in the wall of a hole
     hollow: BoolArray  # (E,) concave
+    wall: BoolArray  # (F,) of a hole
 
 
 def cohesive_weights(smooth: SmoothEdges, weight: FloatArray, length: FloatArray) -> FloatArray:
@@ -46,11 +48,11 @@ def cohesive_weights(smooth: SmoothEdges, weight: FloatArray, length: FloatArray
 def smooth_edges(surface: Surface, is_piece: BoolArray | None = None) -> SmoothEdges:
     """The dual edges inside flat and smoothly bent faces.
 
-    An edge lies inside such a face if both its sides belong to one flat region, or if both are pieces of divided faces
-    and its dihedral angle is below 15 degrees. A flat region is a connected set of faces whose normals are within 1
-    degree of that of its largest face, with at least 0.5 % of the area of its component and an outline along which the
-    surface bends by 3 degrees on average: any small piece of a finely meshed round surface is as flat, but has no such
-    outline.
+    An edge lies inside such a face if both its sides belong to one flat region, if both are pieces of divided faces
+    and its dihedral angle is below 15 degrees, or if it belongs to the wall of a hole (``segcore.affinity.holes``). A
+    flat region is a connected set of faces whose normals are within 1 degree of that of its largest face, with at least
+    0.5 % of the area of its component and an outline along which the surface bends by 3 degrees on average: any small
+    piece of a finely meshed round surface is as flat, but has no such outline.
 
     Parameters
     ----------
@@ -60,10 +62,12 @@ def smooth_edges(surface: Surface, is_piece: BoolArray | None = None) -> SmoothE
     a, b = surface.edge_faces.T
     region = flat_regions(surface)
     flat = (region[a] == region[b]) & _are_large(surface, region, dihedral)[region[a]]
+    wall = hole_walls(surface, dihedral)
+    flat |= wall[a] & wall[b]
     if is_piece is None:
-        return SmoothEdges(flat, np.zeros_like(flat))
+        return SmoothEdges(flat, np.zeros_like(flat), wall)
     smooth = (np.abs(dihedral) < _SMOOTH) & is_piece[a] & is_piece[b] & ~flat
-    return SmoothEdges(flat | (smooth & (dihedral > -_FLAT)), smooth & (dihedral <= -_FLAT))
+    return SmoothEdges(flat | (smooth & (dihedral > -_FLAT)), smooth & (dihedral <= -_FLAT), wall)
 
 
 def flat_regions(surface: Surface) -> IntArray:

@@ -58,9 +58,12 @@ def face_dual_graph(
     affinity = FACE_AFFINITIES[parameters.affinity](surface, parameters, on_part)
     length = at_least(edge_lengths(surface), _SHORTEST_EDGE)
     weight = length * affinity.value
+    volume = at_least(surface.areas, _SMALLEST_FACE)
     if smooth is not None:
-        weight = cohesive_weights(smooth(), weight, length)
-    graph = SurfaceGraph(surface.edge_faces, weight, at_least(surface.areas, _SMALLEST_FACE), length)
+        found = smooth()
+        weight = cohesive_weights(found, weight, length)
+        volume = np.where(found.wall, _SMALLEST_FACE * surface.areas.mean(), volume)
+    graph = SurfaceGraph(surface.edge_faces, weight, volume, length)
     centroids = face_centroids(surface.vertices, surface.faces)
     return MeshGraph(graph, centroids, None, affinity.thickness, affinity.confidence, surface.authored, affinity.grain)
 

@@ -121,5 +121,5 @@ def _write_dihedral_angles(start, end, vertices, faces, normals, sides, theta): 
         side = 0.0
         for k in range(3):
             for axis in range(3):
-                side += n[axis] * (vertices[faces[g, k], axis] - vertices[faces[f, k], axis])
+                side += (n[axis] - m[axis]) * (vertices[faces[g, k], axis] - vertices[faces[f, k], axis])
         theta[e] = -angle if side > 0.0 else angle

@@ -6,7 +6,10 @@ from segcore.arrays import BoolArray, FloatArray, IntArray
 from segcore.jit.decorators import inner_kernel, kernel
 from segcore.threads import in_blocks
 
-_SLIVER = 1e-6  # area over squared longest edge below which the normal is rounding noise; set by hand
+# Area over squared longest edge, and height over the extent of the surface, below which a normal is rounding noise. Set
+# by hand: coordinates in single precision are rounded by 6e-8 of the extent.
+_SLIVER = 1e-6
+_LEAST_HEIGHT = 1e-6
 
 
 @kernel
@@ -58,7 +61,7 @@ def flipped(faces: IntArray, is_flipped: BoolArray) -> IntArray:
 
 
 def reliable_normals(vertices: FloatArray, faces: IntArray) -> tuple[FloatArray, FloatArray]:
-    """Unit normals (F, 3), zero for slivers without a reliable direction, and areas (F,)."""
+    """Unit normals (F, 3), zero for slivers without a reliable direction, and areas (F,) of faces of extent 1."""
     normals = np.zeros((len(faces), 3))
     areas = np.empty(len(faces))
     in_blocks(_write_normals, len(faces), vertices, faces, normals, areas)
@@ -78,7 +81,7 @@ def _write_normals(start, end, vertices, faces, normals, areas):  # type: ignore
             for axis in range(3):
                 squared += (vertices[a, axis] - vertices[b, axis]) ** 2
             longest = max(longest, squared)
-        if areas[f] > _SLIVER * longest:
+        if areas[f] > max(_SLIVER * longest, 0.5 * _LEAST_HEIGHT * np.sqrt(longest)):
             normals[f, 0], normals[f, 1], normals[f, 2] = nx / doubled, ny / doubled, nz / doubled
 
 

@@ -13,6 +13,7 @@ from scipy.spatial import KDTree
 from segcore.array_kernels import face_centroids
 from segcore.arrays import BoolArray, FloatArray, IntArray, group_sums
 from segcore.clean.orientation import flipped, patch_volumes, reliable_normals
+from segcore.clean.slivers import with_borrowed_normals
 from segcore.clean.stitching import stitch
 from segcore.clean.topology import DualEdges, consistent_orientation, dual_edges, first_equal_row, sorted_rows
 from segcore.clean.welding import weld
@@ -30,7 +31,7 @@ class Surface:
 
     vertices: FloatArray  # (V, 3)
     faces: IntArray  # (F, 3)
-    normals: FloatArray  # (F, 3) unit normals, zero for slivers without a reliable direction
+    normals: FloatArray  # (F, 3) unit normals; those of slivers are borrowed, zero if no other face is connected
     areas: FloatArray  # (F,)
     edge_faces: IntArray  # (E, 2) the two faces at a dual edge
     edge_vertices: IntArray  # (E, 2) the two ends of the mesh edge, or part of one at a T-junction, that it crosses
@@ -62,6 +63,8 @@ def build_surface(mesh: Mesh) -> Surface:
     is_flipped = _turned(vertices, joined.faces, dual)
     faces = flipped(joined.faces, is_flipped)
     normals, areas = reliable_normals(vertices, faces)
+    ends = vertices[dual.vertices]
+    normals = with_borrowed_normals(normals, dual.faces, np.linalg.norm(ends[:, 0] - ends[:, 1], axis=1))
     face_of_input = _with_lost_faces(representative, corners, scaled)
     return Surface(
         vertices,

@@ -16,7 +16,7 @@ _LEAST_BENT = 0.15
 _ALIKE = 1e-3  # largest relative difference of the areas, and of normals from an axis
 # Steps of Taubin smoothing, one that shrinks and one that grows the shape, and how often they are made. A step of one
 # cube disappears; what is larger than three or four stays. Set by hand.
-_SHRINK, _GROW, _TIMES = 0.5, -0.53, 10
+_SHRINK, _GROW, _TIMES = 0.5, -0.53, 20
 
 
 def without_voxel_steps(surface: Surface) -> Surface:

@@ -17,10 +17,14 @@ from segcore.graphs.tree import Tree
 _AREA = 0.05  # largest difference of the logarithms of the areas of two parts
 _SPREAD = 0.05  # largest difference of their standard deviations along the principal axes, in the largest one
 _LENGTH = log(1.5)  # largest difference of the logarithms of the lengths of the cuts
+_SIDES = log(1.5)  # the same of the areas of the sides of a cut whose larger side can be what is cut off
 
 
 def equal_cuts(graph: SurfaceGraph, points: FloatArray, tree: Tree) -> IntArray:
-    """(S,) a number for every split, the same for splits whose smaller parts are congruent and whose cuts are as long.
+    """(S,) a number for every split, the same for splits that cut off congruent parts along equally long cuts.
+
+    What a split cuts off is its smaller part. If that is like no other, the split belongs to those that cut off what
+    its larger part is, if that is at most 1.5 times as large: the second flange of a beam is cut off the web.
 
     Parts are compared by their areas and by their standard deviations along the principal axes, and the cuts by their
     lengths, with those of the largest part of a group.
@@ -30,16 +34,25 @@ def equal_cuts(graph: SurfaceGraph, points: FloatArray, tree: Tree) -> IntArray:
     points : (N, 3) positions of the nodes of the graph.
     """
     shapes = shapes_of(graph, points, tree)
-    smaller = slice(2, None, 2)
-    by_area = np.argsort(-shapes.log_area[smaller], kind="stable")
-    parts = Shapes(shapes.log_area[smaller][by_area], shapes.spread[smaller][by_area])
+    by_area = np.argsort(-shapes.log_area[2::2], kind="stable")
+    larger, smaller = (Shapes(shapes.log_area[k::2][by_area], shapes.spread[k::2][by_area]) for k in (1, 2))
     length = cuts_of(graph, tree).log_length[by_area]
+
+    def equal_to(parts: Shapes, of: int) -> BoolArray:
+        """(S,) True for the splits that cut off what the split ``of`` does, if that is its part among ``parts``."""
+        is_equal = smaller.like(parts.log_area[of], parts.spread[of], _AREA, _SPREAD)
+        return is_equal & (np.abs(length - length[of]) <= _LENGTH)
+
     group = np.full(len(by_area), -1, dtype=np.int32)
     for first in range(len(by_area)):
         if group[first] < 0:
-            is_equal = parts.like(parts.log_area[first], parts.spread[first], _AREA, _SPREAD)
-            is_equal &= np.abs(length - length[first]) <= _LENGTH
-            group[is_equal & (group < 0)] = first
+            group[equal_to(smaller, first) & (group < 0)] = first
+    alone = np.bincount(group, minlength=len(group))[group] == 1
+    for split in np.flatnonzero(alone & (larger.log_area - smaller.log_area <= _SIDES)).tolist():
+        others = np.flatnonzero(equal_to(larger, split))
+        others = others[others != split]
+        if len(others) > 0:
+            group[split] = group[others[0]]
     number = np.empty_like(group)
     number[by_area] = group
     return number

@@ -15,7 +15,7 @@ def meshes() -> dict[str, Mesh]:
 
 
 def test_the_solids_are_closed_and_connected(meshes: dict[str, Mesh]) -> None:
-    assert len(meshes) == 20
+    assert len(meshes) == 40
     for mesh in meshes.values():
         solid = trimesh.Trimesh(mesh.vertices, mesh.faces)
         assert solid.is_volume
@@ -55,3 +55,43 @@ def test_all_teeth_of_a_gear_are_parts(meshes: dict[str, Mesh]) -> None:
     of_teeth = [set(labels[outer & (tooth == t)].tolist()) for t in range(16)]
     assert all(len(own) == 1 for own in of_teeth)
     assert len(set().union(*of_teeth)) == 16
+
+
+def test_a_plate_with_holes_is_one_part(meshes: dict[str, Mesh]) -> None:
+    assert segment(meshes["plate"]).labels().max() == 0
+
+
+def test_the_holes_of_a_flange_are_no_parts(meshes: dict[str, Mesh]) -> None:
+    """The pipe and the disc are, and the walls of all eight holes belong to the disc."""
+    mesh = meshes["flange"]
+    labels = segment(mesh).labels()
+    radius = np.linalg.norm(mesh.corners[:, :, :2], axis=2)
+    in_disc = (radius.min(axis=1) > 0.6) & (radius.max(axis=1) < 0.9) & (np.ptp(mesh.corners[:, :, 2], axis=1) > 0.1)
+    assert in_disc.sum() == 8 * 2 * 64
+    outside = labels[radius.min(axis=1) > 0.99]
+    assert set(labels[in_disc]) == set(outside)
+    assert labels.max() == 1
+
+
+def test_all_teeth_of_a_comb_are_parts(meshes: dict[str, Mesh]) -> None:
+    """They are as thick as the board that they are cut from, so that their necks run across flat faces."""
+    mesh = meshes["comb"]
+    labels = segment(mesh).labels()
+    ends = labels[mesh.corners[:, :, 2].max(axis=1) < -0.89]
+    assert labels.max() == 12
+    assert len(set(ends)) == 12
+
+
+def test_bosses_around_holes_are_parts(meshes: dict[str, Mesh]) -> None:
+    """The plate is drilled through its four bosses."""
+    assert segment(meshes["bosses"]).labels().max() == 4
+
+
+def test_both_flanges_of_a_beam_are_parts(meshes: dict[str, Mesh]) -> None:
+    mesh = meshes["beam"]
+    labels = segment(mesh).labels()
+    height = mesh.corners[:, :, 2]
+    top, bottom = (set(labels[(side * height).min(axis=1) > 0.39]) for side in (1, -1))
+    web = set(labels[np.abs(mesh.corners[:, :, 0]).max(axis=1) < 0.051])
+    assert len(top) == len(web) == len(bottom) == 1
+    assert len(top | web | bottom) == 3

@@ -1,7 +1,9 @@
 import numpy as np
 
+from helpers.bodies.plates import mesh_of, plate, rod
 from segcore import shapes
 from segcore.affinity.flatness import cohesive_weights, flat_regions, smooth_edges
+from segcore.affinity.holes import hole_walls
 from segcore.clean.edge_geometry import dihedral_angles, edge_lengths
 from segcore.clean.refinement import refine
 from segcore.clean.surface import build_surface
@@ -60,6 +62,16 @@ def test_the_strips_of_a_cylinder_hold_together_in_and_out():
         raised = factors(surface, 0.25, refined.is_piece)
         np.testing.assert_allclose(raised[along], 4.0 if outward else 2.0)
         np.testing.assert_allclose(raised[~along], 4.0)
+
+
+def test_the_wall_of_a_hole_holds_together_and_its_rims_do_not():
+    surface = build_surface(mesh_of(plate() - rod(0.12, 48)))
+    wall = hole_walls(surface, dihedral_angles(surface))
+    assert wall.sum() == 2 * 48
+    a, b = wall[surface.edge_faces].T
+    raised = factors(surface, 0.25)
+    np.testing.assert_allclose(raised[a & b], 4.0)
+    np.testing.assert_array_equal(raised[a != b], 1.0)
 
 
 def _inside_out(surface):

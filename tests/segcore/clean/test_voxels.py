@@ -33,7 +33,7 @@ def ball(places, centre, radius):
     return ((places - centre) ** 2).sum(axis=-1) < radius**2
 
 
-@pytest.mark.parametrize("count", [16, 24])
+@pytest.mark.parametrize("count", [12, 16, 24, 32, 48])
 def test_a_ball_of_voxels_is_one_part(count):
     assert segment(voxel_model(ball(grid(count), 0.0, 0.95))).automatic_segments == 1
 

@@ -34,6 +34,19 @@ def test_equal_parts_of_different_bodies_are_cut_off_by_equal_cuts() -> None:
     assert groups(parts, [({0, 2}, {1, 3}), ({0}, {2}), ({1}, {3})]) == [0, 1, 1]
 
 
+@pytest.mark.parametrize(("web", "numbers"), [((6, 8), [0, 0]), ((2, 4), [0, 1])])
+def test_the_last_of_two_equal_parts_is_cut_off_what_is_left(web: tuple[int, int], numbers: list[int]) -> None:
+    """Two flanges at a web, which is a little smaller; a speck that is cut off a part does not count."""
+    parts = Parts([web, BODY, BODY], [(0, 1), (0, 2)])
+    assert groups(parts, [({0, 2}, {1}), ({2}, {0})]) == numbers
+
+
+def test_what_is_cut_off_is_rather_the_smaller_part() -> None:
+    """Legs at a body as large as two bodies, of which the second split cuts off the last leg."""
+    parts = Parts([BODY, LEG, LEG, BODY], [(0, 1), (0, 2), (0, 3)])
+    assert groups(parts, [({0, 1, 2}, {3}), ({0, 2}, {1}), ({0}, {2})]) == [0, 1, 1]
+
+
 def test_the_value_of_a_group_is_the_weighted_mean() -> None:
     means = means_of_groups(np.array([7, 3, 7]), np.array([0.2, 0.9, 0.6]), np.array([3.0, 1.0, 1.0]))
     np.testing.assert_allclose(means, [0.3, 0.9, 0.3])
