@@ -107,4 +107,4 @@ def sheet(evaluations: Sequence[Evaluation]) -> Figure:
 
 def _caption(result: AssetResult) -> str:
     automatic = result.automatic
-    return f"{result.name}\n{automatic.segments} of {result.parts} parts, 1-Rand {automatic.one_minus_rand:.3f}"
+    return f"{result.name}\n{automatic.segments} of {result.parts} parts, 1-Rand {abs(automatic.one_minus_rand):.3f}"
