@@ -4,10 +4,11 @@ import numpy as np
 
 from segcore.array_kernels import ascending
 from segcore.arrays import BoolArray, FloatArray, IntArray
+from segcore.clean.topology import DualEdges
 from segcore.jit.decorators import inner_kernel, kernel
 
 
-def with_borrowed_normals(normals: FloatArray, edge_faces: IntArray, length: FloatArray) -> FloatArray:
+def with_borrowed_normals(normals: FloatArray, dual: DualEdges, vertices: FloatArray) -> FloatArray:
     """(F, 3) normals in which every sliver has that of a face that it continues.
 
     Slivers are joined across their edges, the longest first, until a group has a face with a normal. A sliver that
@@ -17,14 +18,16 @@ def with_borrowed_normals(normals: FloatArray, edge_faces: IntArray, length: Flo
     Parameters
     ----------
     normals : (F, 3), 0 for slivers.
-    edge_faces, length : (E, 2) and (E,) the dual edges and the lengths of the mesh edges that they cross.
+    dual : the dual edges of the faces.
+    vertices : (V, 3)
     """
     is_sliver = np.logical_not(normals.any(axis=1))
     if not is_sliver.any():
         return normals
-    at_sliver = np.flatnonzero(is_sliver[edge_faces].any(axis=1))
-    longest_first = at_sliver[ascending(-length[at_sliver])]
-    source = _sources(edge_faces[longest_first], ~is_sliver)
+    at_sliver = np.flatnonzero(is_sliver[dual.faces].any(axis=1))
+    ends = vertices[dual.vertices[at_sliver]]
+    longest_first = at_sliver[ascending(-np.linalg.norm(ends[:, 0] - ends[:, 1], axis=1))]
+    source = _sources(dual.faces[longest_first], ~is_sliver)
     borrowed: FloatArray = normals[source]
     return borrowed
 

@@ -63,8 +63,7 @@ def build_surface(mesh: Mesh) -> Surface:
     is_flipped = _turned(vertices, joined.faces, dual)
     faces = flipped(joined.faces, is_flipped)
     normals, areas = reliable_normals(vertices, faces)
-    ends = vertices[dual.vertices]
-    normals = with_borrowed_normals(normals, dual.faces, np.linalg.norm(ends[:, 0] - ends[:, 1], axis=1))
+    normals = with_borrowed_normals(normals, dual, vertices)
     face_of_input = _with_lost_faces(representative, corners, scaled)
     return Surface(
         vertices,

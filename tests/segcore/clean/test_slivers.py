@@ -10,6 +10,7 @@ from segcore.clean.orientation import reliable_normals
 from segcore.clean.refinement import refine
 from segcore.clean.slivers import with_borrowed_normals
 from segcore.clean.surface import Surface, build_surface
+from segcore.clean.topology import DualEdges
 from segcore.mesh import Mesh
 from segcore.method import segment
 
@@ -39,22 +40,28 @@ def test_a_sliver_has_the_normal_of_the_face_at_its_longest_edge() -> None:
     np.testing.assert_allclose(np.abs(angles), [2 * np.arctan(0.5), 2 * np.arctan(0.5), 0])
 
 
-@pytest.mark.parametrize("order", [[0, 1], [1, 0]])
-def test_a_chain_of_slivers_continues_one_face(order: list[int]) -> None:
-    """Slivers 2 and 3 between the faces 0 and 1: the longest edges lead from 3 over 2 to 0."""
+def borrowed(normals: np.ndarray, faces: list[list[int]], length: list[float]) -> np.ndarray:
+    """The normals after dual edges between faces, across mesh edges of some lengths, have been looked at."""
+    count = len(faces)
+    vertices = np.zeros((2 * count, 3))
+    vertices[count:, 0] = length
+    ends = np.stack([np.arange(count), count + np.arange(count)], axis=1)
+    flags = np.ones(count, dtype=bool)
+    return with_borrowed_normals(normals, DualEdges(np.array(faces), ends, flags, ~flags), vertices)
+
+
+def test_a_chain_of_slivers_continues_one_face() -> None:
+    """Slivers 2 and 3 between the faces 0 and 1: the longest edges lead to the face 0, or to the face 1."""
     normals = np.array([[0, 0, 1.0], [0, 1.0, 0], [0, 0, 0], [0, 0, 0]])
-    edges = np.array([[0, 2], [2, 3], [3, 1]])
-    length = np.array([3.0, 2.0, 1.0])
-    np.testing.assert_array_equal(with_borrowed_normals(normals, edges, length)[2:], normals[[0, 0]])
-    swapped = np.array([2, 3])[order]
-    edges = np.array([[0, swapped[0]], [swapped[0], swapped[1]], [swapped[1], 1]])
-    borrowed = with_borrowed_normals(normals, edges, np.array([1.0, 2.0, 3.0]))
-    np.testing.assert_array_equal(borrowed[2:], normals[[1, 1]])
+    for between in ([2, 3], [3, 2]):
+        edges = [[0, between[0]], between, [between[1], 1]]
+        np.testing.assert_array_equal(borrowed(normals, edges, [3.0, 2.0, 1.0])[2:], normals[[0, 0]])
+        np.testing.assert_array_equal(borrowed(normals, edges, [1.0, 2.0, 3.0])[2:], normals[[1, 1]])
 
 
 def test_slivers_without_other_faces_have_no_normal() -> None:
     normals = np.zeros((2, 3))
-    np.testing.assert_array_equal(with_borrowed_normals(normals, np.array([[0, 1]]), np.ones(1)), normals)
+    np.testing.assert_array_equal(borrowed(normals, [[0, 1]], [1.0]), normals)
 
 
 def test_normals_that_are_rounding_noise_are_not_reliable() -> None:
