@@ -14,6 +14,7 @@ from segcore.array_kernels import face_centroids
 from segcore.arrays import BoolArray, FloatArray, IntArray, group_sums
 from segcore.clean.orientation import flipped, patch_volumes, reliable_normals
 from segcore.clean.slivers import with_borrowed_normals
+from segcore.clean.solids import with_solids_apart
 from segcore.clean.stitching import stitch
 from segcore.clean.topology import DualEdges, consistent_orientation, dual_edges, first_equal_row, sorted_rows
 from segcore.clean.welding import weld
@@ -57,6 +58,9 @@ def build_surface(mesh: Mesh) -> Surface:
     unit, scaled = _normalized(positions)
     corners = weld(positions, corners)[corners]
     kept, representative = distinct_faces(corners)
+    if len(kept) < len(corners):
+        corners, scaled = with_solids_apart(corners, scaled)
+        kept, representative = distinct_faces(corners)
     vertices, faces = _compacted(scaled, corners[kept])
     joined = stitch(vertices, faces, dual_edges(faces, len(vertices)))
     vertices, dual = joined.vertices, joined.dual
