@@ -5,11 +5,12 @@ from typing import NamedTuple
 import numpy as np
 
 from segcore.affinity.holes import hole_walls
+from segcore.affinity.regions import Regions, component_areas, regions_of
 from segcore.array_kernels import ascending
-from segcore.arrays import BoolArray, FloatArray, IntArray, group_sums
+from segcore.arrays import BoolArray, FloatArray, IntArray
 from segcore.clean.edge_geometry import dihedral_angles, edge_lengths
 from segcore.clean.surface import Surface
-from segcore.graphs.surface_graph import Rows, connected_components
+from segcore.graphs.surface_graph import Rows
 from segcore.jit.decorators import kernel
 
 # Set by hand; docs/algorithm.md, "Flat faces" in section 2, has what the first two were compared with.
@@ -60,9 +61,11 @@ def smooth_edges(surface: Surface, is_piece: BoolArray | None = None) -> SmoothE
     """
     dihedral = dihedral_angles(surface)
     a, b = surface.edge_faces.T
+    in_component = component_areas(surface)
     region = flat_regions(surface)
-    flat = (region[a] == region[b]) & _are_large(surface, region, dihedral)[region[a]]
-    wall = hole_walls(surface, dihedral)
+    regions = regions_of(surface, region, in_component)
+    flat = ~regions.at_outline & _are_large(surface, regions, dihedral)[region[a]]
+    wall = hole_walls(surface, dihedral, in_component)
     flat |= wall[a] & wall[b]
     if is_piece is None:
         return SmoothEdges(flat, np.zeros_like(flat), wall)
@@ -76,19 +79,13 @@ def flat_regions(surface: Surface) -> IntArray:
     return _grown(order, surface.face_graph().rows(), surface.normals, float(np.cos(_FLAT)))
 
 
-def _are_large(surface: Surface, region: IntArray, dihedral: FloatArray) -> BoolArray:
+def _are_large(surface: Surface, regions: Regions, dihedral: FloatArray) -> BoolArray:
     """(R,) True for the regions that are large beside their component and have a bent outline."""
-    component = connected_components(surface.edge_faces, len(surface.faces))
-    count = int(region.max()) + 1
-    of_component = np.zeros(count)
-    of_component[region] = group_sums(component, surface.areas)[component]
-    area = group_sums(region, surface.areas, count)
-    a, b = region[surface.edge_faces].T
-    outline = a != b
-    length = edge_lengths(surface)[outline]
-    bend = length * np.abs(dihedral[outline])
-    around = [group_sums(a[outline], of, count) + group_sums(b[outline], of, count) for of in (length, bend)]
-    large: BoolArray = (area >= _LEAST_SHARE * of_component) & (around[1] >= _LEAST_BEND * around[0])
+    length = edge_lengths(surface)[regions.at_outline]
+    bend = length * np.abs(dihedral[regions.at_outline])
+    large: BoolArray = (regions.area >= _LEAST_SHARE * regions.of_component) & (
+        regions.outline_sums(bend) >= _LEAST_BEND * regions.outline_sums(length)
+    )
     return large
 
 

@@ -3,6 +3,7 @@
 import numpy as np
 from numpy.typing import NDArray
 
+from segcore.affinity.regions import Regions, regions_of
 from segcore.array_kernels import face_centroids
 from segcore.arrays import BoolArray, FloatArray, IntArray, group_sums
 from segcore.clean.edge_geometry import edge_lengths
@@ -19,7 +20,7 @@ _LARGEST = 0.2  # the same; larger ones are insides of tubes and vessels
 _ONE_SIDED = 0.2  # largest imbalance of the directions from which a wall faces its axis
 
 
-def hole_walls(surface: Surface, dihedral: FloatArray) -> BoolArray:
+def hole_walls(surface: Surface, dihedral: FloatArray, in_component: FloatArray) -> BoolArray:
     """(F,) True for the faces of the walls of holes.
 
     A wall is a connected set of faces that meet flat or concave, ends at creases, has between a thousandth and a fifth
@@ -30,30 +31,25 @@ def hole_walls(surface: Surface, dihedral: FloatArray) -> BoolArray:
     Parameters
     ----------
     dihedral : (E,) angles at the dual edges.
+    in_component : (F,) ``component_areas(surface)``.
     """
     inner = (dihedral > -_STEEPEST) & (dihedral < _FLAT)
     region = connected_components(surface.edge_faces[inner], len(surface.faces))
-    wall = np.flatnonzero(_may_be_walls(surface, dihedral, inner, region))
+    regions = regions_of(surface, region, in_component)
+    wall = np.flatnonzero(_may_be_walls(surface, dihedral, inner, regions))
     wall = wall[_face_inward(surface, region, wall)]
     return np.isin(region, wall)
 
 
-def _may_be_walls(surface: Surface, dihedral: FloatArray, inner: BoolArray, region: IntArray) -> BoolArray:
+def _may_be_walls(surface: Surface, dihedral: FloatArray, inner: BoolArray, regions: Regions) -> BoolArray:
     """(R,) True for the regions that are hollow, neither tiny nor large, and end at creases."""
-    count = int(region.max()) + 1
-    component = connected_components(surface.edge_faces, len(surface.faces))
-    of_component = np.zeros(count)
-    of_component[region] = group_sums(component, surface.areas)[component]
-    share = group_sums(region, surface.areas, count) / np.maximum(of_component, np.finfo(float).tiny)
-    a, b = region[surface.edge_faces].T
+    share = regions.area / np.maximum(regions.of_component, np.finfo(float).tiny)
     bent = inner & (dihedral < -_FLAT)
-    is_hollow = np.bincount(a[bent], minlength=count) > 0
-    end = a != b
-    length = edge_lengths(surface)[end]
-    creased = np.where(np.abs(dihedral[end]) > _CREASE, length, 0.0)
-    outline, crease = (group_sums(a[end], of, count) + group_sums(b[end], of, count) for of in (length, creased))
-    is_large_enough = (share >= _SMALLEST) & (share < _LARGEST)
-    walls: BoolArray = is_hollow & is_large_enough & (crease >= _CREASED * outline)
+    is_hollow = np.bincount(regions.ends[bent, 0], minlength=len(share)) > 0
+    length = edge_lengths(surface)[regions.at_outline]
+    creased = np.where(np.abs(dihedral[regions.at_outline]) > _CREASE, length, 0.0)
+    ends_at_creases = regions.outline_sums(creased) >= _CREASED * regions.outline_sums(length)
+    walls: BoolArray = is_hollow & (share >= _SMALLEST) & (share < _LARGEST) & ends_at_creases
     return walls
 
 

@@ -49,7 +49,7 @@ def face_dual_graph(
     """The face dual graph: W = edge length times affinity, the volume of a node is the area of its face.
 
     Inside flat and smoothly bent faces the affinities "learned" and "concavity" are raised, see
-    ``segcore.affinity.flatness``.
+    ``segcore.affinity.flatness``, and the walls of holes have no volume.
 
     Areas are at least 1e-4 of the mean area and lengths at least 1e-2 of the mean length, so that degenerate faces and
     edges have a positive weight and a face that is nearly a point is not the cheapest cut.

@@ -3,15 +3,13 @@
 from typing import NamedTuple
 
 import numpy as np
-from scipy.sparse import coo_array
-from scipy.sparse.csgraph import connected_components
 
 from segcore.arrays import BoolArray, FloatArray, IntArray, LongArray
 from segcore.clean.topology import first_equal_row, sorted_rows
+from segcore.graphs.surface_graph import connected_components
 
-_ALIKE = (
-    1e-3  # largest relative difference of the areas of the faces of cubes, and of normals from an axis; set by hand
-)
+# Largest relative difference of the areas of the faces of cubes, and of their normals from an axis. Set by hand.
+_ALIKE = 1e-3
 
 
 class _Faces(NamedTuple):
@@ -39,12 +37,12 @@ def with_solids_apart(corners: IntArray, positions: FloatArray) -> tuple[IntArra
     triangles = corners[faces.of_mesh]
     a, b, c = positions[triangles].transpose(1, 0, 2)
     cross = np.cross(b - a, c - a)
-    if _are_cubes(cross):
+    doubled = np.linalg.norm(cross, axis=1)
+    if are_of_cubes(doubled, cross / np.maximum(doubled, np.finfo(float).tiny)[:, None]):
         return corners, positions
     pairs, is_open = _neighbours(triangles, positions)
-    ones = np.ones(len(pairs), dtype=bool)
-    graph = coo_array((ones, (pairs[:, 0], pairs[:, 1])), shape=(len(triangles), len(triangles)))
-    count, part = connected_components(graph, directed=False)
+    part = connected_components(pairs.astype(np.int32), len(triangles))
+    count = int(part.max()) + 1
     volume = np.bincount(part, np.einsum("ij,ij->i", a, cross), minlength=count)
     is_solid = (np.bincount(part, is_open, minlength=count) == 0) & (volume > 0.0)
     one, other = part[faces.facing].T
@@ -59,7 +57,15 @@ def with_solids_apart(corners: IntArray, positions: FloatArray) -> tuple[IntArra
     return apart, np.concatenate([positions, positions[distinct % len(positions)]])
 
 
+def are_of_cubes(areas: FloatArray, normals: FloatArray) -> bool:
+    """Whether faces with some areas (N,) and normals (N, 3) are halves of squares of one size along the axes."""
+    if areas.max() > (1.0 + _ALIKE) * areas.min():
+        return False
+    return bool(np.abs(normals).max(axis=1).min() >= 1.0 - _ALIKE)
+
+
 def _oriented_faces(corners: IntArray) -> _Faces:
+    """The distinct faces of a mesh, those of two orientations at one place both."""
     a, b, c = corners.T
     proper = np.flatnonzero((a != b) & (b != c) & (c != a))
     first = first_equal_row(sorted_rows(corners, proper))
@@ -71,13 +77,6 @@ def _oriented_faces(corners: IntArray) -> _Faces:
     distinct, index = np.unique(key, return_index=True)
     second = np.flatnonzero(np.diff(distinct // 2, prepend=-1) == 0)  # the other orientation of the one before
     return _Faces(proper[index], np.stack([second - 1, second], axis=1))
-
-
-def _are_cubes(cross: FloatArray) -> bool:
-    """Whether the faces with the doubled area vectors (N, 3) are halves of squares of one size along the axes."""
-    doubled = np.linalg.norm(cross, axis=1)
-    along = np.abs(cross).max(axis=1)
-    return bool(doubled.max() <= (1.0 + _ALIKE) * doubled.min() and (along >= (1.0 - _ALIKE) * doubled).all())
 
 
 def _neighbours(triangles: IntArray, positions: FloatArray) -> tuple[LongArray, BoolArray]:

@@ -7,13 +7,13 @@ from scipy.sparse import coo_matrix
 
 from segcore.arrays import FloatArray, IntArray
 from segcore.clean.orientation import reliable_normals
+from segcore.clean.solids import are_of_cubes
 from segcore.clean.surface import Surface
 
 # Set by hand: a block of 4 cubes in each direction has 192 faces, and 1/8 of its edges between faces are bent. A smooth
 # shape of voxels has a third of bent edges or more.
 _LEAST_FACES = 192
 _LEAST_BENT = 0.15
-_ALIKE = 1e-3  # largest relative difference of the areas, and of normals from an axis
 # Steps of Taubin smoothing, one that shrinks and one that grows the shape, and how often they are made. A step of one
 # cube disappears; what is larger than three or four stays. Set by hand.
 _SHRINK, _GROW, _TIMES = 0.5, -0.53, 20
@@ -37,9 +37,7 @@ def without_voxel_steps(surface: Surface) -> Surface:
 
 def _is_voxel_model(surface: Surface) -> bool:
     areas, normals = surface.areas, surface.normals
-    if len(areas) < _LEAST_FACES or areas.max() > (1.0 + _ALIKE) * areas.min():
-        return False
-    if np.abs(normals).max(axis=1).min() < 1.0 - _ALIKE:
+    if len(areas) < _LEAST_FACES or not are_of_cubes(areas, normals):
         return False
     one, other = normals[surface.edge_faces].transpose(1, 0, 2)
     bent = np.einsum("ij,ij->i", one, other) < 0.5

@@ -4,6 +4,7 @@ from helpers.bodies.plates import mesh_of, plate, rod
 from segcore import shapes
 from segcore.affinity.flatness import cohesive_weights, flat_regions, smooth_edges
 from segcore.affinity.holes import hole_walls
+from segcore.affinity.regions import component_areas
 from segcore.clean.edge_geometry import dihedral_angles, edge_lengths
 from segcore.clean.refinement import refine
 from segcore.clean.surface import build_surface
@@ -66,7 +67,7 @@ def test_the_strips_of_a_cylinder_hold_together_in_and_out():
 
 def test_the_wall_of_a_hole_holds_together_and_its_rims_do_not():
     surface = build_surface(mesh_of(plate() - rod(0.12, 48)))
-    wall = hole_walls(surface, dihedral_angles(surface))
+    wall = hole_walls(surface, dihedral_angles(surface), component_areas(surface))
     assert wall.sum() == 2 * 48
     a, b = wall[surface.edge_faces].T
     raised = factors(surface, 0.25)

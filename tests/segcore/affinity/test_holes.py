@@ -7,6 +7,7 @@ import pytest
 from helpers.bodies.plates import CENTRE, FAR, mesh_of, plate, rod
 from segcore.affinity.holes import hole_walls
 from segcore.affinity.mesh_graphs import mesh_graph
+from segcore.affinity.regions import component_areas
 from segcore.clean.edge_geometry import dihedral_angles
 from segcore.clean.surface import build_surface
 from segcore.mesh import Mesh
@@ -17,7 +18,7 @@ from segcore.parameters import SegmentationParameters
 def found(mesh: Mesh) -> np.ndarray:
     """(F,) which faces belong to walls of holes."""
     surface = build_surface(mesh)
-    return hole_walls(surface, dihedral_angles(surface))
+    return hole_walls(surface, dihedral_angles(surface), component_areas(surface))
 
 
 def inside(mesh: Mesh, at: tuple[float, float], radius: float) -> np.ndarray:

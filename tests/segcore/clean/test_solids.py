@@ -1,8 +1,10 @@
 """Solids that touch along whole faces are parts of their own; other repeated faces are left out."""
 
+import manifold3d
 import numpy as np
 import pytest
 
+from helpers.bodies.plates import mesh_of
 from segcore import shapes
 from segcore.clean.solids import with_solids_apart
 from segcore.clean.surface import build_surface
@@ -64,14 +66,9 @@ def test_bricks_of_one_size_are_parts(name: str) -> None:
 
 
 def test_a_pin_that_fills_its_hole_is_a_body() -> None:
-    import manifold3d
-
     pin = manifold3d.Manifold.cylinder(0.3, 0.3, 0.3, 32, center=True)
     plate = manifold3d.Manifold.cube((2, 2, 0.3), center=True) - pin
-    meshes = []
-    for solid in (plate, pin):
-        mesh = solid.to_mesh()
-        meshes.append(Mesh(np.array(mesh.vert_properties[:, :3], np.float64), np.array(mesh.tri_verts, np.int32)))
+    meshes = [mesh_of(plate), mesh_of(pin)]
     body = bodies(soup(*meshes))
     faces = len(meshes[0].faces)
     assert set(body[:faces]) == {0}
