@@ -18,6 +18,10 @@ if TYPE_CHECKING:
     from segcore.arrays import BoolArray, FloatArray, IntArray, LongArray
     from segcore.mesh import Mesh
 
+# Of the decimation, 0 to 10. With 7, the default of the package, 5 of the 190 models have another shape without 80 % of
+# their faces: ends of shafts are missing, up to 0.24 of the extent. With 3 all keep their shape within 0.06.
+_AGGRESSIVENESS = 3
+
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Remeshed:
@@ -109,7 +113,7 @@ def noisy(mesh: Mesh, rng: np.random.Generator, share: float) -> Remeshed:
 
 
 def decimated(mesh: Mesh | Remeshed, share: float) -> Remeshed:
-    """Remove a share of the faces by quadric edge collapses.
+    """Remove a share of the faces by quadric edge collapses, or less if the shape would change.
 
     Raises
     ------
@@ -120,7 +124,10 @@ def decimated(mesh: Mesh | Remeshed, share: float) -> Remeshed:
         import fast_simplification
     except ImportError as error:
         raise BenchmarkError("Decimation needs the package fast-simplification: pip install '.[test]'.") from error
-    vertices, faces = fast_simplification.simplify(mesh.vertices, mesh.faces, target_reduction=share)
+    # The package does not take arrays that are read-only.
+    vertices, faces = fast_simplification.simplify(
+        mesh.vertices.copy(), mesh.faces.copy(), target_reduction=share, agg=_AGGRESSIVENESS
+    )
     return Remeshed(np.asarray(vertices, dtype=np.float64), np.asarray(faces, dtype=np.int32))
 
 

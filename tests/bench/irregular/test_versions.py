@@ -2,7 +2,9 @@
 
 import numpy as np
 import pytest
+import trimesh
 
+from bench.cad import cad_meshes
 from bench.irregular.agreement import areas
 from bench.irregular.versions import VERSIONS, refined
 from segcore import shapes
@@ -16,6 +18,18 @@ def test_every_version_keeps_the_area(name):
     noise = 0.2 if "noise" in name or "decimated" in name else 0.03 if name == "remeshed" else 1e-9
     whole = areas(BURR.vertices, BURR.faces).sum()
     assert areas(version.vertices, version.faces).sum() == pytest.approx(whole, rel=noise)
+
+
+@pytest.mark.parametrize("solid", ["shaft", "gear", "spool"])
+def test_a_decimated_solid_keeps_its_shape(solid):
+    mesh = cad_meshes()[solid]
+    version = VERSIONS["80 % decimated"](mesh, np.random.default_rng(0))
+    assert len(version.faces) < 0.8 * len(mesh.faces)
+    triangles = version.vertices[version.faces]
+    extent = np.ptp(mesh.vertices, axis=0).max()
+    for vertex in mesh.vertices:
+        nearest = trimesh.triangles.closest_point(triangles, np.tile(vertex, (len(triangles), 1)))
+        assert np.linalg.norm(nearest - vertex, axis=1).min() < 0.03 * extent
 
 
 @pytest.mark.parametrize("name", ["half split twice", "patches refined", "slivers"])
