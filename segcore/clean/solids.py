@@ -5,8 +5,10 @@ from typing import NamedTuple
 import numpy as np
 
 from segcore.arrays import BoolArray, FloatArray, IntArray, LongArray
+from segcore.clean.orientation import patch_volumes
 from segcore.clean.topology import first_equal_row, sorted_rows
 from segcore.graphs.surface_graph import connected_components
+from segcore.mesh import face_normals_and_areas
 
 # Largest relative difference of the areas of the faces of cubes, and of their normals from an axis. Set by hand.
 _ALIKE = 1e-3
@@ -22,6 +24,8 @@ class _Faces(NamedTuple):
 def with_solids_apart(corners: IntArray, positions: FloatArray) -> tuple[IntArray, FloatArray]:
     """(F, 3) corners in which solids that touch along whole faces have vertices of their own, and all positions.
 
+    If there are none, these are the given arrays.
+
     Around an edge of several faces, a face belongs to the same solid as the next one on its inner side. A solid is a
     set of faces that are connected in this way, without open edges and with a positive volume. Two of them touch if a
     face of one faces a face of the other at the same place. The two sides of a sheet, or of a body that was modelled
@@ -35,16 +39,14 @@ def with_solids_apart(corners: IntArray, positions: FloatArray) -> tuple[IntArra
     if len(faces.facing) == 0:
         return corners, positions
     triangles = corners[faces.of_mesh]
-    a, b, c = positions[triangles].transpose(1, 0, 2)
-    cross = np.cross(b - a, c - a)
-    doubled = np.linalg.norm(cross, axis=1)
-    if are_of_cubes(doubled, cross / np.maximum(doubled, np.finfo(float).tiny)[:, None]):
+    normals, areas = face_normals_and_areas(positions[triangles])
+    if are_of_cubes(areas, normals):
         return corners, positions
     pairs, is_open = _neighbours(triangles, positions)
     part = connected_components(pairs.astype(np.int32), len(triangles))
-    count = int(part.max()) + 1
-    volume = np.bincount(part, np.einsum("ij,ij->i", a, cross), minlength=count)
-    is_solid = (np.bincount(part, is_open, minlength=count) == 0) & (volume > 0.0)
+    volume = patch_volumes(positions, triangles, part, np.zeros(len(part), dtype=bool), int(part.max()) + 1)[1]
+    is_solid = volume > 0.0
+    is_solid[part[is_open]] = False
     one, other = part[faces.facing].T
     touch = is_solid[one] & is_solid[other] & (one != other)
     moved = np.isin(part, np.concatenate([one[touch], other[touch]]))

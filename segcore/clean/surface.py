@@ -59,8 +59,10 @@ def build_surface(mesh: Mesh) -> Surface:
     corners = weld(positions, corners)[corners]
     kept, representative = distinct_faces(corners)
     if len(kept) < len(corners):
-        corners, scaled = with_solids_apart(corners, scaled)
-        kept, representative = distinct_faces(corners)
+        apart, scaled = with_solids_apart(corners, scaled)
+        if apart is not corners:
+            corners = apart
+            kept, representative = distinct_faces(corners)
     vertices, faces = _compacted(scaled, corners[kept])
     joined = stitch(vertices, faces, dual_edges(faces, len(vertices)))
     vertices, dual = joined.vertices, joined.dual
