@@ -46,7 +46,11 @@ def test_a_file_that_is_too_large_is_refused_before_it_is_sent(visit: Visit) -> 
 
 @pytest.mark.parametrize(
     ("status", "expected", "sentence"),
-    [(413, "too_large", "client_max_body_size"), (502, "unexpected", "Cleave itself does not")],
+    [
+        (200, "unexpected", "Cleave itself does not"),
+        (413, "too_large", "client_max_body_size"),
+        (502, "unexpected", "Cleave itself does not"),
+    ],
 )
 def test_what_a_proxy_answers_is_explained(visit: Visit, status: int, expected: str, sentence: str) -> None:
     visit.open()
@@ -99,8 +103,8 @@ def test_the_page_waits_until_a_killed_service_is_restarted(visit: Visit, instal
     (worker,) = installation.children("worker.process small")
     os.kill(worker, signal.SIGSTOP)  # so that the job does not end before the service is killed
     try:
-        with visit.page.expect_response("**/v1/jobs"):
-            visit.drop("survivor.ply", small_burr() + b"       ")
+        visit.drop("survivor.ply", small_burr() + b"       ")
+        visit.address("job=")  # the whole response to the upload has arrived
         (service,) = installation.children("service.host.http_server")
         os.kill(service, signal.SIGKILL)
         wait_until(lambda: installation.children("service.host.http_server") not in ([service], []))
@@ -123,6 +127,60 @@ def test_an_upload_without_a_server_can_be_retried(visit: Visit) -> None:
     visit.page.click("#remedy")
     visit.wait_for_parts()
     visit.faults = [fault for fault in visit.faults if "ERR_INTERNET_DISCONNECTED" not in fault]
+
+
+def test_an_upload_whose_response_is_lost_can_be_retried_without_a_second_job(
+    visit: Visit, installation: Installation
+) -> None:
+    taken: list[str] = []
+
+    def lose(route: Route) -> None:
+        taken.append(route.fetch().json()["id"])
+        route.abort("connectionreset")
+
+    visit.open()
+    visit.page.route("**/v1/jobs", lose)
+    visit.drop("lost-response.ply", small_burr() + b"          ")
+    code, _, button = problem(visit)
+    assert (code, button) == ("unreachable", "Try again")
+    visit.page.unroute_all()
+    visit.page.click("#remedy")
+    visit.wait_for_parts()
+    jobs = installation.get("/v1/jobs").json()["jobs"]
+    assert [job["id"] for job in jobs if job["input"]["file_name"] == "lost-response.ply"] == taken
+    visit.faults = [fault for fault in visit.faults if "ERR_CONNECTION_RESET" not in fault]
+
+
+def compare(visit: Visit, most: str) -> None:
+    """Ask for another result of the shown mesh, with a limit of segments."""
+    visit.page.click("#open-parameters")
+    visit.page.fill("#parameter-max_segments", most)
+    visit.page.click("text=Run and compare")
+
+
+def test_a_rerun_whose_response_is_lost_makes_no_second_job(visit: Visit, job: str) -> None:
+    """A request is sent again with its key; the next one, after a response, has another."""
+    keys: list[str | None] = []
+
+    def lose_the_first(route: Route) -> None:
+        keys.append(route.request.header_value("Idempotency-Key"))
+        answer = route.fetch()
+        if len(keys) == 1:
+            route.abort("connectionreset")
+        else:
+            route.fulfill(response=answer)
+
+    visit.open_job(job)
+    visit.page.route("**/rerun", lose_the_first)
+    compare(visit, "30")
+    assert problem(visit)[0] == "unreachable"
+    visit.page.click("#remedy")
+    visit.page.wait_for_function("() => document.querySelector('#beside-level').max === '30'")
+    compare(visit, "31")
+    visit.page.wait_for_function("() => document.querySelector('#beside-level').max === '31'")
+    assert None not in keys
+    assert keys[0] == keys[1] != keys[2]
+    visit.faults = [fault for fault in visit.faults if "ERR_CONNECTION_RESET" not in fault]
 
 
 @pytest.mark.parametrize("fragment", ["#job=" + "0" * 32, "#job=../../x"])

@@ -173,9 +173,11 @@ export async function checkKey(): Promise<void> {
 }
 
 /** Run a job again with other parameters; the server has its file. */
-export async function rerun(id: string, parameters: Readonly<Record<string, unknown>>): Promise<Job> {
-  const headers = { "Content-Type": "application/json" };
-  return (await (await request(jobPath(id, "/rerun"), { method: "POST", headers, body: JSON.stringify(parameters) })).json()) as Job;
+export function rerun(id: string, parameters: Readonly<Record<string, unknown>>): Promise<Job> {
+  return makingOneJob(parameters, async (key) => {
+    const headers = { "Content-Type": "application/json", "Idempotency-Key": key };
+    return parsed<Job>(await (await request(jobPath(id, "/rerun"), { method: "POST", headers, body: JSON.stringify(parameters) })).text());
+  });
 }
 
 /** Return what the server lacks to run jobs; null if it does not respond. */
@@ -202,18 +204,29 @@ export function submit(
   signal: AbortSignal,
   onSent: (share: number) => void,
 ): Promise<Job> {
+  const form = new FormData();
+  form.append("parameters", JSON.stringify(parameters));
+  for (const { path, file } of model.files) form.append("mesh", file, path);
+  return makingOneJob(model, async (key) => {
+    const { status, responseText } = await upload(form, { ...headers(), "Idempotency-Key": key }, signal, onSent);
+    if (status >= 300) throw new ApiError(problemIn(responseText, status), status);
+    return parsed<Job>(responseText);
+  });
+}
+
+/** Send a form with XMLHttpRequest: fetch does not tell how much was sent. */
+function upload(
+  form: FormData,
+  fields: Readonly<Record<string, string>>,
+  signal: AbortSignal,
+  onSent: (share: number) => void,
+): Promise<XMLHttpRequest> {
   return new Promise((resolve, reject) => {
-    const form = new FormData();
-    form.append("parameters", JSON.stringify(parameters));
-    for (const { path, file } of model.files) form.append("mesh", file, path);
     const exchange = new XMLHttpRequest();
     exchange.open("POST", "v1/jobs");
-    for (const [name, value] of Object.entries(headers())) exchange.setRequestHeader(name, value);
+    for (const [name, value] of Object.entries(fields)) exchange.setRequestHeader(name, value);
     exchange.upload.onprogress = (event) => event.lengthComputable && onSent(event.loaded / event.total);
-    exchange.onload = () => {
-      if (exchange.status < 300) resolve(JSON.parse(exchange.responseText) as Job);
-      else reject(new ApiError(problemIn(exchange.responseText, exchange.status), exchange.status));
-    };
+    exchange.onload = () => resolve(exchange);
     exchange.onerror = () => reject(new TypeError("The server is not responding."));
     exchange.onabort = () => reject(new DOMException("Stopped.", "AbortError"));
     signal.addEventListener("abort", () => exchange.abort());
@@ -221,8 +234,31 @@ export function submit(
   });
 }
 
+/** Keys of submissions whose response was lost: the job may have been made. */
+const unanswered = new WeakMap<object, string>();
+
+/** Send a submission; if its response is lost and it is sent again, it has the same key, so that there is no second job. */
+async function makingOneJob(submission: object, send: (key: string) => Promise<Job>): Promise<Job> {
+  const key = unanswered.get(submission) ?? newKey();
+  unanswered.set(submission, key);
+  let isAnswered = true;
+  try {
+    return await send(key);
+  } catch (error) {
+    isAnswered = error instanceof ApiError && error.status < 500;
+    throw error;
+  } finally {
+    if (isAnswered) unanswered.delete(submission);
+  }
+}
+
+/** Return a text that no other request has; crypto.randomUUID exists over HTTPS only. */
+export function newKey(): string {
+  return Array.from(crypto.getRandomValues(new Uint8Array(16)), (byte) => byte.toString(16).padStart(2, "0")).join("");
+}
+
 async function get<T>(path: string): Promise<T> {
-  return (await (await request(path)).json()) as T;
+  return parsed<T>(await (await request(path)).text());
 }
 
 const NO_ANSWER = { code: "unexpected", detail: "A proxy in front of Cleave answers, but Cleave itself does not: it may be starting." };
@@ -237,6 +273,14 @@ const OF_PROXIES: Readonly<Record<number, Problem>> = {
   503: NO_ANSWER,
   504: NO_ANSWER,
 };
+
+function parsed<T>(text: string): T {
+  try {
+    return JSON.parse(text) as T;
+  } catch {
+    throw new ApiError(NO_ANSWER, 502); // for example the page for signing in of a proxy
+  }
+}
 
 function problemIn(text: string, status: number): Problem {
   try {

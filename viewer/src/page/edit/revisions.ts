@@ -1,6 +1,6 @@
 /** Client for edits of parts: operations, revisions and labels. */
 
-import { jobPath, request } from "../api";
+import { jobPath, newKey, request } from "../api";
 import { pause } from "../pause";
 import { ApiError } from "../problems";
 import type { ChangedFaces, FaceRuns } from "./face_runs";
@@ -106,9 +106,4 @@ export async function newestRevision(job: string): Promise<Revision & { parts: r
   const revision = (await (await request(jobPath(job, "/revisions/latest"))).json()) as Revision & { parts: readonly Part[] };
   const raw = await (await request(jobPath(job, `/labels?revision=${revision.number}&format=raw`))).arrayBuffer();
   return { ...revision, labels: new Int32Array(raw) };
-}
-
-/** Return a text that no other request has; crypto.randomUUID exists over HTTPS only. */
-function newKey(): string {
-  return Array.from(crypto.getRandomValues(new Uint8Array(16)), (byte) => byte.toString(16).padStart(2, "0")).join("");
 }
