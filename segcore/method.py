@@ -15,6 +15,7 @@ from segcore.coarsen.assembly import assemble
 from segcore.coarsen.authored import with_structure
 from segcore.coarsen.clusters import MOST_COMPONENTS, Clusters
 from segcore.coarsen.contacts import Links
+from segcore.coarsen.opposites import with_opposites
 from segcore.cut.bisection import bisect
 from segcore.cut.rules import SplitRule, split_rule
 from segcore.cut.siblings import sibling_steps
@@ -146,7 +147,7 @@ def _coarsened(
     rng: np.random.Generator,
     on_part: OnPart = report_nothing,
 ) -> tuple[Clusters, Links]:
-    clusters = clusters_with_images(nodes, mirror, parameters.clusters, rng, on_part)
+    clusters = with_opposites(clusters_with_images(nodes, mirror, parameters.clusters, rng, on_part), nodes.opposites)
     on_part(CLUSTERED)
     return assemble(surface, nodes, clusters, parameters.max_segments or MOST_COMPONENTS)
 

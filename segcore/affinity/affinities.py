@@ -14,6 +14,7 @@ from segcore.affinity.measurements import Measurements, measure
 from segcore.affinity.minima_rule import minima_rule_of_faces, minima_rule_of_vertices
 from segcore.arrays import FloatArray, IntArray
 from segcore.clean.surface import Surface
+from segcore.graphs.mesh_graph import Opposites
 from segcore.parameters import SegmentationParameters
 from segcore.progress import OnPart, report_nothing
 
@@ -34,6 +35,7 @@ class Affinity:
     thickness: FloatArray | None = None  # (F,) logarithm of the shape diameter over sqrt(total area), smoothed
     confidence: FloatArray | None = None  # (F,) share of the rays that met the other side from inside
     grain: IntArray | None = None  # (F,) groups of faces to begin a coarsening with, if the mesh is fine
+    opposites: Opposites | None = None  # pairs of faces, if the thickness was measured
 
 
 def concavity(surface: Surface, parameters: SegmentationParameters, on_part: OnPart = report_nothing) -> Affinity:
@@ -81,4 +83,7 @@ def _affinity(measured: Measurements, distance: FloatArray) -> Affinity:
     """g = 0.03 + 0.97 exp(-distance) with distances (E,), and the thickness of the patch of every face."""
     patch = measured.patches.of_face
     value = _FLOOR + (1.0 - _FLOOR) * np.exp(-distance)
-    return Affinity(value, measured.log_thickness[patch], measured.thickness.confidence[patch], measured.patches.grain)
+    thickness = measured.thickness
+    return Affinity(
+        value, measured.log_thickness[patch], thickness.confidence[patch], measured.patches.grain, thickness.opposites
+    )

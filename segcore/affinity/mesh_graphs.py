@@ -65,7 +65,16 @@ def face_dual_graph(
         volume = np.where(found.wall, _SMALLEST_FACE * surface.areas.mean(), volume)
     graph = SurfaceGraph(surface.edge_faces, weight, volume, length)
     centroids = face_centroids(surface.vertices, surface.faces)
-    return MeshGraph(graph, centroids, None, affinity.thickness, affinity.confidence, surface.authored, affinity.grain)
+    return MeshGraph(
+        graph,
+        centroids,
+        None,
+        affinity.thickness,
+        affinity.confidence,
+        surface.authored,
+        affinity.grain,
+        affinity.opposites,
+    )
 
 
 def vertex_graph(surface: Surface, parameters: SegmentationParameters) -> MeshGraph:

@@ -35,7 +35,8 @@ class RayCaster(NamedTuple):
 
     first: LongArray  # (L + 1,) the faces of leaf k, node L + k of the tree, are first[k]..first[k + 1] - 1
     groups: NDArray[np.float32]  # (G, 6, 8) bounding boxes of the nodes of each group: least, then largest coordinates
-    corner: NDArray[np.float32]  # (F, 3) first corner of the faces in the order of the leaves
+    face: IntArray  # (F,) the faces in the order of the leaves
+    corner: NDArray[np.float32]  # (F, 3) their first corners
     sides: NDArray[np.float32]  # (F, 6) the vectors from there to the two other corners
 
     @classmethod
@@ -48,7 +49,7 @@ class RayCaster(NamedTuple):
         in_blocks(_pack, leaves, vertices, faces, order, boxes, corner, sides)
         _enclose(boxes)
         first = len(faces) * np.arange(leaves + 1) // leaves
-        return cls(first, _in_groups(boxes), corner, sides)
+        return cls(first, _in_groups(boxes), order.astype(np.int32), corner, sides)
 
     def inner_distances(self, origins: FloatArray, directions: FloatArray) -> FloatArray:
         """Distances at which rays leave a body.
@@ -64,7 +65,7 @@ class RayCaster(NamedTuple):
         everywhere, as long as the whole, a ray would otherwise visit most of them. The time is O(N) for any mesh.
         """
         distances = np.empty(len(origins))
-        cast(self, origins, directions, distances)
+        cast(self, origins, directions, distances, np.empty(len(origins), dtype=np.int32))
         return distances
 
 
@@ -186,12 +187,18 @@ def _in_groups(boxes: NDArray[np.float32]) -> NDArray[np.float32]:
 
 @kernel
 def cast(
-    caster: RayCaster, origins: FloatArray, directions: FloatArray, distances: FloatArray, left: int = VISITS_AT_FIRST
+    caster: RayCaster,
+    origins: FloatArray,
+    directions: FloatArray,
+    distances: FloatArray,
+    faces: IntArray,
+    left: int = VISITS_AT_FIRST,
 ) -> int:
     """Write ``RayCaster.inner_distances`` of N rays into ``distances`` (N,), for use in other kernels.
 
     Parameters
     ----------
+    faces : (N,) receives the faces at these distances; -1 if there is none.
     left : what earlier rays have left of the nodes that may be visited.
 
     Returns
@@ -206,6 +213,7 @@ def cast(
         ray = _ray(origins, directions, i)
         numbers = (ray.ox, ray.oy, ray.oz, ray.ix, ray.iy, ray.iz)
         nearest = np.float32(np.inf)
+        place = 0
         from_inside = False
         size = _first_nodes(leaves, stack)
         left += _VISITS
@@ -225,9 +233,10 @@ def cast(
             for f in range(caster.first[node - leaves], caster.first[node - leaves + 1]):
                 determinant, distance = _meets(caster.corner, caster.sides, f, ray)
                 if distance < nearest:
-                    nearest = distance
+                    nearest, place = distance, f
                     from_inside = determinant < 0.0
         distances[i] = np.float64(nearest) if from_inside else np.inf
+        faces[i] = caster.face[place] if from_inside else -1
     return left
 
 

@@ -17,6 +17,7 @@ from segcore.affinity.rays import VISITS_AT_FIRST, RayCaster, cast
 from segcore.array_kernels import members_by_group
 from segcore.arrays import FloatArray, IntArray, LongArray, at_least
 from segcore.clean.surface import Surface
+from segcore.graphs.mesh_graph import Opposites
 from segcore.jit.decorators import inner_kernel, kernel
 
 RAYS = 24  # per patch; with 8 or 12 1-Rand is 0.000 to 0.003 worse, see "What helped" in bench/RESULTS.md
@@ -26,6 +27,10 @@ _START = 1e-4  # distance below the surface at which rays start, in sqrt(total a
 _SMALLEST_FACE = 1e-9  # least area of a sampled face in mean areas: keeps the steps of area positive
 _LEAST_CONFIDENCE = 1e-6  # in the mass of a patch: keeps the system of the smoothing regular
 _EQUAL = 1e-12  # relative tolerance around the median: keeps all distances of a patch whose distances are equal
+# Least cosines of the angles between a ray and the normal where it starts, and between the normals of opposite faces, one
+# of them reversed. Steeper rays are few, flatter ones would link places along a limb. Set by hand.
+_ALONG_NORMAL = 0.95
+_OPPOSITE = 0.9
 _GOLDEN_RATIO = 0.6180339887498949
 _GOLDEN_ANGLE = np.pi * (3.0 - np.sqrt(5.0))
 _STRIDE = 7  # between the places of a patch and the spokes of the disc; coprime to RAYS
@@ -37,6 +42,7 @@ class Thickness:
 
     logarithm: FloatArray  # (P,) logarithm of the shape diameter over sqrt(total area); 0 if unknown
     confidence: FloatArray  # (P,) share of the rays that met the other side from inside, 0 to 1
+    opposites: Opposites  # pairs of faces
 
 
 def patch_thickness(surface: Surface, patches: Patches) -> Thickness:
@@ -53,14 +59,13 @@ def patch_thickness(surface: Surface, patches: Patches) -> Thickness:
     """
     size = float(np.sqrt(patches.area.sum()))
     chosen = _measurable(patches)
-    if len(chosen) == 0:
-        return Thickness(*np.zeros((2, len(patches.area))))
     value, confidence = np.zeros((2, len(patches.area)))
-    value[chosen], confidence[chosen] = _typical(_distances(surface, patches, chosen, size), _disc()[:, 2])
+    rays = _rays(surface, patches, chosen, size)
+    value[chosen], confidence[chosen] = _typical(rays.distance, _disc()[:, 2])
     known = value > 0
     logarithm = np.zeros(len(value))
     logarithm[known] = np.log(value[known] / size)
-    return Thickness(logarithm, confidence)
+    return Thickness(logarithm, confidence, _opposites(rays, surface.normals, patches.area[chosen]))
 
 
 def smooth_logarithm(thickness: Thickness, patches: Patches, radius: float) -> FloatArray:
@@ -99,6 +104,14 @@ class _Faces(NamedTuple):
     area: FloatArray  # (F,) > 0
 
 
+class _Rays(NamedTuple):
+    """What the rays of K patches met."""
+
+    distance: FloatArray  # (K, RAYS), infinity for a ray that does not leave the body
+    start: IntArray  # (K, RAYS) the face at which a ray starts
+    met: IntArray  # (K, RAYS) the face that it meets from inside; -1 if there is none
+
+
 @cache
 def _disc() -> FloatArray:
     """(RAYS, 4) for every ray: its components along the frame (u, v, normal), and its place in a triangle, 0 to 1."""
@@ -112,26 +125,48 @@ def _disc() -> FloatArray:
     return np.stack([sine * np.cos(turn), sine * np.sin(turn), np.sqrt(1.0 - sine**2), place], axis=1)
 
 
-def _distances(surface: Surface, patches: Patches, chosen: LongArray, size: float) -> FloatArray:
-    """(K, RAYS) the distances at which the rays of some patches leave the body; infinity if they do not."""
+def _opposites(rays: _Rays, normals: FloatArray, area: FloatArray) -> Opposites:
+    """The faces that face away from each other at both ends of rays that run nearly along normals.
+
+    Parameters
+    ----------
+    normals : (F, 3) of the faces.
+    area : (K,) of the patches.
+    """
+    cosine = _disc()[:, 2]
+    steep = np.flatnonzero(cosine >= _ALONG_NORMAL)
+    patch, number = np.nonzero(rays.met[:, steep] >= 0)
+    ray = steep[number]
+    faces = np.stack([rays.start[patch, ray], rays.met[patch, ray]], axis=1)
+    facing = np.einsum("ij,ij->i", normals[faces[:, 0]], normals[faces[:, 1]]) <= -_OPPOSITE
+    distance = rays.distance[patch, ray] * cosine[ray]
+    return Opposites(faces[facing], distance[facing], area[patch[facing]] / len(steep))
+
+
+def _rays(surface: Surface, patches: Patches, chosen: LongArray, size: float) -> _Rays:
+    """Cast the rays of some patches."""
+    shape = len(chosen), RAYS
+    rays = _Rays(np.empty(shape), np.empty(shape, dtype=np.int32), np.empty(shape, dtype=np.int32))
+    if len(chosen) == 0:
+        return rays
     members, first = members_by_group(patches.of_face, len(patches.area))
     faces = _Faces(surface.faces, surface.vertices, surface.normals, at_least(surface.areas, _SMALLEST_FACE))
     samples = _Samples(members, first, chosen, patches.normal, _START * size)
-    return _cast(RayCaster.of(surface.vertices, surface.faces), faces, samples, _disc())
+    _cast(RayCaster.of(surface.vertices, surface.faces), faces, samples, _disc(), rays)
+    return rays
 
 
 @kernel
-def _cast(caster: RayCaster, faces: _Faces, samples: _Samples, disc: FloatArray) -> FloatArray:
-    """``_distances``: the rays of a patch start at equal steps of area through its faces.
+def _cast(caster: RayCaster, faces: _Faces, samples: _Samples, disc: FloatArray, made: _Rays) -> None:
+    """Write ``_rays``: the rays of a patch start at equal steps of area through its faces.
 
     The place inside the triangle is a low-discrepancy pair: the fraction that is left from the choice of the face, and
     the golden ratio sequence.
     """
     rays = len(disc)
-    distance = np.empty((len(samples.chosen), rays))
     origin, direction, inward = np.empty((rays, 3)), np.empty((rays, 3)), np.empty(3)
     left = VISITS_AT_FIRST
-    for row in range(len(distance)):
+    for row in range(len(samples.chosen)):
         patch = samples.chosen[row]
         place, last = samples.first[patch], samples.first[patch + 1] - 1
         total = 0.0
@@ -144,6 +179,7 @@ def _cast(caster: RayCaster, faces: _Faces, samples: _Samples, disc: FloatArray)
                 passed += faces.area[samples.face[place]]
                 place += 1
             f = samples.face[place]
+            made.start[row, j] = f
             root = np.sqrt(min(max((wanted - passed) / faces.area[f], 0.0), 1.0))
             is_sliver = faces.normal[f, 0] == 0.0 and faces.normal[f, 1] == 0.0 and faces.normal[f, 2] == 0.0
             a, b, c = faces.corner[f, 0], faces.corner[f, 1], faces.corner[f, 2]
@@ -158,8 +194,7 @@ def _cast(caster: RayCaster, faces: _Faces, samples: _Samples, disc: FloatArray)
             u, v = tangent_vectors(inward[0], inward[1], inward[2])
             for i in range(3):
                 direction[j, i] = disc[j, 0] * u[i] + disc[j, 1] * v[i] + disc[j, 2] * inward[i]
-        left = cast(caster, origin, direction, distance[row], left)
-    return distance
+        left = cast(caster, origin, direction, made.distance[row], made.met[row], left)
 
 
 @kernel

@@ -6,6 +6,8 @@ import numpy as np
 
 from segcore.arrays import FloatArray, IntArray, group_sums
 
+_EQUAL = 1e-9  # difference of two losses over their costs that is a rounding error
+
 
 def best_order(
     parent: IntArray, gain: FloatArray, cost: FloatArray, least_cost: float = 0.0, most_loss: float = 0.0
@@ -21,7 +23,8 @@ def best_order(
     gain : (S,) gain of every split, of any sign.
     cost : (S,) cost of every split, > 0.
     least_cost, most_loss : if the blocks of positive gain cost less than ``least_cost``, further blocks that lose at
-        most ``most_loss`` times their cost are worthwhile as well, until that cost is reached.
+        most ``most_loss`` times their cost are worthwhile as well, until that cost is reached, and beyond it those that
+        lose as little as the last one of them: of equal parts all are cut off.
 
     Returns
     -------
@@ -50,14 +53,15 @@ def best_order(
         )
     order: list[int] = []
     gainful = worthwhile = 0
-    spent = 0.0
+    spent, least_loss = 0.0, -np.inf
     while first:
         loss, block = heappop(first)
         order += members[block]
         if loss < 0:
             gainful = worthwhile = len(order)
-        elif spent < least_cost and loss <= most_loss:
+        elif loss <= most_loss and (spent < least_cost or loss <= least_loss):
             worthwhile = len(order)
+            least_loss = loss + _EQUAL
         spent += total_cost[block]
         for entry in waiting[block]:
             heappush(first, entry)

@@ -1,11 +1,20 @@
 """A graph of the faces or vertices of a surface, with the positions and the thickness of its nodes."""
 
 from dataclasses import dataclass
+from typing import NamedTuple
 
 import numpy as np
 
 from segcore.arrays import FloatArray, IntArray
 from segcore.graphs.surface_graph import SurfaceGraph
+
+
+class Opposites(NamedTuple):
+    """Pairs of nodes on opposite faces of a body, as rays into it find them."""
+
+    nodes: IntArray  # (M, 2)
+    distance: FloatArray  # (M,) > 0
+    area: FloatArray  # (M,) that a ray stands for
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -19,6 +28,7 @@ class MeshGraph:
     confidence: FloatArray | None = None  # (N,) share of the rays that met the other side from inside; None if unknown
     authored: IntArray | None = None  # (N,) the part of the structure of the file, if the cuts follow it
     grain: IntArray | None = None  # (N,) groups of nodes to begin a coarsening with, if the mesh is fine
+    opposites: Opposites | None = None  # None if the thickness was not measured
 
     @property
     def of_face(self) -> IntArray:

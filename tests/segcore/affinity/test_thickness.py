@@ -73,3 +73,13 @@ def test_the_typical_distance_is_the_weighted_mean_within_a_deviation_of_the_med
         near = hit & (np.abs(row - np.median(row[hit])) <= row[hit].std() * (1 + 1e-9) + 1e-9)
         expected = np.average(row[near], weights=cosines[near]) if near.any() else np.median(row[hit])
         assert found == pytest.approx(expected)
+
+
+def test_opposite_faces_of_a_plate_are_found_from_both_sides():
+    surface, made = measured(shapes.box((1.0, 1.0, 0.05)))
+    found = made.thickness.opposites
+    thin = found.distance * surface.unit < 0.06
+    np.testing.assert_allclose(found.distance[thin] * surface.unit, 0.05, rtol=0.01)
+    assert found.area[thin].sum() * surface.unit**2 == pytest.approx(2.0, rel=0.1)
+    heights = surface.vertices[surface.faces[found.nodes[thin]]].mean(axis=2)[:, :, 2]
+    np.testing.assert_allclose(np.abs(np.diff(heights, axis=1)) * surface.unit, 0.05, rtol=1e-3)

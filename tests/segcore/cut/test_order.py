@@ -73,3 +73,9 @@ def test_losing_splits_are_worthwhile_until_enough_is_spent_if_they_lose_little(
     assert best_order(parent, gain, cost, least_cost=2.0, most_loss=0.2)[1] == 3
     # Beyond that every split loses more than it may, so that nothing is gained by a part of it.
     assert best_order(parent, gain, cost, least_cost=3.0, most_loss=0.2)[1] == 1
+
+
+def test_of_splits_that_lose_the_same_all_are_worthwhile_or_none():
+    parent, gain, cost = np.array([-1, -1, -1, -1]), np.array([-0.1, -0.2, -0.1, -0.3]), np.array([1.0, 2.0, 1.0, 1.0])
+    assert best_order(parent, gain, cost, least_cost=0.5, most_loss=0.2)[1] == 3
+    assert best_order(parent, gain, cost, least_cost=0.5, most_loss=0.05)[1] == 0
