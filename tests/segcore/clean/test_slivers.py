@@ -83,7 +83,7 @@ def test_creases_beside_slivers_stay_concave(meshes: dict[str, Mesh], name: str,
     np.testing.assert_allclose(concave_length(refine(surface).surface), whole, rtol=1e-5)
 
 
-@pytest.mark.parametrize(("name", "parts"), [("beam", 3), ("table", 5), ("gear", 18), ("pipe", 4)])
+@pytest.mark.parametrize(("name", "parts"), [("beam", 3), ("table", 5), ("gear", 18), ("pipe", 3)])
 def test_slivers_along_creases_do_not_change_the_parts(meshes: dict[str, Mesh], name: str, parts: int) -> None:
     mesh = meshes[name]
     assert segment(mesh).labels().max() + 1 == parts
