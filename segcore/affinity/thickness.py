@@ -27,10 +27,8 @@ _START = 1e-4  # distance below the surface at which rays start, in sqrt(total a
 _SMALLEST_FACE = 1e-9  # least area of a sampled face in mean areas: keeps the steps of area positive
 _LEAST_CONFIDENCE = 1e-6  # in the mass of a patch: keeps the system of the smoothing regular
 _EQUAL = 1e-12  # relative tolerance around the median: keeps all distances of a patch whose distances are equal
-# Least cosines of the angles between a ray and the normal where it starts, and between the normals of opposite faces, one
-# of them reversed. Steeper rays are few, flatter ones would link places along a limb. Set by hand.
-_ALONG_NORMAL = 0.95
-_OPPOSITE = 0.9
+_ALONG_NORMAL = 0.95  # least cosine of the angle between a ray that links opposite faces and the normal; decision 29
+_OPPOSITE = 0.9  # least cosine of the angle between the normals of opposite faces, one of them reversed; set by hand
 _GOLDEN_RATIO = 0.6180339887498949
 _GOLDEN_ANGLE = np.pi * (3.0 - np.sqrt(5.0))
 _STRIDE = 7  # between the places of a patch and the spokes of the disc; coprime to RAYS
