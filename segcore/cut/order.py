@@ -53,15 +53,15 @@ def best_order(
         )
     order: list[int] = []
     gainful = worthwhile = 0
-    spent, least_loss = 0.0, -np.inf
+    spent, reached = 0.0, -np.inf
     while first:
         loss, block = heappop(first)
         order += members[block]
         if loss < 0:
             gainful = worthwhile = len(order)
-        elif loss <= most_loss and (spent < least_cost or loss <= least_loss):
+        elif loss <= most_loss and (spent < least_cost or loss <= reached):
             worthwhile = len(order)
-            least_loss = loss + _EQUAL
+            reached = loss + _EQUAL
         spent += total_cost[block]
         for entry in waiting[block]:
             heappush(first, entry)

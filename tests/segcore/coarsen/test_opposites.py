@@ -8,6 +8,7 @@ from trimesh import Trimesh
 from trimesh.proximity import closest_point_naive
 
 from helpers.bodies.plates import mesh_of
+from segcore import shapes
 from segcore.affinity.mesh_graphs import mesh_graph
 from segcore.clean.refinement import refine
 from segcore.clean.surface import build_surface
@@ -40,12 +41,6 @@ PROFILES = {
 ALL_PARTED = {"angle", "channel", "tee"}  # the web of a zed goes with one of its flanges
 
 
-def box(size: tuple[float, float, float], *places: tuple[float, float, float]) -> Mesh:
-    """Boxes of one size with their centres at some places."""
-    cube = manifold3d.Manifold.cube(size, center=True)
-    return mesh_of(manifold3d.Manifold.compose([cube.translate(place) for place in places]))
-
-
 def linked(mesh: Mesh) -> tuple[Clusters, Clusters]:
     """The clusters of a mesh before and after those on opposite faces are linked."""
     surface = refine(build_surface(mesh)).surface
@@ -55,7 +50,7 @@ def linked(mesh: Mesh) -> tuple[Clusters, Clusters]:
 
 
 def test_the_weight_of_a_wall_is_a_tenth_of_its_area_over_its_thickness() -> None:
-    before, after = linked(box((1.0, 1.0, 0.05), (0, 0, 0)))
+    before, after = linked(shapes.box((1.0, 1.0, 0.05)))
     scale = np.sqrt(before.graph.total_volume / 2.2)  # the graph is that of a surface of unit extent
     added = after.graph.weight.sum() - before.graph.weight.sum()
     assert added / scale == pytest.approx(0.1 / 0.05, rel=0.2)
@@ -64,7 +59,7 @@ def test_the_weight_of_a_wall_is_a_tenth_of_its_area_over_its_thickness() -> Non
 
 
 def test_opposite_clusters_are_linked_and_no_others() -> None:
-    before, after = linked(box((1.0, 1.0, 0.05), (0, 0, 0)))
+    before, after = linked(shapes.box((1.0, 1.0, 0.05)))
     known = {tuple(edge) for edge in before.graph.edges.tolist()}
     new = np.array([edge for edge in after.graph.edges.tolist() if tuple(edge) not in known])
     assert len(new) > 200
@@ -74,12 +69,13 @@ def test_opposite_clusters_are_linked_and_no_others() -> None:
 
 
 def test_a_thick_body_has_no_links() -> None:
-    before, after = linked(box((1.0, 1.0, 1.0), (0, 0, 0)))
+    before, after = linked(shapes.box())
     np.testing.assert_array_equal(before.graph.edges, after.graph.edges)
 
 
 def test_bodies_are_not_linked_through_each_other() -> None:
-    before, after = linked(box((1.0, 1.0, 0.05), (0, 0, 0), (0, 0, 0.051), (0.3, 0.3, 0.11)))
+    places = [(0.0, 0.0, 0.0), (0.0, 0.0, 0.051), (0.3, 0.3, 0.11)]
+    before, after = linked(shapes.joined(*(shapes.box((1.0, 1.0, 0.05), place) for place in places)).mesh)
     assert before.body.max() == after.body.max() == 2
     ends = before.body[after.graph.edges]
     np.testing.assert_array_equal(ends[:, 0], ends[:, 1])
