@@ -13,22 +13,23 @@ from segcore.learned.gaussian_process import GaussianProcess, quantised, similar
 
 if TYPE_CHECKING:
     from bench.learning.rows import Rows
-    from segcore.arrays import FloatArray
+    from segcore.arrays import FloatArray, IntArray
 
-# Set by hand: decisions 24 and 25 compare neighbours of some.
-CENTRES = 1000  # rows at which the correction of the trend is anchored
+# Set by hand: decisions 24, 25 and 30 compare neighbours of some.
+_CENTRES = 1000  # rows at which the correction of the trend is anchored
 _LENGTH = 3.0  # in standard deviations of the features
-_NOISE = 0.3  # variance of a target over that of the process
+_NOISE = 0.5  # variance of a target over that of the process
 _JITTER = 1e-5  # makes the equations solvable if two centres are alike
+_LEAST_LEFT = 1e-6  # of the weighted variance of a row that is worth a centre
 _TREND = ("kept", "small_area", "large_area", "depth", "ncut", "paired")
 _TREND_RIDGE = 1e-2
 
 
-def fit_gaussian_process(rows: Rows, seed: int = 0) -> GaussianProcess | None:
+def fit_gaussian_process(rows: Rows) -> GaussianProcess | None:
     """Fit a logistic trend, and a Gaussian process to what it leaves, to the rows of ``split_rows``.
 
-    The weighted sum of squares of the errors over the noise, plus the norm of the correction, is least. The centres are
-    drawn by weight. None if there are no rows.
+    The weighted sum of squares of the errors over the noise, plus the norm of the correction, is least. None if there
+    are no rows.
     """
     if len(rows.target) == 0:
         return None
@@ -36,13 +37,44 @@ def fit_gaussian_process(rows: Rows, seed: int = 0) -> GaussianProcess | None:
     trend = fit(_TREND, rows.columns([names.index(name) for name in _TREND]), _TREND_RIDGE)
     weight = rows.weight / rows.weight.sum()
     mean, scale = mean_and_scale(rows.features, weight)
-    count = min(CENTRES, int(np.count_nonzero(weight)))
-    drawn = np.random.default_rng(seed).choice(len(weight), count, replace=False, p=weight)
-    centres = quantised((rows.features[drawn] - mean) / scale)
-    process = GaussianProcess(names, mean, scale, _LENGTH, centres, np.zeros(len(centres)), trend)
+    weight *= len(weight)
+    process = GaussianProcess(names, mean, scale, _LENGTH, quantised((rows.features - mean) / scale), weight, trend)
+    chosen = centres(process.scaled_centres(), weight, _CENTRES)
+    process = replace(process, centres=process.centres[chosen], weight=np.zeros(len(chosen)))
     left = rows.target - process.estimate(rows.features)
     basis = similarities(process.scaled(rows.features), process.scaled_centres())
-    return replace(process, weight=_solved(basis, basis[drawn], left, len(weight) * weight))
+    return replace(process, weight=_solved(basis, basis[chosen], left, weight))
+
+
+def centres(points: FloatArray, weight: FloatArray, count: int) -> IntArray:
+    """At most ``count`` of N points, which know as much as possible of the process at all of them.
+
+    The next one is always that of the largest weighted variance, given the process at those before: the pivots of a
+    Cholesky factorization of the weighted covariance. It ends early if next to nothing is left.
+
+    Parameters
+    ----------
+    points : (N, M) features over the length scale.
+    weight : (N,) of the points, 1 on average.
+
+    References
+    ----------
+    Fine and Scheinberg, Efficient SVM training using low-rank kernel representations, Journal of Machine Learning
+    Research 2, 2001.
+    """
+    factor = np.zeros((len(points), min(count, len(points))))
+    variance = np.ones(len(points))
+    chosen: list[int] = []
+    for j in range(factor.shape[1]):
+        pivot = int(np.argmax(variance * weight))
+        if variance[pivot] * weight[pivot] < _LEAST_LEFT:
+            break
+        covariance = similarities(points, points[pivot : pivot + 1])[:, 0]
+        factor[:, j] = (covariance - factor[:, :j] @ factor[pivot, :j]) / np.sqrt(variance[pivot])
+        variance = np.maximum(variance - factor[:, j] ** 2, 0.0)
+        variance[pivot] = 0.0
+        chosen.append(pivot)
+    return np.array(chosen)
 
 
 def _solved(basis: FloatArray, between: FloatArray, left: FloatArray, weight: FloatArray) -> FloatArray:
