@@ -28,6 +28,7 @@ def fitted(table: Rows) -> GaussianProcess:
 def test_the_process_learns_what_the_trend_cannot() -> None:
     process = fitted(rows(2000))
     assert process.names == ORDER_FEATURES
+    assert process.centres.shape == (len(process.weight), len(ORDER_FEATURES))
     table = rows(2500)
     estimate, trend = process.estimate(table.features), np.average(table.target)
     assert np.abs(estimate - table.target).mean() < 0.7 * np.abs(trend - table.target).mean()
