@@ -1,6 +1,6 @@
 /** Client for the parts of the HTTP API that the page uses. */
 
-import { ApiError, type Problem } from "./problems";
+import { ApiError, UNEXPECTED, type Problem } from "./problems";
 import type { Model } from "./sets";
 
 export type Status = "queued" | "running" | "succeeded" | "failed" | "canceled";
@@ -261,7 +261,7 @@ async function get<T>(path: string): Promise<T> {
   return parsed<T>(await (await request(path)).text());
 }
 
-const NO_ANSWER = { code: "unexpected", detail: "A proxy in front of Cleave answers, but Cleave itself does not: it may be starting." };
+const NO_ANSWER = { code: UNEXPECTED, detail: "A proxy in front of Cleave answers, but Cleave itself does not: it may be starting." };
 
 /** What answers of a proxy mean, which do not come from Cleave. */
 const OF_PROXIES: Readonly<Record<number, Problem>> = {
@@ -274,7 +274,8 @@ const OF_PROXIES: Readonly<Record<number, Problem>> = {
   504: NO_ANSWER,
 };
 
-function parsed<T>(text: string): T {
+/** Return what a response says. Throws ApiError if it is not from Cleave. */
+export function parsed<T>(text: string): T {
   try {
     return JSON.parse(text) as T;
   } catch {
@@ -289,5 +290,5 @@ function problemIn(text: string, status: number): Problem {
   } catch {
     // The response is not from Cleave, for example an HTML error page of a proxy.
   }
-  return OF_PROXIES[status] ?? { code: status === 401 ? "unauthorized" : "unexpected", detail: `The server responded with status ${status}.` };
+  return OF_PROXIES[status] ?? { code: status === 401 ? "unauthorized" : UNEXPECTED, detail: `The server responded with status ${status}.` };
 }

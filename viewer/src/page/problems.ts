@@ -34,6 +34,14 @@ export function problemOf(error: unknown): Problem {
   return { code: "unreachable", detail: "The server is not responding." };
 }
 
+/** The code of answers that are not from Cleave. */
+export const UNEXPECTED = "unexpected";
+
+/** Whether it is unknown if a request has arrived: its response was lost, or a proxy has responded in place of Cleave. */
+export function isUnanswered(error: unknown): boolean {
+  return !(error instanceof ApiError) || (error.code === UNEXPECTED && error.status >= 500);
+}
+
 const FORMATS = new Intl.ListFormat("en", { type: "disjunction" }).format(lists.inputFormats.map(({ title }) => title));
 
 const KNOWN: Record<string, [title: string, next: string, remedy: Remedy]> = {

@@ -3,7 +3,7 @@
 import { nodeOfPart, type CleaveViewer, type Partition } from "../../component/element";
 import type { Job } from "../api";
 import { announce, toast } from "../dom";
-import { ApiError, explain, problemOf } from "../problems";
+import { ApiError, explain, isUnanswered, problemOf } from "../problems";
 import type { Session } from "../session";
 import { plural } from "../text";
 import { levelOf, partOfLevel } from "./automatic";
@@ -221,7 +221,7 @@ export class Editor {
       announce(`Labels loaded: ${plural(this.parts.length, "part")}.`);
     } catch (error) {
       if (isConflict(error) && (await askAboutConflict(job.id)) !== "later") await this.showNewest();
-      else toast(error instanceof ApiError ? error.message : explain(problemOf(error)).title);
+      else toast(notSaved(error));
     }
   }
 
@@ -266,7 +266,7 @@ export class Editor {
     } catch (error) {
       if (opened !== this.#opened) return this.#refuse();
       if (isConflict(error)) return this.#settle(job.id, operations, done);
-      toast(error instanceof ApiError ? `Not saved: ${error.message}` : `Not saved. ${explain(problemOf(error)).title}.`);
+      toast(notSaved(error));
       this.drop();
       return false;
     }
@@ -336,6 +336,11 @@ export class Editor {
 
 function partitionOf({ labels, parts }: Parts): Partition {
   return { labels, colors: parts.map(({ color }) => color) };
+}
+
+function notSaved(error: unknown): string {
+  const reason = error instanceof ApiError ? error.message : `${explain(problemOf(error)).title}.`;
+  return isUnanswered(error) ? `It is not known whether the change was saved. ${reason}` : `Not saved: ${reason}`;
 }
 
 function isConflict(error: unknown): boolean {
