@@ -149,14 +149,14 @@ export const nameOf = (job: Job): string => job.input.file_name ?? "mesh";
 /** Return the path of a job, relative to the page. */
 export const jobPath = (id: string, rest = ""): string => `v1/jobs/${encodeURIComponent(id)}${rest}`;
 
-export const getJob = (id: string): Promise<Job> => get(jobPath(id));
-export const getFormats = (): Promise<Formats> => (formats ??= get<Formats>("v1/formats").catch(forgetFormats));
-export const getMethods = (): Promise<ParameterSchema> => get("v1/methods");
+export const getJob = (id: string): Promise<Job> => requestJson(jobPath(id));
+export const getFormats = (): Promise<Formats> => (formats ??= requestJson<Formats>("v1/formats").catch(forgetFormats));
+export const getMethods = (): Promise<ParameterSchema> => requestJson("v1/methods");
 
-export const getPrintReport = (id: string, query: string): Promise<PrintReport> => get(jobPath(id, `/print.json${query}`));
+export const getPrintReport = (id: string, query: string): Promise<PrintReport> => requestJson(jobPath(id, `/print.json${query}`));
 
 export function listJobs(cursor: string | null): Promise<JobPage> {
-  return get(`v1/jobs?limit=50${cursor === null ? "" : `&cursor=${encodeURIComponent(cursor)}`}`);
+  return requestJson(`v1/jobs?limit=50${cursor === null ? "" : `&cursor=${encodeURIComponent(cursor)}`}`);
 }
 
 export async function deleteJob(id: string): Promise<void> {
@@ -176,7 +176,7 @@ export async function checkKey(): Promise<void> {
 export function rerun(id: string, parameters: Readonly<Record<string, unknown>>): Promise<Job> {
   return makingOneJob(parameters, async (key) => {
     const headers = { "Content-Type": "application/json", "Idempotency-Key": key };
-    return parsed<Job>(await (await request(jobPath(id, "/rerun"), { method: "POST", headers, body: JSON.stringify(parameters) })).text());
+    return requestJson<Job>(jobPath(id, "/rerun"), { method: "POST", headers, body: JSON.stringify(parameters) });
   });
 }
 
@@ -195,6 +195,11 @@ export async function request(path: string, options: RequestInit = {}): Promise<
   const answer = await fetch(path, { ...options, headers: { ...headers(), ...options.headers } });
   if (!answer.ok) throw new ApiError(problemIn(await answer.text(), answer.status), answer.status);
   return answer;
+}
+
+/** Send a request and return the JSON of its response. Errors as of ``request``, and ApiError if the response is not from Cleave. */
+export async function requestJson<T>(path: string, options: RequestInit = {}): Promise<T> {
+  return parsed<T>(await (await request(path, options)).text());
 }
 
 /** Upload a mesh and the files that belong to it; ``onSent`` receives the fraction of bytes sent. */
@@ -257,10 +262,6 @@ export function newKey(): string {
   return Array.from(crypto.getRandomValues(new Uint8Array(16)), (byte) => byte.toString(16).padStart(2, "0")).join("");
 }
 
-async function get<T>(path: string): Promise<T> {
-  return parsed<T>(await (await request(path)).text());
-}
-
 const NO_ANSWER = { code: UNEXPECTED, detail: "A proxy in front of Cleave answers, but Cleave itself does not: it may be starting." };
 
 /** What answers of a proxy mean, which do not come from Cleave. */
@@ -274,8 +275,7 @@ const OF_PROXIES: Readonly<Record<number, Problem>> = {
   504: NO_ANSWER,
 };
 
-/** Return what a response says. Throws ApiError if it is not from Cleave. */
-export function parsed<T>(text: string): T {
+function parsed<T>(text: string): T {
   try {
     return JSON.parse(text) as T;
   } catch {

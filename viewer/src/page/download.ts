@@ -1,7 +1,7 @@
 /** The dialog Download: downloads of the present cut, a picture, and commands that produce the same result. */
 
 import type { CleaveViewer } from "../component/element";
-import { apiKey, getBlob, getMethods, jobPath, nameOf, request, type Job } from "./api";
+import { apiKey, getBlob, getMethods, jobPath, nameOf, requestJson, type Job } from "./api";
 import { byId, h, icon, openDialog, save, toast } from "./dom";
 import { EditedSession } from "./edit/edited_session";
 import lists from "./lists.json";
@@ -80,7 +80,7 @@ export class DownloadDialog {
     const address = jobPath(job.id, `/${path}${session.query}`);
     const fileName = `${stem(nameOf(job))}-${session.parts.length}${ending}`;
     if (path === "labels") {
-      const document = (await (await request(address)).json()) as object;
+      const document = await requestJson<object>(address);
       const names = session.parts.map((id) => session.nameOf(id));
       save(new Blob([JSON.stringify({ ...document, names })], { type: "application/json" }), fileName);
     } else {

@@ -2,7 +2,7 @@
 
 import { byId, openDialog } from "../dom";
 import { when } from "../text";
-import { jobPath, request } from "../api";
+import { jobPath, requestJson } from "../api";
 import type { Revision } from "./revisions";
 
 /** Load the newer revision and repeat the own change, load it without the change, or go on without loading it. */
@@ -20,7 +20,7 @@ export async function askAboutConflict(job: string): Promise<Choice> {
 
 async function described(job: string): Promise<string> {
   try {
-    const { made_by, made_at, what } = (await (await request(jobPath(job, "/revisions/latest"))).json()) as Revision;
+    const { made_by, made_at, what } = await requestJson<Revision>(jobPath(job, "/revisions/latest"));
     return `${made_by ?? "Somebody"} has edited the parts ${when(made_at)}: ${what}.`;
   } catch {
     return "Somebody has edited the parts.";

@@ -1,6 +1,6 @@
 /** Parts that are copies of each other: found by the server, named and coloured together. */
 
-import { jobPath, request } from "../api";
+import { jobPath, requestJson } from "../api";
 import { announce, byId, toast } from "../dom";
 import { explain, problemOf } from "../problems";
 import type { Session } from "../session";
@@ -77,7 +77,7 @@ export class Copies {
     if (signal.aborted) return;
     this.#toggle.setAttribute("aria-busy", "true");
     try {
-      const { repeats } = (await (await request(path, { signal })).json()) as { readonly repeats: Repeats };
+      const { repeats } = await requestJson<{ readonly repeats: Repeats }>(path, { signal });
       if (signal.aborted) return;
       this.#repeats = repeats;
       this.update();

@@ -221,7 +221,7 @@ export class Editor {
       announce(`Labels loaded: ${plural(this.parts.length, "part")}.`);
     } catch (error) {
       if (isConflict(error) && (await askAboutConflict(job.id)) !== "later") await this.showNewest();
-      else toast(notSaved(error));
+      else toast(savingFailed(error));
     }
   }
 
@@ -266,7 +266,7 @@ export class Editor {
     } catch (error) {
       if (opened !== this.#opened) return this.#refuse();
       if (isConflict(error)) return this.#settle(job.id, operations, done);
-      toast(notSaved(error));
+      toast(savingFailed(error));
       this.drop();
       return false;
     }
@@ -338,7 +338,7 @@ function partitionOf({ labels, parts }: Parts): Partition {
   return { labels, colors: parts.map(({ color }) => color) };
 }
 
-function notSaved(error: unknown): string {
+function savingFailed(error: unknown): string {
   const reason = error instanceof ApiError ? error.message : `${explain(problemOf(error)).title}.`;
   return isUnanswered(error) ? `It is not known whether the change was saved. ${reason}` : `Not saved: ${reason}`;
 }

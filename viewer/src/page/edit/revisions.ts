@@ -1,6 +1,6 @@
 /** Client for edits of parts: operations, revisions and labels. */
 
-import { jobPath, newKey, parsed, request } from "../api";
+import { jobPath, newKey, request, requestJson } from "../api";
 import { pause } from "../pause";
 import { ApiError, isUnanswered } from "../problems";
 import type { ChangedFaces, FaceRuns } from "./face_runs";
@@ -69,30 +69,28 @@ const READY_PAUSE_MS = 1500; // between tries while the server prepares a mesh
 const REPEAT_PAUSES_MS = [500, 1000, 2000, 4000]; // before a request whose response was lost is sent again
 
 /** Send a request, and again if its response is lost: the server recognizes an edit by its key. */
-async function answered<T>(path: string, options: RequestInit, read: (answer: Response) => Promise<T>): Promise<T> {
+async function answered<T>(send: () => Promise<T>): Promise<T> {
   for (const pauseMs of REPEAT_PAUSES_MS) {
     try {
-      return await read(await request(path, options));
+      return await send();
     } catch (error) {
       if (!isUnanswered(error)) throw error;
       await pause(pauseMs);
     }
   }
-  return read(await request(path, options));
+  return send();
 }
-
-const json = async <T>(answer: Response): Promise<T> => parsed<T>(await answer.text());
 
 /** Make the next revision; null if it went through the queue, so that its parts are to be loaded. */
 export async function postEdit(job: string, edit: Edit): Promise<Edited | null> {
   const headers = { ...JSON_BODY, "Idempotency-Key": newKey() };
   const options = { method: "POST", headers, body: JSON.stringify(edit) };
-  const made = await answered(jobPath(job, "/edits"), options, json<Edited | Queued>);
+  const made = await answered(() => requestJson<Edited | Queued>(jobPath(job, "/edits"), options));
   if (!("status" in made)) return made;
   let queued = made;
   while (queued.status === "queued") {
     await pause(READY_PAUSE_MS);
-    queued = await answered(jobPath(job, `/edits/${queued.id}`), {}, json<Queued>);
+    queued = await answered(() => requestJson<Queued>(jobPath(job, `/edits/${made.id}`)));
   }
   if (queued.error !== null) throw new ApiError({ code: queued.error.code, detail: queued.error.message }, 409);
   return null;
@@ -103,7 +101,7 @@ export async function previewEdit(job: string, edit: Edit, signal: AbortSignal, 
   const options = { method: "POST", headers: JSON_BODY, body: JSON.stringify(edit), signal };
   for (let wait = onWait; ; wait = () => undefined) {
     try {
-      return await json<Edited>(await request(jobPath(job, "/edits/preview"), options));
+      return await requestJson<Edited>(jobPath(job, "/edits/preview"), options);
     } catch (error) {
       if (!(error instanceof ApiError) || error.code !== "guide_not_ready" || signal.aborted) throw error;
       wait();
@@ -115,13 +113,13 @@ export async function previewEdit(job: string, edit: Edit, signal: AbortSignal, 
 /** Store labels that were made elsewhere as the next revision. */
 export async function putLabels(job: string, base: number, file: Blob, mediaType: string): Promise<void> {
   const headers = { "Content-Type": mediaType, "Idempotency-Key": newKey() };
-  await answered(jobPath(job, `/labels?base=${base}`), { method: "PUT", headers, body: file }, (answer) => answer.text());
+  await answered(() => requestJson(jobPath(job, `/labels?base=${base}`), { method: "PUT", headers, body: file }));
 }
 
 /** Return the newest revision with its parts and its labels. */
 export async function newestRevision(job: string): Promise<Revision & { parts: readonly Part[]; labels: Int32Array }> {
-  const revision = await answered(jobPath(job, "/revisions/latest"), {}, json<Revision & { parts: readonly Part[] }>);
+  const revision = await answered(() => requestJson<Revision & { parts: readonly Part[] }>(jobPath(job, "/revisions/latest")));
   const path = jobPath(job, `/labels?revision=${revision.number}&format=raw`);
-  const raw = await answered(path, {}, (answer) => answer.arrayBuffer());
+  const raw = await answered(async () => (await request(path)).arrayBuffer());
   return { ...revision, labels: new Int32Array(raw) };
 }
