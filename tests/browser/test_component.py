@@ -180,7 +180,7 @@ def test_the_text_of_an_error_says_what_to_do(visit: Visit, job: str) -> None:
     assert shown_text(visit) == said
     assert evaluate(visit, "v.error") == {"code": "not_loaded", "message": said}
     assert evaluate(visit, "v.tree") is None
-    visit.faults = [fault for fault in visit.faults if "404" not in fault]
+    visit.forgive("404")
     visit.page.evaluate(
         "(path) => document.querySelector('cleave-viewer').setAttribute('src', path)", f"v1/jobs/{job}/model.glb"
     )
@@ -196,7 +196,7 @@ def test_without_webgl_the_element_says_so(visit: Visit, job: str) -> None:
     visit.page.wait_for_selector("cleave-viewer[state=failed]")
     assert "enable WebGL 2" in shown_text(visit)
     assert evaluate(visit, "v.error.code") == "no_webgl"
-    visit.faults = [fault for fault in visit.faults if "WebGL" not in fault]
+    visit.forgive("WebGL")
 
 
 def test_a_page_of_another_origin_shows_models_if_it_is_allowed(
@@ -211,5 +211,5 @@ def test_a_page_of_another_origin_shows_models_if_it_is_allowed(
         visit.page.wait_for_selector(f"cleave-viewer[state={state}]")
         if state == "failed":
             assert f"CLEAVE_CORS_ORIGINS there must contain {origin}." in shown_text(visit)
-            visit.faults = [fault for fault in visit.faults if "CORS" not in fault and "ERR_FAILED" not in fault]
+            visit.forgive("CORS", "ERR_FAILED")
         visit.foreign = [url for url in visit.foreign if not url.startswith(f"{origin}/")]

@@ -59,7 +59,7 @@ def test_what_a_proxy_answers_is_explained(visit: Visit, status: int, expected: 
     code, text, _ = problem(visit)
     assert code == expected
     assert sentence in text
-    visit.faults = [fault for fault in visit.faults if str(status) not in fault]
+    visit.forgive(str(status))
 
 
 def test_going_back_from_an_error_returns_to_the_previous_result(visit: Visit, job: str) -> None:
@@ -95,7 +95,7 @@ def test_the_page_waits_for_a_server_that_is_unreachable_during_a_job(visit: Vis
     visit.page.unroute_all()
     visit.wait_for_parts()
     assert visit.page.locator("#offline").is_hidden()
-    visit.faults = [fault for fault in visit.faults if "ERR_CONNECTION_REFUSED" not in fault]
+    visit.forgive("ERR_CONNECTION_REFUSED")
 
 
 def test_the_page_waits_until_a_killed_service_is_restarted(visit: Visit, installation: Installation) -> None:
@@ -113,7 +113,7 @@ def test_the_page_waits_until_a_killed_service_is_restarted(visit: Visit, instal
     visit.wait_for_parts()
     assert visit.page.locator("#offline").is_hidden()
     assert len(visit.parts()) == 7
-    visit.faults = [fault for fault in visit.faults if "net::ERR" not in fault]
+    visit.forgive("net::ERR")
 
 
 def test_an_upload_without_a_server_can_be_retried(visit: Visit) -> None:
@@ -126,7 +126,7 @@ def test_an_upload_without_a_server_can_be_retried(visit: Visit) -> None:
     visit.page.context.set_offline(False)
     visit.page.click("#remedy")
     visit.wait_for_parts()
-    visit.faults = [fault for fault in visit.faults if "ERR_INTERNET_DISCONNECTED" not in fault]
+    visit.forgive("ERR_INTERNET_DISCONNECTED")
 
 
 def test_an_upload_whose_response_is_lost_can_be_retried_without_a_second_job(
@@ -148,7 +148,7 @@ def test_an_upload_whose_response_is_lost_can_be_retried_without_a_second_job(
     visit.wait_for_parts()
     jobs = installation.get("/v1/jobs").json()["jobs"]
     assert [job["id"] for job in jobs if job["input"]["file_name"] == "lost-response.ply"] == taken
-    visit.faults = [fault for fault in visit.faults if "ERR_CONNECTION_RESET" not in fault]
+    visit.forgive("ERR_CONNECTION_RESET")
 
 
 def compare(visit: Visit, most: str) -> None:
@@ -180,7 +180,7 @@ def test_a_rerun_whose_response_is_lost_makes_no_second_job(visit: Visit, job: s
     visit.page.wait_for_function("() => document.querySelector('#beside-level').max === '31'")
     assert None not in keys
     assert keys[0] == keys[1] != keys[2]
-    visit.faults = [fault for fault in visit.faults if "ERR_CONNECTION_RESET" not in fault]
+    visit.forgive("ERR_CONNECTION_RESET")
 
 
 @pytest.mark.parametrize("fragment", ["#job=" + "0" * 32, "#job=../../x"])
@@ -191,7 +191,7 @@ def test_a_link_to_an_unknown_job_leads_to_the_start_page(visit: Visit, fragment
     assert button == "Choose another file"
     visit.page.click("#back")
     visit.page.wait_for_selector("#start:not([hidden])")
-    visit.faults = [fault for fault in visit.faults if "404" not in fault]
+    visit.forgive("404")
 
 
 def test_a_running_job_can_be_stopped(visit: Visit, installation: Installation) -> None:
@@ -221,7 +221,7 @@ def test_an_error_of_a_download_is_shown_above_the_dialog(visit: Visit, job: str
     assert visit.page.locator("#download #announcer").inner_text() == note.inner_text()
     visit.page.keyboard.press("Escape")
     visit.page.locator("body > #announcer").wait_for(state="attached")
-    visit.faults = [fault for fault in visit.faults if "410" not in fault]
+    visit.forgive("410")
 
 
 def test_a_browser_without_webgl_is_told_so(visit: Visit, job: str) -> None:
@@ -235,7 +235,7 @@ def test_a_browser_without_webgl_is_told_so(visit: Visit, job: str) -> None:
     code, text, _ = problem(visit)
     assert code == "no_webgl"
     assert "WebGL 2" in text
-    visit.faults = [fault for fault in visit.faults if "WebGL" not in fault]
+    visit.forgive("WebGL")
 
 
 def test_a_job_that_is_computed_is_found_again_by_a_reload(visit: Visit, installation: Installation) -> None:
@@ -252,7 +252,7 @@ def test_a_job_that_is_computed_is_found_again_by_a_reload(visit: Visit, install
         os.kill(worker, signal.SIGCONT)
     visit.wait_for_parts()
     assert visit.page.inner_text("#title") == "reloaded.ply"
-    visit.faults = [fault for fault in visit.faults if "net::ERR" not in fault]
+    visit.forgive("net::ERR")
 
 
 def test_the_page_says_why_a_job_waits_and_what_runs(visit: Visit) -> None:
@@ -274,8 +274,7 @@ def test_the_page_says_why_a_job_waits_and_what_runs(visit: Visit) -> None:
     visit.page.wait_for_selector("#start:not([hidden])")
     for route in held:
         route.abort()
-    expected = ("503", "409", "net::ERR")  # 409 if the job had ended before it was stopped
-    visit.faults = [fault for fault in visit.faults if not any(one in fault for one in expected)]
+    visit.forgive("503", "409", "net::ERR")  # 409 if the job had ended before it was stopped
 
 
 def waiting(route: Route) -> None:

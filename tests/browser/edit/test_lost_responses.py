@@ -25,10 +25,6 @@ def locked(edited: EditedJob) -> list[int]:
     return [number for number, part in enumerate(edited.parts()) if part["locked"]]
 
 
-def without_faults(visit: Visit, *words: str) -> None:
-    visit.faults = [fault for fault in visit.faults if not any(word in fault for word in words)]
-
-
 @pytest.mark.parametrize("lost", ["connection", "proxy"])
 def test_an_edit_whose_response_is_lost_is_sent_again_and_made_once(visit: Visit, edited: EditedJob, lost: str) -> None:
     keys: list[str | None] = []
@@ -56,7 +52,7 @@ def test_an_edit_whose_response_is_lost_is_sent_again_and_made_once(visit: Visit
     wait_for_revision(visit, 2)
     assert keys[3] != keys[0]
     assert locked(edited) == [2, 3]
-    without_faults(visit, "ERR_CONNECTION_RESET", "502")
+    visit.forgive("ERR_CONNECTION_RESET", "502")
 
 
 def test_an_edit_that_is_never_answered_is_not_said_to_be_unsaved(visit: Visit, edited: EditedJob) -> None:
@@ -76,7 +72,7 @@ def test_an_edit_that_is_never_answered_is_not_said_to_be_unsaved(visit: Visit, 
     visit.page.click("#conflict [value=repeat]")
     wait_for_revision(visit, 2)
     assert locked(edited) == [2, 3]
-    without_faults(visit, "409")
+    visit.forgive("409")
 
 
 def test_a_server_without_a_connection_is_said_to_be_unreachable(visit: Visit, edited: EditedJob) -> None:
@@ -88,4 +84,4 @@ def test_a_server_without_a_connection_is_said_to_be_unreachable(visit: Visit, e
     lock(visit, 3)
     wait_for_revision(visit, 1)
     assert locked(edited) == [3]
-    without_faults(visit, "ERR_INTERNET_DISCONNECTED")
+    visit.forgive("ERR_INTERNET_DISCONNECTED")

@@ -82,7 +82,7 @@ def test_the_client_works_in_a_page_of_another_origin(
     facts = visit.page.evaluate(f"([url, bytes]) => story(url, {_BYTES})", [installation.url, bytes_])
     check_story(facts, installation)
     closed(visit, other_site)
-    visit.faults = [fault for fault in visit.faults if "Failed to load resource" not in fault]
+    visit.forgive("Failed to load resource")
 
 
 def test_parts_by_face_are_the_same_in_files_and_labels(
@@ -136,7 +136,7 @@ def test_the_viewer_and_the_parts_work_in_an_app_of_react(
     visit.page.click("text=Another job")
     visit.page.wait_for_function("() => document.getElementById('error').textContent === 'not_loaded'")
     assert "There is no job with this id" in visit.page.inner_text("cleave-viewer p")
-    visit.faults = [fault for fault in visit.faults if "404" not in fault]
+    visit.forgive("404")
     closed(visit, other_site)
 
 
